@@ -1,0 +1,10 @@
+# One place for flags. Never -ffast-math: NaN checks, exact zero tests and reproducible sums depend on IEEE arithmetic.
+add_library(poinsot_warnings INTERFACE)
+target_compile_options(poinsot_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
+if(POINSOT_NATIVE)
+  add_compile_options(-march=native)
+endif()
+if(POINSOT_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()

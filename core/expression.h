@@ -1,0 +1,57 @@
+// A function of time f(t), as scenes write it ("cos(pi*t + pi/2)"), with its exact first and second derivatives.
+//
+// The text is parsed once into a tape; the tape is evaluated on second-order Taylor numbers (f, ḟ, f̈), so the
+// derivatives are exact to rounding and there is nothing to differentiate by hand and nothing to step.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace poinsot {
+
+// Value and time derivatives of a function of time at one instant.
+template <class T>
+struct Jet2 {
+  T f{};    // value
+  T fd{};   // first derivative, 1/s
+  T fdd{};  // second derivative, 1/s²
+};
+
+// The text is not an expression: what was found, and at which character (counted from 1).
+class ExpressionError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Expression {
+ public:
+  Expression() = default;  // the constant 0
+  explicit Expression(double constant);
+
+  // Grammar: + - * / ^ and unary signs, parentheses, numbers, `pi`, `e`, the variable `t`, and the functions listed by
+  // function_names(). `^` binds to the right and tighter than a sign on its left: -t^2 = -(t^2).
+  // Throws ExpressionError.
+  static Expression parse(std::string_view text);
+  // As parse, but `t` is an unknown name: for numbers written as constant expressions.
+  static Expression parse_constant(std::string_view text);
+  static std::vector<std::string_view> function_names();
+
+  bool is_constant() const { return constant_; }
+  const std::string& text() const { return text_; }
+
+  template <class T>  // double, long double
+  Jet2<T> at(T t) const;
+
+  // One instruction of the tape: an operation on the results of earlier instructions.
+  struct Instruction;
+
+ private:
+  std::string text_ = "0";
+  bool constant_ = true;
+  double value_ = 0;  // of a constant
+  std::vector<Instruction> tape_;
+};
+
+}  // namespace poinsot

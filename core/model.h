@@ -1,0 +1,68 @@
+// A scene taken apart into what is computed: scalar constraint rows and force elements between bodies.
+//
+// Joints and drivers become rows of a few types (the paper's Table 1); their points and axes are expressed in the body
+// frames once, at the initial pose the scene gives. Everything here is constant; a Model is shared between threads.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace poinsot {
+
+// The paper's four, and two more of the same make: `angle` is the dot product u·v of the direction
+// u = A_i (−sin f a_i + cos f b_i), turning with the prescribed angle f(t), and v = A_j a_j (no row is singular);
+// `pfaffian` is a_j·ḋ = f.
+enum class RowType { DP1, DP2, D, CD, angle, pfaffian };
+
+struct Row {
+  RowType type = RowType::DP1;
+  int i = kGround, j = kGround;
+  Vector3 a_i = Vector3::Zero(), b_i = Vector3::Zero(), a_j = Vector3::Zero();
+  Vector3 s_i = Vector3::Zero(), s_j = Vector3::Zero();
+  Vector3 c = Vector3::Zero();
+  Expression f;
+  bool squared = false;  // the right-hand side is f(t)², as for a driven distance
+  std::optional<Constraint::Alternate> alternate;
+  int group = 0;  // the constraint, joint or driver it belongs to
+};
+
+enum class GroupKind { constraint, joint, driver };
+
+// What the scene calls one thing: a constraint, a joint, a driver. Its rows are consecutive.
+struct Group {
+  GroupKind kind = GroupKind::constraint;
+  std::string name;
+  std::string type;  // as the scene writes it: "DP1", "revolute", "angle"
+  int i = kGround, j = kGround;
+  int first_row = 0, rows = 0;
+  Vector3 point_j = Vector3::Zero();  // m, where its reaction is given, in body j's frame
+};
+
+// A torsion spring with its reference directions: the angle of A_j c_j about `axis` from A_i a_i towards A_i b_i.
+struct TorsionElement {
+  TorsionSpring spring;
+  Vector3 a_i = Vector3::Zero(), b_i = Vector3::Zero(), c_j = Vector3::Zero();
+};
+
+struct Model {
+  std::string name;
+  Vector3 gravity = Vector3::Zero();
+  std::vector<Body> bodies;  // with the initial state
+  std::vector<Row> rows;     // grouped, groups in the order constraints, joints, drivers of the scene
+  std::vector<Group> groups;
+
+  std::vector<PointForce> point_forces;
+  std::vector<Torque> torques;
+  std::vector<Spring> springs;
+  std::vector<TorsionElement> torsions;
+  std::vector<LinearDrag> drags;
+};
+
+Model compile(const Scene& scene);
+
+// "constraint 'driver'", "joint 'revolute1' (its row 4 of 5)": how messages speak of a row.
+std::string describe_row(const Model& model, int row);
+
+}  // namespace poinsot

@@ -1,0 +1,23 @@
+#include "core/status.h"
+
+namespace poinsot {
+
+std::string_view name(Failure failure) {
+  switch (failure) {
+    case Failure::none:
+      return "ok";
+    case Failure::not_converged:
+      return "not_converged";
+    case Failure::singular_matrix:
+      return "singular_matrix";
+    case Failure::orientation_singularity:
+      return "orientation_singularity";
+    case Failure::not_finite:
+      return "not_finite";
+    case Failure::inconsistent_state:
+      return "inconsistent_state";
+  }
+  return "unknown";
+}
+
+}  // namespace poinsot

@@ -1,0 +1,29 @@
+// What a numerical procedure answers: ok, or why it stopped. Never thrown, never printed from inside.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace poinsot {
+
+enum class Failure {
+  none,
+  not_converged,            // Newton's method spent its iterations or diverged
+  singular_matrix,          // the linear system has no trustworthy solution
+  orientation_singularity,  // the orientation coordinates do not determine the rates
+  not_finite,               // a NaN or an infinity came up
+  inconsistent_state,       // the state violates the constraints and may not or cannot be projected onto them
+};
+
+// The failure's name as it stands in the run record: "ok", "not_converged", ...
+std::string_view name(Failure failure);
+
+struct [[nodiscard]] Status {
+  Failure failure = Failure::none;
+  double time = 0;      // s, where it happened
+  std::string message;  // what, which body or constraint, what to try; empty when ok
+
+  bool ok() const { return failure == Failure::none; }
+};
+
+}  // namespace poinsot

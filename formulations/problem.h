@@ -1,0 +1,103 @@
+// The seam between a mechanism in one formulation and everything that solves it.
+//
+// A Problem is an immutable system (shared between threads) together with the workspace of one thread. It evaluates
+//
+//   M(q) a + Gᵀ λ = Q(q, v, t),   Φ(q, t) = 0,   G v = ν,   G a = γ,
+//
+// where the formulation decides what q, v and a are, body by body: r with A (rA, v = ṙ, ω̄), with p (rp, v = ṙ, ṗ) or
+// with ε (reps, v = ṙ, ε̇). Q holds the applied forces and the velocity terms of the inertia. Layout of the vectors:
+// q by body, nq/bodies numbers each; v, a and position variations by body, nv/bodies numbers each, r first; λ by row,
+// rows in the model's order, after them rp's normalization rows, one per body.
+//
+// First set_position, then set_velocity, then ask; a new position invalidates the velocity. Position variations δq are
+// applied by retract(); a velocity v held for a time h is the variation h v (in rA: A exp(h ω̃̄)).
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/body_state.h"
+#include "core/model.h"
+#include "core/status.h"
+#include "linsolve/pattern.h"
+
+namespace poinsot {
+
+enum class MatrixKind {
+  kinematic,   // G, nc × nv: square for a mechanism without degrees of freedom
+  consistent,  // [M Gᵀ; G 0]: accelerations and multipliers of a state, mass-orthogonal projections
+  simplified,  // the original study's Newton matrix: no variation of the reactions (nor, in rp and reps, of the inertia)
+  exact,       // the Newton matrix
+};
+
+// How a step's unknown acceleration δa acts on the levels: δv = velocity δa, and the scaled position variation
+// z = δq/position is the unknown of the step's linear system. Implicit Euler: 1, h, h².
+struct StepScale {
+  double acceleration = 1;
+  double velocity = 0;
+  double position = 0;
+};
+
+class Problem {
+ public:
+  virtual ~Problem() = default;
+  virtual std::unique_ptr<Problem> clone() const = 0;  // same system, own workspace
+
+  virtual std::string_view formulation() const = 0;
+  virtual const Model& model() const = 0;
+  int bodies() const { return bodies_; }
+  int nq() const { return nq_; }
+  int nv() const { return nv_; }
+  int nc() const { return nc_; }
+
+  // State of the model's bodies at the start, in this formulation's coordinates; the same from and to body states.
+  virtual Status from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const = 0;
+  // Needs position and velocity set; `a` as solved.
+  virtual void to_bodies(std::span<const double> a, std::span<BodyState> states) const = 0;
+
+  virtual void retract(std::span<const double> q, std::span<const double> dq, std::span<double> q_out) const = 0;
+
+  virtual void set_position(double t, std::span<const double> q) = 0;
+  virtual void set_velocity(std::span<const double> v) = 0;
+
+  // Φ by row; a velocity row (pfaffian) gives 0.
+  virtual void position_residual(std::span<double> Phi) const = 0;
+  // G v − ν by row, velocity rows included.
+  virtual void velocity_residual(std::span<double> r) const = 0;
+  virtual void nu(std::span<double> out) const = 0;
+  virtual void gamma(std::span<double> out) const = 0;
+  // The rows of a step's residual: Φ/position, and (Ψv − f)/velocity for velocity rows.
+  virtual void step_residual(const StepScale& scale, std::span<double> out) const = 0;
+  // M a + Gᵀ λ − Q.
+  virtual void equations_of_motion(std::span<const double> a, std::span<const double> lambda,
+                                   std::span<double> out) const = 0;
+
+  virtual Pattern pattern(MatrixKind kind) const = 0;
+  // Writes the matrix of `kind` at the current point into values (zeroed here):
+  //   [acceleration M + velocity ∂(Ma+Gᵀλ−Q)/∂v] T⁻¹ + position ∂(Ma+Gᵀλ−Q)/∂q,  Gᵀ;   G, 0
+  // with T = T(dq) the tangent of the retraction that led here by dq from where the step began. dq may be empty: T = I.
+  virtual void assemble(MatrixKind kind, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
+                        std::span<const double> lambda, std::span<const int> slots, std::span<double> values) const = 0;
+  // z ← T(dq)⁻¹ z for the body part of a solution: the acceleration correction δa.
+  virtual void lower(std::span<const double> dq, std::span<double> z) const = 0;
+
+  // The step to (t, q, v) is accepted. What is discrete is brought up to date: turns of torsion springs, the body-fixed
+  // frames of reps. May rewrite q, v and a (not what they mean); returns true when it did, and then set_position and
+  // set_velocity are due again.
+  virtual bool accept(double t, std::span<double> q, std::span<double> v, std::span<double> a) = 0;
+
+  // Force (N, global) and moment about point_j of the group (N m, global) on body j by the rows of a group.
+  virtual void reaction(int group, std::span<const double> lambda, Vector3& force, Vector3& moment) const = 0;
+  // Kinetic and potential energy (gravity, springs, torsion springs), J.
+  virtual double energy() const = 0;
+  // How messages speak of unknown k of the step's linear system: a body's coordinates or a constraint row.
+  virtual std::string describe_unknown(int k) const = 0;
+
+ protected:
+  int bodies_ = 0, nq_ = 0, nv_ = 0, nc_ = 0;
+};
+
+}  // namespace poinsot

@@ -1,0 +1,60 @@
+// The seam of the integrators: one run of one problem, a sample at every output time, statistics and a status at the end.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/status.h"
+#include "formulations/problem.h"
+#include "integrators/settings.h"
+#include "linsolve/linear_solver.h"
+
+namespace poinsot {
+
+// The contract's run statistics. Seconds: total is the time-stepping loop without reading and writing.
+struct Statistics {
+  std::int64_t steps = 0, newton_iterations = 0, jacobian_evaluations = 0, factorizations = 0, solves = 0;
+  struct {
+    double total = 0, assembly = 0, factor = 0, solve = 0, other = 0;
+  } seconds;
+  struct {
+    double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
+  } violation;
+};
+
+// A point of the trajectory. The problem stands at (t, q, v).
+struct Sample {
+  double t;
+  const Problem& problem;
+  std::span<const double> q, v, a, lambda;
+};
+using Observer = std::function<void(const Sample&)>;
+
+// Where a run starts: consistent at t = 0.
+struct State {
+  std::vector<double> q, v, a, lambda;
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  // Advances `state` from 0 to settings.end. After a failure `state` and the samples given out are still good.
+  virtual Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state,
+                     const Observer& observe, Statistics& statistics) = 0;
+};
+
+struct IntegratorEntry {
+  std::string_view name;
+  std::string_view about;  // one line: order, what it needs, what it refuses
+  Analysis analysis;
+  std::unique_ptr<Integrator> (*make)();
+};
+
+std::span<const IntegratorEntry> integrators();
+const IntegratorEntry* find_integrator(std::string_view name);  // nullptr where no entry has the name
+
+}  // namespace poinsot

@@ -1,0 +1,27 @@
+// How to solve: the solver configuration, one field per key of the configuration file and of the command line.
+#pragma once
+
+#include <string>
+
+namespace poinsot {
+
+enum class Analysis { kinematics, dynamics };
+enum class Assembly { small, always, never };  // project an initial state that violates the constraints
+
+struct Settings {
+  Analysis analysis = Analysis::dynamics;
+  std::string formulation = "rA";
+  std::string integrator = "implicit_euler";  // of dynamics
+  std::string linear_solver = "klu";
+  std::string jacobian = "exact";
+  double step = 1e-3;       // s
+  double end = 1;           // s; the last step lands on it exactly
+  double tolerance = 1e-3;  // Newton: 2-norm of the correction of (a, λ), or of the position in kinematics
+  double rtol = 1e-8;       // integrators with error control
+  double atol = 1e-10;
+  int max_iterations = 20;
+  double every = 0;  // s between outputs; 0: every step
+  Assembly assembly = Assembly::small;
+};
+
+}  // namespace poinsot

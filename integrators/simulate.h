@@ -1,0 +1,26 @@
+// From a scene and a configuration to a motion: the one way in for the command line, the benchmarks and other programs.
+//
+// Checks the settings against the registries, compiles the model, sets dependent rows aside, projects the initial state
+// where it has to, finds the initial accelerations and multipliers, and runs the integrator.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/scene.h"
+#include "integrators/integrator.h"
+
+namespace poinsot {
+
+struct Outcome {
+  Status status;
+  Statistics statistics;
+  std::vector<std::string> notices;      // what the user should know of: projections, dependent rows, singular starts
+  bool reactions_undetermined = false;   // dependent rows: the reactions given are the minimum-norm ones
+};
+
+// Throws InputError where settings and scene do not fit together (unknown name, kinematics with free motion, ...), before
+// anything is observed. Numerical failure is in the outcome's status.
+Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe);
+
+}  // namespace poinsot

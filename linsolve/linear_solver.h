@@ -1,0 +1,69 @@
+// Solves A x = b for a sparse, square, in general unsymmetric A whose structure is known before its values.
+//
+// 1. analyze(pattern) is called once: it fixes the layout and does all symbolic work. state() becomes analyzed.
+// 2. The caller writes the values of A: it zeroes values(), then adds every block at the slots() (see linsolve/pattern.h).
+// 3. factor() factorizes what values() holds; values() stays as it is. state() becomes factored when it answers ok.
+// 4. solve(b) replaces b by A⁻¹ b, as often as wanted, for the values of the last factor().
+// 5. 2 to 4 repeat; nothing is allocated in them after the first round.
+// 6. A matrix that is singular to working precision is never answered with ok: neither by factor() nor by solve().
+// 7. Calls out of order and wrong sizes are bugs of the caller: they throw std::logic_error.
+// 8. After an answer other than ok, b holds garbage and state() is analyzed again.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "linsolve/pattern.h"
+
+namespace poinsot {
+
+enum class LinearFailure { none, structurally_singular, singular, not_finite, out_of_memory, refused };
+
+struct [[nodiscard]] LinearStatus {
+  LinearFailure failure = LinearFailure::none;
+  int unknown = -1;     // the row or column that has no pivot, where the solver knows it
+  std::string message;  // empty when ok
+
+  bool ok() const { return failure == LinearFailure::none; }
+};
+
+struct LinearStatistics {
+  std::int64_t analyses = 0, factorizations = 0, refactorizations = 0, solves = 0;  // refactorizations: with kept pivots
+  std::int64_t nonzeros = 0, factor_nonzeros = 0;
+  double reciprocal_condition = 0;  // estimate for the last factorization, of the scaled matrix; 0 where unknown
+};
+
+class LinearSolver {
+ public:
+  enum class State { empty, analyzed, factored };
+
+  virtual ~LinearSolver() = default;
+
+  LinearStatus analyze(const Pattern& pattern);
+  LinearStatus factor();
+  LinearStatus solve(std::span<double> b);
+
+  std::span<const int> slots() const { return slots_; }  // one per block column, blocks in pattern order
+  std::span<double> values() { return values_; }
+  State state() const { return state_; }
+  int size() const { return n_; }
+  const LinearStatistics& statistics() const { return statistics_; }
+
+ protected:
+  // Sets up slots_ and values_ (usually by CscLayout) and everything symbolic.
+  virtual LinearStatus do_analyze(const Pattern& pattern) = 0;
+  virtual LinearStatus do_factor() = 0;
+  virtual LinearStatus do_solve(std::span<double> b) = 0;
+
+  std::vector<int> slots_;
+  std::vector<double> values_;
+  LinearStatistics statistics_;
+
+ private:
+  int n_ = 0;
+  State state_ = State::empty;
+};
+
+}  // namespace poinsot
