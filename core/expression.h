@@ -1,7 +1,8 @@
 // A function of time f(t), as scenes write it ("cos(pi*t + pi/2)"), with its exact first and second derivatives.
 //
-// The text is parsed once into a tape; the tape is evaluated on second-order Taylor numbers (f, ḟ, f̈), so the
-// derivatives are exact to rounding and there is nothing to differentiate by hand and nothing to step.
+// The text is parsed once into a tape (core/expression_tape.h), parts without `t` already evaluated; the tape is
+// evaluated on second-order Taylor numbers (f, ḟ, f̈), so the derivatives are exact to rounding and there is nothing to
+// differentiate by hand and nothing to step. Evaluation allocates nothing and changes nothing.
 #pragma once
 
 #include <stdexcept>
@@ -9,15 +10,9 @@
 #include <string_view>
 #include <vector>
 
-namespace poinsot {
+#include "core/expression_tape.h"
 
-// Value and time derivatives of a function of time at one instant.
-template <class T>
-struct Jet2 {
-  T f{};    // value
-  T fd{};   // first derivative, 1/s
-  T fdd{};  // second derivative, 1/s²
-};
+namespace poinsot {
 
 // The text is not an expression: what was found, and at which character (counted from 1).
 class ExpressionError : public std::runtime_error {
@@ -32,7 +27,7 @@ class Expression {
 
   // Grammar: + - * / ^ and unary signs, parentheses, numbers, `pi`, `e`, the variable `t`, and the functions listed by
   // function_names(). `^` binds to the right and tighter than a sign on its left: -t^2 = -(t^2).
-  // Throws ExpressionError.
+  // A constant part that is not finite ("1/0") is an error. Throws ExpressionError.
   static Expression parse(std::string_view text);
   // As parse, but `t` is an unknown name: for numbers written as constant expressions.
   static Expression parse_constant(std::string_view text);
@@ -42,16 +37,17 @@ class Expression {
   const std::string& text() const { return text_; }
 
   template <class T>  // double, long double
-  Jet2<T> at(T t) const;
-
-  // One instruction of the tape: an operation on the results of earlier instructions.
-  struct Instruction;
+  Jet2<T> at(T t) const {
+    return constant_ ? Jet2<T>{T(value_), T(0), T(0)} : run_tape<T>(tape_, t);
+  }
 
  private:
+  static Expression parse(std::string_view text, bool with_time);
+
   std::string text_ = "0";
   bool constant_ = true;
-  double value_ = 0;  // of a constant
-  std::vector<Instruction> tape_;
+  double value_ = 0;                   // of a constant
+  std::vector<TapeInstruction> tape_;  // empty for a constant
 };
 
 }  // namespace poinsot

@@ -1,0 +1,143 @@
+#include "core/expression_tape.h"
+
+#include <cmath>
+
+namespace poinsot {
+namespace {
+
+// φ(x) from the value of φ and its first two derivatives at x.f.
+template <class T>
+Jet2<T> compose(const Jet2<T>& x, T value, T first, T second) {
+  return {value, first * x.fd, second * x.fd * x.fd + first * x.fdd};
+}
+
+// xⁿ with a constant exponent. A vanishing coefficient comes before a negative power of x = 0.
+template <class T>
+Jet2<T> power_constant(const Jet2<T>& x, T n) {
+  if (n == 2) return compose(x, x.f * x.f, 2 * x.f, T(2));
+  const T first = n == 0 ? T(0) : n * std::pow(x.f, n - 1);
+  const T second = n == 0 || n == 1 ? T(0) : n * (n - 1) * std::pow(x.f, n - 2);
+  return compose(x, std::pow(x.f, n), first, second);
+}
+
+template <class T>
+Jet2<T> function(const TapeInstruction& instruction, const Jet2<T>& x) {
+  switch (instruction.op) {
+    case TapeOp::negate:
+      return {-x.f, -x.fd, -x.fdd};
+    case TapeOp::sin: {
+      const T s = std::sin(x.f), c = std::cos(x.f);
+      return compose(x, s, c, -s);
+    }
+    case TapeOp::cos: {
+      const T s = std::sin(x.f), c = std::cos(x.f);
+      return compose(x, c, -s, -c);
+    }
+    case TapeOp::tan: {
+      const T f = std::tan(x.f), first = 1 + f * f;
+      return compose(x, f, first, 2 * f * first);
+    }
+    case TapeOp::asin:
+    case TapeOp::acos: {
+      const T square = (1 - x.f) * (1 + x.f), first = 1 / std::sqrt(square), second = x.f * first / square;
+      return instruction.op == TapeOp::asin ? compose(x, std::asin(x.f), first, second)
+                                            : compose(x, std::acos(x.f), -first, -second);
+    }
+    case TapeOp::atan: {
+      const T first = 1 / (1 + x.f * x.f);
+      return compose(x, std::atan(x.f), first, -2 * x.f * first * first);
+    }
+    case TapeOp::sinh: {
+      const T f = std::sinh(x.f);
+      return compose(x, f, std::cosh(x.f), f);
+    }
+    case TapeOp::cosh: {
+      const T f = std::cosh(x.f);
+      return compose(x, f, std::sinh(x.f), f);
+    }
+    case TapeOp::tanh: {
+      const T f = std::tanh(x.f), c = std::cosh(x.f), first = 1 / (c * c);  // 1 − f² would cancel
+      return compose(x, f, first, -2 * f * first);
+    }
+    case TapeOp::exp: {
+      const T f = std::exp(x.f);
+      return compose(x, f, f, f);
+    }
+    case TapeOp::log:
+      return compose(x, std::log(x.f), 1 / x.f, -1 / (x.f * x.f));
+    case TapeOp::sqrt: {
+      const T f = std::sqrt(x.f), first = 1 / (2 * f);
+      return compose(x, f, first, -first / (2 * x.f));
+    }
+    case TapeOp::abs:
+      return x.f < 0 ? Jet2<T>{-x.f, -x.fd, -x.fdd} : x;
+    default:
+      return power_constant(x, T(instruction.value));
+  }
+}
+
+template <class T>
+Jet2<T> operation(TapeOp op, const Jet2<T>& x, const Jet2<T>& y) {
+  switch (op) {
+    case TapeOp::add:
+      return {x.f + y.f, x.fd + y.fd, x.fdd + y.fdd};
+    case TapeOp::subtract:
+      return {x.f - y.f, x.fd - y.fd, x.fdd - y.fdd};
+    case TapeOp::multiply:
+      return {x.f * y.f, x.fd * y.f + x.f * y.fd, x.fdd * y.f + 2 * x.fd * y.fd + x.f * y.fdd};
+    case TapeOp::divide: {  // x = f y, differentiated and solved for the derivatives of f
+      const T f = x.f / y.f, fd = (x.fd - f * y.fd) / y.f;
+      return {f, fd, (x.fdd - 2 * fd * y.fd - f * y.fdd) / y.f};
+    }
+    case TapeOp::power: {  // f = exp(g), g = y log x
+      const Jet2<T> logarithm = compose(x, std::log(x.f), 1 / x.f, -1 / (x.f * x.f));
+      const Jet2<T> g = operation(TapeOp::multiply, y, logarithm);
+      const T f = std::pow(x.f, y.f);
+      return compose(g, f, f, f);
+    }
+    case TapeOp::atan2: {  // angle of the point (y, x): ḟ = (y ẋ − x ẏ) / (x² + y²)
+      const T square = x.f * x.f + y.f * y.f;
+      const T fd = (y.f * x.fd - x.f * y.fd) / square;
+      return {std::atan2(x.f, y.f), fd, (y.f * x.fdd - x.f * y.fdd - 2 * fd * (x.f * x.fd + y.f * y.fd)) / square};
+    }
+    case TapeOp::min:
+      return y.f < x.f ? y : x;
+    default:
+      return y.f > x.f ? y : x;
+  }
+}
+
+}  // namespace
+
+template <class T>
+Jet2<T> run_tape(std::span<const TapeInstruction> tape, T t) {
+  struct Slot {  // a Jet2 that is not set to zero first
+    T f, fd, fdd;
+    void operator=(const Jet2<T>& x) { f = x.f, fd = x.fd, fdd = x.fdd; }
+    operator Jet2<T>() const { return {f, fd, fdd}; }
+  } stack[kTapeStack];
+  Slot* top = stack;  // one past the topmost value
+  for (const TapeInstruction& instruction : tape) {
+    switch (instruction.op) {
+      case TapeOp::constant:
+        *top++ = Jet2<T>{T(instruction.value), T(0), T(0)};
+        break;
+      case TapeOp::time:
+        *top++ = Jet2<T>{t, T(1), T(0)};
+        break;
+      default:
+        if (arity(instruction.op) == 1) {
+          top[-1] = function<T>(instruction, top[-1]);
+        } else {
+          top[-2] = operation<T>(instruction.op, top[-2], top[-1]);
+          --top;
+        }
+    }
+  }
+  return stack[0];
+}
+
+template Jet2<double> run_tape(std::span<const TapeInstruction>, double);
+template Jet2<long double> run_tape(std::span<const TapeInstruction>, long double);
+
+}  // namespace poinsot
