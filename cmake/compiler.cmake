@@ -1,10 +1,25 @@
 # One place for flags. Never -ffast-math: NaN checks, exact zero tests and reproducible sums depend on IEEE arithmetic.
+#
+# Two of its parts change no result and are on: nobody reads errno after sqrt (-fno-math-errno: sqrt is one instruction,
+# and loops with it become vectors), nobody unmasks floating-point traps (-fno-trapping-math: a value that a branch would
+# not have needed may be computed, so loops with selections become vectors). Fused multiply-adds round differently; they
+# come with the native build only, so that release builds give the same bytes on every processor of an architecture.
 add_library(poinsot_warnings INTERFACE)
 target_compile_options(poinsot_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
+add_compile_options(-fno-math-errno -fno-trapping-math)
+
+# What a program has to be compiled with as well to fit this library: Eigen's alignment follows the instruction set.
+set(poinsot_interface_options)
+set(poinsot_interface_link_options)
 if(POINSOT_NATIVE)
-  add_compile_options(-march=native)
+  list(APPEND poinsot_interface_options -march=native -ffp-contract=fast)
+else()
+  add_compile_options(-ffp-contract=off)
 endif()
 if(POINSOT_SANITIZE)
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
-  add_link_options(-fsanitize=address,undefined)
+  list(APPEND poinsot_interface_options -fsanitize=address,undefined -fno-sanitize-recover=undefined
+       -fno-omit-frame-pointer)
+  list(APPEND poinsot_interface_link_options -fsanitize=address,undefined)
 endif()
+add_compile_options(${poinsot_interface_options})
+add_link_options(${poinsot_interface_link_options})

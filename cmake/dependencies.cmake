@@ -1,17 +1,6 @@
-# Everything comes from the system's packages; SuiteSparse ships no CMake package here, so it is found by hand.
+# Everything comes from the system's packages.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
-
-add_library(poinsot_suitesparse INTERFACE)
-find_path(SUITESPARSE_INCLUDE_DIR klu.h PATH_SUFFIXES suitesparse REQUIRED)
-target_include_directories(poinsot_suitesparse SYSTEM INTERFACE $<BUILD_INTERFACE:${SUITESPARSE_INCLUDE_DIR}>)
-set(poinsot_suitesparse_parts spqr cholmod klu btf colamd amd suitesparseconfig)
-if(POINSOT_UMFPACK)
-  list(PREPEND poinsot_suitesparse_parts umfpack)
-endif()
-foreach(part IN LISTS poinsot_suitesparse_parts)
-  find_library(SUITESPARSE_${part}_LIBRARY ${part} REQUIRED)
-  target_link_libraries(poinsot_suitesparse INTERFACE ${SUITESPARSE_${part}_LIBRARY})
-endforeach()
+include(${CMAKE_CURRENT_LIST_DIR}/suitesparse.cmake)

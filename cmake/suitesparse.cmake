@@ -1,0 +1,17 @@
+# Target poinsot::suitesparse: SuiteSparse as Debian has it, without a CMake package, so it is found by hand. Serves the
+# build and the installed package. POINSOT_UMFPACK decides whether UMFPACK is in.
+if(NOT TARGET poinsot::suitesparse)
+  add_library(poinsot::suitesparse INTERFACE IMPORTED)
+  find_path(SUITESPARSE_INCLUDE_DIR klu.h PATH_SUFFIXES suitesparse REQUIRED)
+  mark_as_advanced(SUITESPARSE_INCLUDE_DIR)
+  target_include_directories(poinsot::suitesparse INTERFACE ${SUITESPARSE_INCLUDE_DIR})
+  set(poinsot_suitesparse_parts spqr cholmod klu btf colamd amd suitesparseconfig)
+  if(POINSOT_UMFPACK)
+    list(PREPEND poinsot_suitesparse_parts umfpack)
+  endif()
+  foreach(part IN LISTS poinsot_suitesparse_parts)
+    find_library(SUITESPARSE_${part}_LIBRARY ${part} REQUIRED)
+    mark_as_advanced(SUITESPARSE_${part}_LIBRARY)
+    target_link_libraries(poinsot::suitesparse INTERFACE ${SUITESPARSE_${part}_LIBRARY})
+  endforeach()
+endif()
