@@ -1,0 +1,29 @@
+# cmake -DBUILD=build directory -DSOURCE=source directory -DCXX=compiler -P test.cmake: installs the library, moves the
+# tree away, builds the example against it with nothing but find_package, and runs it. Nothing of the build or the source
+# tree may be needed, so the scene comes from the installed tree as well.
+set(work ${BUILD}/tests/example_project)
+file(REMOVE_RECURSE ${work})
+
+function(run)
+  execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE failed)
+  if(failed)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${command}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${work}/first)
+file(RENAME ${work}/first ${work}/moved)
+run(${CMAKE_COMMAND} -S ${SOURCE}/tests/example_project -B ${work}/build -DCMAKE_BUILD_TYPE=Release
+    -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_PREFIX_PATH=${work}/moved -DCMAKE_CXX_FLAGS=-Werror)
+run(${CMAKE_COMMAND} --build ${work}/build)
+run(${work}/build/example ${work}/moved/share/poinsot/models/single_pendulum.json)
+# The driven rod, 2 m to the centre: angle u = (π/4) cos 2t from the vertical, is at (0, 2 sin u, −2 cos u).
+if(NOT output MATCHES " -?0\\.000000 -0\\.642106 -1\\.894123\n$")
+  message(FATAL_ERROR "the rod ended elsewhere: ${output}")
+endif()
+file(STRINGS ${work}/moved/lib/cmake/poinsot/poinsotTargets.cmake leaks REGEX "${SOURCE}|${BUILD}")
+if(leaks)
+  message(FATAL_ERROR "the installed package points back: ${leaks}")
+endif()

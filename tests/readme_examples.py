@@ -1,0 +1,48 @@
+"""Runs the README's examples: readme_examples.py SOURCE PROGRAM_DIRECTORY.
+
+A block marked `sh` is run as it stands by a shell that stops at the first failure, in one temporary directory for all
+blocks, with the program on the PATH and the models where the README says. A block marked `bash` takes long and has its
+own place in the tests; of it, that the scripts and presets it names exist. A block marked `cmake` or `cpp` must stand
+in the example project, which is built and run by a test of its own.
+"""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+source = pathlib.Path(sys.argv[1])
+environment = dict(os.environ, PATH=sys.argv[2] + os.pathsep + os.environ["PATH"])
+text = (source / "README.md").read_text(encoding="utf-8")
+blocks = re.findall(r"^```(\w+)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+presets = {preset["name"] for preset in json.loads((source / "CMakePresets.json").read_text())["configurePresets"]}
+example = "".join((source / "tests/example_project" / name).read_text() for name in ("CMakeLists.txt", "main.cpp"))
+problems = []
+
+with tempfile.TemporaryDirectory() as directory:
+    os.symlink(source / "models", pathlib.Path(directory) / "models")
+    for language, block in blocks:
+        if language == "sh":
+            done = subprocess.run(["bash", "-euo", "pipefail", "-c", block], cwd=directory, env=environment,
+                                  stdin=subprocess.DEVNULL, capture_output=True, text=True)
+            if done.returncode != 0:
+                problems.append(f"exit status {done.returncode}:\n{block}{done.stdout}{done.stderr}")
+        elif language == "bash":
+            problems += [f"no script {script}" for script in re.findall(r"^bash (\S+)", block, re.MULTILINE)
+                         if not (source / script).is_file()]
+            problems += [f"no preset {preset}" for preset in re.findall(r"--preset (\w+)", block)
+                         if preset not in presets]
+        elif language in ("cmake", "cpp"):
+            if block not in example:
+                problems.append(f"not in tests/example_project:\n{block}")
+        elif language != "text":
+            problems.append(f"a block marked {language}: nothing exercises it")
+
+ran = [language for language, _ in blocks].count("sh")
+if ran == 0 or text.count("\n```") != 2 * len(blocks):
+    problems.append("no example was found to run, or a block is not marked")
+print(f"{ran} examples run", *problems, sep="\n")
+sys.exit(1 if problems else 0)
