@@ -1,0 +1,30 @@
+// JSON text, parsed strictly: comments are allowed (// and /* */), a key that comes twice in an object is not.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "core/json_value.h"
+
+namespace poinsot {
+
+class JsonDocument {
+ public:
+  // `file` names the text in messages. Throws InputError: a syntax error with line and column (in bytes, from 1), a
+  // duplicate key with its path.
+  JsonDocument(std::string_view text, std::string_view file);
+  ~JsonDocument();
+
+  JsonValue root() const { return JsonValue(*json_, file_); }
+
+ private:
+  std::string file_;
+  std::unique_ptr<nlohmann::json> json_;
+};
+
+// The file's whole content. Throws InputError.
+std::string read_text(const std::string& file);
+
+}  // namespace poinsot

@@ -1,0 +1,115 @@
+#include "core/json_value.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/expression.h"
+#include "core/input_error.h"
+
+namespace poinsot {
+namespace {
+
+// What was found, in a few words: short values as they stand, the others by kind.
+std::string describe(const nlohmann::json& value) {
+  constexpr std::size_t kLongest = 60;
+  if (value.is_object()) return "an object";
+  if (value.is_array())
+    return value.size() == 1 ? "an array of 1 value" : fmt::format("an array of {} values", value.size());
+  std::string text = value.dump();
+  if (text.size() > kLongest) {
+    std::size_t end = kLongest;
+    while ((static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not inside a UTF-8 sequence
+    text = text.substr(0, end) + "...";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string pointer_token(std::string_view key) {
+  std::string token;
+  for (const char c : key) {
+    if (c == '~') {
+      token += "~0";
+    } else if (c == '/') {
+      token += "~1";
+    } else {
+      token += c;
+    }
+  }
+  return token;
+}
+
+std::string JsonValue::path() const {
+  if (parent_ == nullptr) return "/";
+  const std::string own = parent_->value_->is_array() ? fmt::format("{}", index_) : pointer_token(key_);
+  return (parent_->parent_ == nullptr ? "" : parent_->path()) + "/" + own;
+}
+
+void JsonValue::fail(std::string_view message) const {
+  throw InputError(fmt::format("{}: {}: {}", file_, path(), message));
+}
+
+void JsonValue::expected(std::string_view allowed) const {
+  fail(fmt::format("found {}, expected {}", describe(*value_), allowed));
+}
+
+void JsonValue::keys(std::string_view owner, std::initializer_list<std::string_view> allowed) const {
+  if (!value_->is_object()) expected(fmt::format("{} as an object", owner));
+  for (const auto& [key, value] : value_->items()) {
+    if (std::ranges::find(allowed, key) == allowed.end()) {
+      JsonValue(value, *this, key, 0)
+          .fail(fmt::format("unknown key, expected for {}: {}", owner, fmt::join(allowed, ", ")));
+    }
+  }
+}
+
+std::optional<JsonValue> JsonValue::optional(std::string_view key) const& {
+  if (!value_->is_object()) expected("an object");
+  const auto found = value_->find(key);
+  if (found == value_->end()) return std::nullopt;
+  return JsonValue(*found, *this, found.key(), 0);
+}
+
+JsonValue JsonValue::required(std::string_view key) const& {
+  const std::optional<JsonValue> found = optional(key);
+  if (!found) JsonValue(*value_, *this, key, 0).fail("found nothing, the key is required");
+  return *found;
+}
+
+std::size_t JsonValue::size(std::string_view allowed) const {
+  if (!value_->is_array()) expected(allowed);
+  return value_->size();
+}
+
+JsonValue JsonValue::at(std::size_t index) const& {
+  return JsonValue((*value_)[index], *this, {}, index);
+}
+
+bool JsonValue::is_array() const {
+  return value_->is_array();
+}
+
+bool JsonValue::is_string() const {
+  return value_->is_string();
+}
+
+const std::string& JsonValue::string(std::string_view allowed) const {
+  if (!value_->is_string()) expected(allowed);
+  return value_->get_ref<const std::string&>();
+}
+
+double JsonValue::number(std::string_view allowed) const {
+  if (value_->is_number()) return value_->get<double>();  // finite: the parser refuses numbers out of range
+  if (!value_->is_string()) expected(allowed);
+  try {
+    return Expression::parse_constant(value_->get_ref<const std::string&>()).at(0.0).f;
+  } catch (const ExpressionError& error) {
+    fail(fmt::format("found {} ({}), expected {}", describe(*value_), error.what(), allowed));
+  }
+}
+
+}  // namespace poinsot

@@ -1,0 +1,153 @@
+// Constraints, joints and drivers. For each type: the keys it has, then what they hold.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/scene_parts.h"
+#include "core/scene_values.h"
+
+namespace poinsot {
+namespace {
+
+template <class Type>
+struct TypeName {
+  const char* name;
+  Type type;
+};
+
+constexpr TypeName<ConstraintType> kConstraints[] = {{"DP1", ConstraintType::DP1},
+                                                     {"DP2", ConstraintType::DP2},
+                                                     {"D", ConstraintType::D},
+                                                     {"CD", ConstraintType::CD},
+                                                     {"pfaffian", ConstraintType::pfaffian}};
+constexpr TypeName<JointType> kJoints[] = {
+    {"revolute", JointType::revolute},           {"spherical", JointType::spherical},
+    {"universal", JointType::universal},         {"cylindrical", JointType::cylindrical},
+    {"translational", JointType::translational}, {"fixed", JointType::fixed}};
+constexpr TypeName<DriverType> kDrivers[] = {{"angle", DriverType::angle}, {"distance", DriverType::distance}};
+
+// The item's entry in the table of types.
+template <class Type, std::size_t N>
+const TypeName<Type>& read_type(const JsonValue& item, const TypeName<Type> (&table)[N]) {
+  const JsonValue value = item.required("type");
+  const std::string& name = value.string();
+  std::string allowed;
+  for (const TypeName<Type>& entry : table) {
+    if (name == entry.name) return entry;
+    allowed += (allowed.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  value.expected("one of " + allowed);
+}
+
+template <class Item>
+void read_bodies(const JsonValue& item, const BodyNames& bodies, Item& out) {
+  const JsonValue pair = item.required("bodies");
+  std::tie(out.i, out.j) = bodies.read_pair(pair);
+}
+
+void read_points(const JsonValue& item, Vector3& s_i, Vector3& s_j) {
+  s_i = read_vector(item.required("s_i"));
+  s_j = read_vector(item.required("s_j"));
+}
+
+Constraint::Alternate read_alternate(const JsonValue& value) {
+  value.keys("an alternate", {"a_i", "a_j", "f"});
+  return {read_direction(value.required("a_i")), read_direction(value.required("a_j")),
+          read_function(value.required("f"))};
+}
+
+}  // namespace
+
+Constraint read_constraint(const JsonValue& item, const BodyNames& bodies, ItemNames& names) {
+  const auto& [type_name, type] = read_type(item, kConstraints);
+  Constraint c;
+  c.type = type;
+  switch (type) {
+    case ConstraintType::DP1:
+      item.keys("a DP1", {"type", "name", "bodies", "a_i", "a_j", "f", "alternate"});
+      c.a_i = read_direction(item.required("a_i"));
+      c.a_j = read_direction(item.required("a_j"));
+      if (const auto alternate = item.optional("alternate")) c.alternate = read_alternate(*alternate);
+      break;
+    case ConstraintType::DP2:
+      item.keys("a DP2", {"type", "name", "bodies", "a_i", "s_i", "s_j", "f"});
+      c.a_i = read_direction(item.required("a_i"));
+      read_points(item, c.s_i, c.s_j);
+      break;
+    case ConstraintType::D:
+      item.keys("a D", {"type", "name", "bodies", "s_i", "s_j", "f"});
+      read_points(item, c.s_i, c.s_j);
+      break;
+    case ConstraintType::CD:
+      item.keys("a CD", {"type", "name", "bodies", "c", "s_i", "s_j", "f"});
+      c.c = read_direction(item.required("c"));
+      read_points(item, c.s_i, c.s_j);
+      break;
+    case ConstraintType::pfaffian:
+      item.keys("a pfaffian constraint", {"type", "name", "bodies", "a_j", "s_i", "s_j", "f"});
+      c.a_j = read_direction(item.required("a_j"));
+      read_points(item, c.s_i, c.s_j);
+      break;
+  }
+  read_bodies(item, bodies, c);
+  c.f = optional_or(item, "f", read_function, Expression());
+  c.name = names.next(item, type_name);
+  return c;
+}
+
+Joint read_joint(const JsonValue& item, const BodyNames& bodies, ItemNames& names) {
+  const auto& [type_name, type] = read_type(item, kJoints);
+  Joint j;
+  j.type = type;
+  switch (type) {
+    case JointType::spherical:
+    case JointType::fixed:
+      item.keys(fmt::format("a {} joint", type_name), {"type", "name", "bodies", "point"});
+      break;
+    case JointType::universal: {
+      item.keys("a universal joint", {"type", "name", "bodies", "point", "axis_i", "axis_j"});
+      j.axis_i = read_axis(item.required("axis_i"));
+      const JsonValue axis_j = item.required("axis_j");
+      j.axis_j = read_axis(axis_j);
+      constexpr double kSquare = 1e-2;  // what is given to a few digits is left to the assembly of the initial pose
+      const double cosine = j.axis_i.dot(j.axis_j);
+      if (std::abs(cosine) > kSquare) {
+        axis_j.fail(fmt::format("found an axis at {:.4g} rad to axis_i, expected one perpendicular to it",
+                                std::acos(std::clamp(cosine, -1.0, 1.0))));
+      }
+      break;
+    }
+    case JointType::revolute:
+    case JointType::cylindrical:
+    case JointType::translational:
+      item.keys(fmt::format("a {} joint", type_name), {"type", "name", "bodies", "point", "axis"});
+      j.axis = read_axis(item.required("axis"));
+      break;
+  }
+  j.point = read_vector(item.required("point"));
+  read_bodies(item, bodies, j);
+  j.name = names.next(item, type_name);
+  return j;
+}
+
+Driver read_driver(const JsonValue& item, const BodyNames& bodies, ItemNames& names) {
+  const auto& [type_name, type] = read_type(item, kDrivers);
+  Driver d;
+  d.type = type;
+  if (type == DriverType::angle) {
+    item.keys("an angle driver", {"type", "name", "bodies", "axis", "angle"});
+    d.axis = read_axis(item.required("axis"));
+    d.value = read_function(item.required("angle"));
+  } else {
+    item.keys("a distance driver", {"type", "name", "bodies", "s_i", "s_j", "length"});
+    read_points(item, d.s_i, d.s_j);
+    d.value = read_function(item.required("length"));
+  }
+  read_bodies(item, bodies, d);
+  d.name = names.next(item, type_name);
+  return d;
+}
+
+}  // namespace poinsot

@@ -1,0 +1,62 @@
+#include "core/scene_reader.h"
+
+#include "core/json_document.h"
+#include "core/scene_parts.h"
+#include "core/scene_values.h"
+
+namespace poinsot {
+namespace {
+
+// Calls read(item) for every item of a section; an absent section has none.
+template <class Read>
+void for_each(const JsonValue& root, std::string_view section, const std::string& allowed, Read read) {
+  const std::optional<JsonValue> list = root.optional(section);
+  if (!list) return;
+  const std::size_t size = list->size(allowed);
+  for (std::size_t k = 0; k < size; ++k) {
+    const JsonValue item = list->at(k);
+    read(item);
+  }
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, std::string_view file) {
+  const JsonDocument document(text, file);
+  const JsonValue root = document.root();
+  root.keys("a scene", {"scene", "name", "about", "gravity", "bodies", "constraints", "joints", "drivers", "forces"});
+  const JsonValue version = root.required("scene");
+  if (version.number("1, the version of the format") != 1) version.expected("1, the version of the format");
+
+  Scene scene;
+  if (const auto name = root.optional("name")) scene.name = name->string();
+  if (const auto about = root.optional("about")) scene.about = about->string();
+  scene.gravity = optional_or(root, "gravity", read_vector, scene.gravity);
+
+  const JsonValue list = root.required("bodies");
+  if (list.size("an array of bodies") == 0) list.expected("at least one body");
+  BodyNames bodies;
+  for_each(root, "bodies", "an array of bodies", [&](const JsonValue& item) {
+    scene.bodies.push_back(read_body(item, bodies, static_cast<int>(scene.bodies.size())));
+  });
+
+  // Constraints, joints and drivers share their names: reactions are told apart by them.
+  ItemNames rows, forces;
+  for_each(root, "constraints", "an array of constraints",
+           [&](const JsonValue& item) { scene.constraints.push_back(read_constraint(item, bodies, rows)); });
+  for_each(root, "joints", "an array of joints",
+           [&](const JsonValue& item) { scene.joints.push_back(read_joint(item, bodies, rows)); });
+  for_each(root, "drivers", "an array of drivers",
+           [&](const JsonValue& item) { scene.drivers.push_back(read_driver(item, bodies, rows)); });
+  for_each(root, "forces", "an array of forces",
+           [&](const JsonValue& item) { scene.forces.push_back(read_force(item, bodies, forces)); });
+
+  scene.source = text;
+  return scene;
+}
+
+Scene read_scene(const std::filesystem::path& file) {
+  return parse_scene(read_text(file.string()), file.string());
+}
+
+}  // namespace poinsot

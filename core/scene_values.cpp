@@ -1,0 +1,134 @@
+#include "core/scene_values.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+namespace poinsot {
+namespace {
+
+Matrix3 read_matrix(const JsonValue& value, std::string_view allowed) {
+  if (value.size(allowed) != 3) value.expected(allowed);
+  Matrix3 matrix;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const JsonValue row = value.at(k);
+    matrix.row(static_cast<Eigen::Index>(k)) = read_vector(row).transpose();
+  }
+  return matrix;
+}
+
+// The rotation nearest to A, by Newton–Schulz: R ← R (3 I − RᵀR) / 2, quadratic near SO(3) and exact on I.
+Matrix3 project(const Matrix3& A, const JsonValue& value) {
+  const auto defect = [](const Matrix3& R) { return (R.transpose() * R - Matrix3::Identity()).cwiseAbs().maxCoeff(); };
+  constexpr double kFar = 10 * kOrientationTolerance;  // a defect that the tolerance, moving each entry, cannot reach
+  const double given = defect(A);
+  if (!(given <= kFar)) {
+    value.fail(fmt::format("found a matrix A with AᵀA off the identity by {:.2g}, expected a rotation to within {:.0e}",
+                           given, kOrientationTolerance));
+  }
+  if (A.determinant() < 0) value.fail("found a reflection (its determinant is -1), expected a rotation");
+  if (given <= 4 * std::numeric_limits<double>::epsilon()) return A;
+  Matrix3 R = A;
+  for (int k = 0; k < 4; ++k) R = R * (1.5 * Matrix3::Identity() - 0.5 * R.transpose() * R);
+  const double moved = (R - A).cwiseAbs().maxCoeff();
+  if (moved > kOrientationTolerance) {
+    value.fail(fmt::format("found a matrix whose entries are off the nearest rotation by up to {:.2g}, expected {:.0e}",
+                           moved, kOrientationTolerance));
+  }
+  return R;
+}
+
+Matrix3 read_euler_parameters(const JsonValue& value) {
+  constexpr std::string_view kAllowed = "4 numbers, e0 to e3";
+  if (value.size(kAllowed) != 4) value.expected(kAllowed);
+  Eigen::Vector4d p;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const JsonValue number = value.at(k);
+    p[static_cast<Eigen::Index>(k)] = number.number();
+  }
+  const double norm = p.norm();
+  if (!(std::abs(norm - 1) <= kOrientationTolerance)) {
+    value.fail(
+        fmt::format("found Euler parameters of norm {:.6g}, expected 1 to within {:.0e}", norm, kOrientationTolerance));
+  }
+  p /= norm;
+  return Eigen::Quaterniond(p[0], p[1], p[2], p[3]).toRotationMatrix();
+}
+
+Matrix3 turn(double angle, const Vector3& axis) {
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+}  // namespace
+
+Vector3 read_vector(const JsonValue& value) {
+  constexpr std::string_view kAllowed = "an array of 3 numbers";
+  if (value.size(kAllowed) != 3) value.expected(kAllowed);
+  Vector3 vector;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const JsonValue component = value.at(k);
+    vector[static_cast<Eigen::Index>(k)] = component.number();
+  }
+  return vector;
+}
+
+Vector3 read_direction(const JsonValue& value) {
+  const Vector3 direction = read_vector(value);
+  if (direction.isZero(0)) value.fail("found the zero vector, expected a direction");
+  return direction;
+}
+
+Vector3 read_axis(const JsonValue& value) {
+  return read_direction(value).stableNormalized();
+}
+
+Expression read_function(const JsonValue& value) {
+  constexpr std::string_view kAllowed = "a number or a string holding an expression in t";
+  if (!value.is_string()) return Expression(value.number(kAllowed));
+  try {
+    return Expression::parse(value.string());
+  } catch (const ExpressionError& error) {
+    value.fail(fmt::format("found \"{}\" ({}), expected {}", value.string(), error.what(), kAllowed));
+  }
+}
+
+Matrix3 read_inertia(const JsonValue& value) {
+  constexpr std::string_view kAllowed = "3 principal moments or a symmetric 3x3 matrix";
+  if (value.size(kAllowed) != 3) value.expected(kAllowed);
+  const JsonValue first = value.at(0);
+  const Matrix3 J = first.is_array() ? read_matrix(value, kAllowed) : Matrix3(read_vector(value).asDiagonal());
+  const double rounding = 1e-12 * J.cwiseAbs().maxCoeff();
+  if ((J - J.transpose()).cwiseAbs().maxCoeff() > rounding) {
+    value.fail(fmt::format("found a matrix that is not symmetric, expected {}", kAllowed));
+  }
+  const Matrix3 symmetric = 0.5 * (J + J.transpose());
+  const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(moments[0] >= -rounding)) {
+    value.fail(fmt::format("found a principal moment of {:.6g}, expected none below zero", moments[0]));
+  }
+  return symmetric;
+}
+
+Matrix3 read_orientation(const JsonValue& value) {
+  value.keys("an orientation", {"matrix", "euler_parameters", "axis", "angle", "zxz"});
+  const auto matrix = value.optional("matrix"), parameters = value.optional("euler_parameters");
+  const auto axis = value.optional("axis"), angle = value.optional("angle"), zxz = value.optional("zxz");
+  const int spellings = matrix.has_value() + parameters.has_value() + (axis || angle) + zxz.has_value();
+  if (spellings != 1) {
+    value.fail(
+        fmt::format("found {} orientation, expected exactly one of matrix, euler_parameters, axis with angle, zxz",
+                    spellings == 0 ? "no" : "more than one"));
+  }
+  if (matrix) return project(read_matrix(*matrix, "a 3x3 matrix as 3 rows"), *matrix);
+  if (parameters) return read_euler_parameters(*parameters);
+  if (zxz) {
+    const Vector3 angles = read_vector(*zxz);
+    return turn(angles[0], Vector3::UnitZ()) * turn(angles[1], Vector3::UnitX()) * turn(angles[2], Vector3::UnitZ());
+  }
+  return turn(value.required("angle").number(), read_axis(value.required("axis")));
+}
+
+}  // namespace poinsot
