@@ -1,5 +1,5 @@
-// A mechanism as its scene file says it: bodies, constraints, joints, drivers, forces, in SI units; nothing about how to
-// solve it. Plain data: read by core/scene_reader.h, turned into rows and force elements by core/model.h.
+// A mechanism as its scene file says it: bodies, constraints, joints, drivers, forces, in SI units; nothing about how
+// to solve it. Plain data: read by core/scene_reader.h, turned into rows and force elements by core/model.h.
 //
 // Conventions: bodies are numbered from 0 in scene order, the ground is `kGround`. Vectors ending in _i (_j) are given
 // in the frame of body i (j); "global" is said where it is not. Orientation A takes body to global components.
@@ -22,12 +22,12 @@ inline constexpr int kGround = -1;
 
 struct Body {
   std::string name;
-  double mass = 0;                              // kg
-  Matrix3 inertia = Matrix3::Zero();            // kg m², about the centre of mass, body frame, positive semidefinite
-  Vector3 position = Vector3::Zero();           // m, of the centre of mass, global
-  Matrix3 orientation = Matrix3::Identity();    // A, on SO(3) to rounding (projected on loading)
-  Vector3 velocity = Vector3::Zero();           // m/s, global
-  Vector3 angular_velocity = Vector3::Zero();   // rad/s, body frame
+  double mass = 0;                             // kg
+  Matrix3 inertia = Matrix3::Zero();           // kg m², about the centre of mass, body frame, positive semidefinite
+  Vector3 position = Vector3::Zero();          // m, of the centre of mass, global
+  Matrix3 orientation = Matrix3::Identity();   // A, on SO(3) to rounding (projected on loading)
+  Vector3 velocity = Vector3::Zero();          // m/s, global
+  Vector3 angular_velocity = Vector3::Zero();  // rad/s, body frame
 };
 
 // DP1: a_i·a_j = f   DP2: a_i·d = f   D: d·d = f   CD: c·d = f, with d = r_j + A_j s_j − r_i − A_i s_i

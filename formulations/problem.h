@@ -29,7 +29,8 @@ namespace poinsot {
 enum class MatrixKind {
   kinematic,   // G, nc × nv: square for a mechanism without degrees of freedom
   consistent,  // [M Gᵀ; G 0]: accelerations and multipliers of a state, mass-orthogonal projections
-  simplified,  // the original study's Newton matrix: no variation of the reactions (nor, in rp and reps, of the inertia)
+  simplified,  // the original study's Newton matrix: no variation of the reactions (nor, in rp and reps, of the
+               // inertia)
   exact,       // the Newton matrix
 };
 
@@ -48,6 +49,8 @@ class Problem {
 
   virtual std::string_view formulation() const = 0;
   virtual const Model& model() const = 0;
+  // The model's row of each row that takes part (dependent ones are left out), without rp's normalization rows.
+  virtual const std::vector<int>& model_rows() const = 0;
   int bodies() const { return bodies_; }
   int nq() const { return nq_; }
   int nv() const { return nv_; }
@@ -68,19 +71,20 @@ class Problem {
   // G v − ν by row, velocity rows included.
   virtual void velocity_residual(std::span<double> r) const = 0;
   virtual void nu(std::span<double> out) const = 0;
-  virtual void gamma(std::span<double> out) const = 0;
-  // The rows of a step's residual: Φ/position, and (Ψv − f)/velocity for velocity rows.
-  virtual void step_residual(const StepScale& scale, std::span<double> out) const = 0;
-  // M a + Gᵀ λ − Q.
+  virtual void gamma(std::span<double> out) = 0;
+  // M a + Gᵀλ − Q.
   virtual void equations_of_motion(std::span<const double> a, std::span<const double> lambda,
-                                   std::span<double> out) const = 0;
+                                   std::span<double> out) = 0;
+  // A step's residual, nv + nc: M a + Gᵀλ − Q, then Φ/position by row, (Ψv − f)/velocity for velocity rows.
+  virtual void step_residual(const StepScale& scale, std::span<const double> a, std::span<const double> lambda,
+                             std::span<double> out) = 0;
 
   virtual Pattern pattern(MatrixKind kind) const = 0;
   // Writes the matrix of `kind` at the current point into values (zeroed here):
   //   [acceleration M + velocity ∂(Ma+Gᵀλ−Q)/∂v] T⁻¹ + position ∂(Ma+Gᵀλ−Q)/∂q,  Gᵀ;   G, 0
   // with T = T(dq) the tangent of the retraction that led here by dq from where the step began. dq may be empty: T = I.
   virtual void assemble(MatrixKind kind, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
-                        std::span<const double> lambda, std::span<const int> slots, std::span<double> values) const = 0;
+                        std::span<const double> lambda, std::span<const int> slots, std::span<double> values) = 0;
   // z ← T(dq)⁻¹ z for the body part of a solution: the acceleration correction δa.
   virtual void lower(std::span<const double> dq, std::span<double> z) const = 0;
 

@@ -1,4 +1,5 @@
-// The seam of the integrators: one run of one problem, a sample at every output time, statistics and a status at the end.
+// The seam of the integrators: one run of one problem, a sample at every output time, statistics and a status at the
+// end.
 #pragma once
 
 #include <cstdint>

@@ -15,12 +15,12 @@ namespace poinsot {
 struct Outcome {
   Status status;
   Statistics statistics;
-  std::vector<std::string> notices;      // what the user should know of: projections, dependent rows, singular starts
-  bool reactions_undetermined = false;   // dependent rows: the reactions given are the minimum-norm ones
+  std::vector<std::string> notices;     // what the user should know of: projections, dependent rows, singular starts
+  bool reactions_undetermined = false;  // dependent rows: the reactions given are the minimum-norm ones
 };
 
-// Throws InputError where settings and scene do not fit together (unknown name, kinematics with free motion, ...), before
-// anything is observed. Numerical failure is in the outcome's status.
+// Throws InputError where settings and scene do not fit together (unknown name, kinematics with free motion, ...),
+// before anything is observed. Numerical failure is in the outcome's status.
 Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe);
 
 }  // namespace poinsot

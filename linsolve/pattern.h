@@ -1,8 +1,8 @@
 // The structure of a square linear system as its assembler sees it: small dense blocks at known corners.
 //
-// The assembler lists the blocks once, in the order in which it will write them. A linear solver answers with slots: the
-// c-th column of a block starts at values()[slot] and its rows follow one after the other, so that values go straight to
-// their place. Blocks may overlap or repeat; then their values add up.
+// The assembler lists the blocks once, in the order in which it will write them. A linear solver answers with slots:
+// the c-th column of a block starts at values()[slot] and its rows follow one after the other, so that values go
+// straight to their place. Blocks may overlap or repeat; then their values add up.
 #pragma once
 
 #include <vector>

@@ -1,0 +1,159 @@
+// Where a mechanism stands: orientations, attached vectors and right-hand sides at one (t, q, v), in formulation F.
+//
+// Vectors are laid out as formulations/problem.h says. Everything is computed once per configuration and read by the
+// row and force kernels; a scalar type T other than double serves the derivative tests and extended-precision
+// references.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/so3.h"
+#include "formulations/elements.h"
+
+namespace poinsot {
+
+template <class F, class T>
+class Configuration {
+ public:
+  using Ambient = Eigen::Matrix<T, F::ambient, 1>;
+  static constexpr int kVelocities = 3 + F::m;        // numbers per body in v, a and δq
+  static constexpr int kCoordinates = 3 + F::stored;  // numbers per body in q
+
+  explicit Configuration(std::shared_ptr<const Elements> of)
+      : elements(std::move(of)),
+        at(static_cast<std::size_t>(elements->nb)),
+        rate(at.size()),
+        ambient_rate(at.size()),
+        s(elements->markers.size()),
+        s_dot(s.size(), Vec3<T>::Zero()),
+        f(elements->right_sides.size()),
+        dp1(elements->dp1),
+        turns(elements->torsions.size(), 0) {
+    for (std::size_t k = static_cast<std::size_t>(elements->ground_markers); k < s.size(); ++k) {
+      s[k] = elements->markers[k].s_bar.template cast<T>();
+    }
+    for (std::size_t k = 0; k < f.size(); ++k) {
+      const RightSide& side = elements->right_sides[k];
+      if (side.f.is_constant()) {
+        f[k] = evaluate(side, 0.0);
+      } else {
+        moving.push_back(static_cast<int>(k));
+      }
+    }
+  }
+
+  void set_position(double t, const T* q_in) {
+    q = q_in;
+    if (t != time) set_time(t);
+    for (std::size_t b = 0; b < at.size(); ++b) F::position(x(q, static_cast<int>(b)), at[b]);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(elements->ground_markers); ++k) {
+      const Marker& marker = elements->markers[k];
+      s[k] = at[static_cast<std::size_t>(marker.body)].A * marker.s_bar.template cast<T>();
+    }
+  }
+
+  void set_velocity(const T* v_in) {
+    v = v_in;
+    for (std::size_t b = 0; b < at.size(); ++b) {
+      const T* xd = this->xd(v, static_cast<int>(b));
+      F::velocity(at[b], xd, rate[b]);
+      ambient_rate[b].template head<3>() = rate[b].wg;
+      if constexpr (F::ambient == 4) {
+        ambient_rate[b][3] = at[b].W().row(3).dot(Eigen::Map<const Eigen::Matrix<T, F::m, 1>>(xd));
+      }
+    }
+  }
+
+  // ṡ of every attached vector: for velocity rows, damping and γ only, so not part of set_velocity.
+  void compute_s_dot() {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(elements->ground_markers); ++k) {
+      s_dot[k] = E_times(s[k], ambient_rate[static_cast<std::size_t>(elements->markers[k].body)]);
+    }
+  }
+
+  Vec3<T> r(int body) const { return vector3(q, body, kCoordinates); }
+  Vec3<T> rd(int body) const { return vector3(v, body, kVelocities); }
+  const T* x(const T* q_of, int body) const { return q_of + body * kCoordinates + 3; }
+  const T* xd(const T* v_of, int body) const { return v_of + body * kVelocities + 3; }
+
+  // d = r_j + s_q − r_i − s_p and its rate.
+  Vec3<T> span(int i, int j, int p, int q_marker) const {
+    return r(j) + s[static_cast<std::size_t>(q_marker)] - r(i) - s[static_cast<std::size_t>(p)];
+  }
+  Vec3<T> span_rate(int i, int j, int p, int q_marker) const {
+    return rd(j) + s_dot[static_cast<std::size_t>(q_marker)] - rd(i) - s_dot[static_cast<std::size_t>(p)];
+  }
+
+  // E(s)ᵀ w = [s × w; s·w], E(s) z = z × s + stretch s; E(s) is 3 × ambient.
+  static Ambient Et_times(const Vec3<T>& s_of, const Vec3<T>& w) {
+    Ambient e;
+    e.template head<3>() = s_of.cross(w);
+    if constexpr (F::ambient == 4) e[3] = s_of.dot(w);
+    return e;
+  }
+  static Vec3<T> E_times(const Vec3<T>& s_of, const Ambient& z) {
+    Vec3<T> u = z.template head<3>().cross(s_of);
+    if constexpr (F::ambient == 4) u += z[3] * s_of;
+    return u;
+  }
+  static Eigen::Matrix<T, 3, F::ambient> E(const Vec3<T>& s_of) {
+    Eigen::Matrix<T, 3, F::ambient> e;
+    e.template leftCols<3>() = -tilde<T>(s_of);
+    if constexpr (F::ambient == 4) e.col(3) = s_of;
+    return e;
+  }
+  // E(s)ᵀ E(z)
+  static Eigen::Matrix<T, F::ambient, F::ambient> EtE(const Vec3<T>& s_of, const Vec3<T>& z) {
+    Eigen::Matrix<T, F::ambient, F::ambient> p;
+    const T dot = s_of.dot(z);
+    p.template topLeftCorner<3, 3>() = -z * s_of.transpose();
+    p(0, 0) += dot, p(1, 1) += dot, p(2, 2) += dot;
+    if constexpr (F::ambient == 4) {
+      const Vec3<T> cross = s_of.cross(z);
+      p.template block<3, 1>(0, 3) = cross;
+      p.template block<1, 3>(3, 0) = -cross.transpose();
+      p(3, 3) = dot;
+    }
+    return p;
+  }
+
+  std::shared_ptr<const Elements> elements;
+  double time = std::numeric_limits<double>::quiet_NaN();
+  const T* q = nullptr;  // the caller's; valid while the caller's point is
+  const T* v = nullptr;
+  std::vector<typename F::template Position<T>> at;
+  std::vector<typename F::template Velocity<T>> rate;
+  std::vector<Ambient> ambient_rate;  // Ŵ ẋ: global angular velocity, in rp also the stretch rate
+  std::vector<Vec3<T>> s, s_dot;      // of every marker, global
+  std::vector<Jet2<double>> f;        // of every right-hand side
+  std::vector<DP1Row> dp1;            // with the alternates that stand in at this time
+  std::vector<int> turns;             // full turns of every torsion spring, as of the last accepted step
+
+ private:
+  static Vec3<T> vector3(const T* data, int body, int stride) {
+    return body == kGround ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(Eigen::Map<const Vec3<T>>(data + body * stride));
+  }
+
+  static Jet2<double> evaluate(const RightSide& side, double t) {
+    const Jet2<double> jet = side.f.at(t);
+    if (!side.squared) return jet;
+    return {jet.f * jet.f, 2 * jet.f * jet.fd, 2 * (jet.fd * jet.fd + jet.f * jet.fdd)};
+  }
+
+  void set_time(double t) {
+    time = t;
+    for (int k : moving) {
+      f[static_cast<std::size_t>(k)] = evaluate(elements->right_sides[static_cast<std::size_t>(k)], t);
+    }
+    for (const AlternateRow& row : elements->alternates) {
+      const bool swap = std::abs(f[static_cast<std::size_t>(row.normal.f)].f) > kAlternateAbove;
+      dp1[static_cast<std::size_t>(row.primary)] = swap ? row.alternate : row.normal;
+    }
+  }
+
+  static constexpr double kAlternateAbove = 0.9;  // the scene contract's |f|
+  std::vector<int> moving;                        // right-hand sides that depend on time
+};
+
+}  // namespace poinsot

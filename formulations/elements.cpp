@@ -1,0 +1,178 @@
+#include "formulations/elements.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <unordered_map>
+
+#include "core/check.h"
+
+namespace poinsot {
+namespace {
+
+// Body and exact components: equal vectors are one attached vector.
+struct MarkerKey {
+  int body;
+  std::array<double, 3> s;
+  bool operator==(const MarkerKey&) const = default;
+};
+struct MarkerHash {
+  std::size_t operator()(const MarkerKey& k) const {
+    std::size_t h = std::hash<int>()(k.body);
+    for (double x : k.s) h = h * 1000003u ^ std::hash<double>()(x);
+    return h;
+  }
+};
+struct PairHash {
+  std::size_t operator()(const std::pair<int, int>& p) const {
+    return std::hash<long>()((static_cast<long>(p.first) << 32) ^ p.second);
+  }
+};
+
+}  // namespace
+
+struct Elements::Builder {
+  Elements& e;
+  std::unordered_map<MarkerKey, int, MarkerHash> known_markers;
+  std::unordered_map<std::pair<int, int>, int, PairHash> known_pairs, known_nodes;
+
+  int marker(int body, const Vector3& s) {
+    const auto [at, fresh] = known_markers.try_emplace({body, {s[0], s[1], s[2]}}, static_cast<int>(e.markers.size()));
+    if (fresh) e.markers.push_back({body, s});
+    return at->second;
+  }
+  int right_side(const Expression& f, bool squared) {
+    if (f.is_constant() && f.at(0.0).f == 0) return 0;
+    e.right_sides.push_back({f, squared});
+    return static_cast<int>(e.right_sides.size()) - 1;
+  }
+  int pair(int i, int j) {
+    if (i == kGround || j == kGround) return -1;
+    const auto [at, fresh] = known_pairs.try_emplace({i, j}, static_cast<int>(e.pairs.size()));
+    if (fresh) e.pairs.push_back({.i = i, .j = j});
+    return at->second;
+  }
+  void couple(int pair_index, bool rr, bool rx, bool xr) {
+    if (pair_index < 0) return;
+    Pair& p = e.pairs[static_cast<std::size_t>(pair_index)];
+    p.xx = true;
+    p.rr |= rr, p.rx |= rx, p.xr |= xr;
+  }
+  void touch(int body, bool rr, bool rx) {
+    if (body == kGround) return;
+    e.body_rr[static_cast<std::size_t>(body)] |= static_cast<char>(rr);
+    e.body_rx[static_cast<std::size_t>(body)] |= static_cast<char>(rx);
+  }
+
+  void add(const Row& r) {
+    const int row = e.rows++;
+    const auto key = std::minmax(r.i, r.j);
+    const auto [node, fresh] = known_nodes.try_emplace({key.first, key.second}, e.row_nodes);
+    if (fresh) ++e.row_nodes;
+    e.row_node.push_back(node->second);
+
+    // A constant direction on the coordinate of a row: CD couples no two bodies in the second variation.
+    const RowBase base{row, r.i, r.j, right_side(r.f, r.squared), r.type == RowType::CD ? -1 : pair(r.i, r.j)};
+    switch (r.type) {
+      case RowType::DP1: {
+        const DP1Row normal{base, marker(r.i, r.a_i), marker(r.j, r.a_j)};
+        couple(base.pair, false, false, false);
+        if (r.alternate) {
+          DP1Row other = normal;
+          other.u = marker(r.i, r.alternate->a_i);
+          other.v = marker(r.j, r.alternate->a_j);
+          other.f = right_side(r.alternate->f, false);
+          e.alternates.push_back({static_cast<int>(e.dp1.size()), normal, other});
+        }
+        e.dp1.push_back(normal);
+        break;
+      }
+      case RowType::DP2:
+        e.dp2.push_back({base, marker(r.i, r.a_i), marker(r.i, r.s_i), marker(r.j, r.s_j)});
+        couple(base.pair, false, false, true);
+        touch(r.i, false, true);
+        break;
+      case RowType::D:
+        e.d.push_back({base, marker(r.i, r.s_i), marker(r.j, r.s_j)});
+        couple(base.pair, true, true, true);
+        touch(r.i, true, true);
+        touch(r.j, true, true);
+        break;
+      case RowType::CD:
+        e.cd.push_back({base, r.c, marker(r.i, r.s_i), marker(r.j, r.s_j)});
+        break;
+      case RowType::angle:
+        e.angle.push_back({base, marker(r.i, r.a_i), marker(r.i, r.b_i), marker(r.j, r.a_j)});
+        couple(base.pair, false, false, false);
+        break;
+      case RowType::pfaffian:
+        e.pfaffian.push_back({base, marker(r.j, r.a_j), marker(r.i, r.s_i), marker(r.j, r.s_j)});
+        couple(base.pair, false, true, false);
+        touch(r.j, false, true);
+        break;
+    }
+  }
+
+  // Ground vectors do not move: they go to the end and are evaluated once.
+  void sort_markers() {
+    std::vector<int> order(e.markers.size()), place(e.markers.size());
+    for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
+    const auto body_of = [&](int k) { return static_cast<unsigned>(e.markers[static_cast<std::size_t>(k)].body); };
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return body_of(a) < body_of(b); });
+    std::vector<Marker> sorted;
+    sorted.reserve(order.size());
+    for (int k : order) {
+      place[static_cast<std::size_t>(k)] = static_cast<int>(sorted.size());
+      sorted.push_back(e.markers[static_cast<std::size_t>(k)]);
+    }
+    e.markers = std::move(sorted);
+    e.ground_markers = static_cast<int>(
+        std::count_if(e.markers.begin(), e.markers.end(), [](const Marker& m) { return m.body != kGround; }));
+    const auto move = [&](auto&... index) { ((index = place[static_cast<std::size_t>(index)]), ...); };
+    for (auto& r : e.dp1) move(r.u, r.v);
+    for (auto& r : e.alternates) move(r.normal.u, r.normal.v, r.alternate.u, r.alternate.v);
+    for (auto& r : e.dp2) move(r.a, r.p, r.q);
+    for (auto& r : e.d) move(r.p, r.q);
+    for (auto& r : e.cd) move(r.p, r.q);
+    for (auto& r : e.angle) move(r.a, r.b, r.v);
+    for (auto& r : e.pfaffian) move(r.a, r.p, r.q);
+    for (auto& s : e.springs) move(s.p, s.q);
+    for (auto& s : e.torsions) move(s.a, s.b, s.c);
+    for (auto& s : e.point_forces) move(s.p);
+  }
+};
+
+Elements::Elements(std::shared_ptr<const Model> of, std::span<const int> dropped) : model(std::move(of)) {
+  nb = static_cast<int>(model->bodies.size());
+  body_rr.assign(model->bodies.size(), 0);
+  body_rx.assign(model->bodies.size(), 0);
+  right_sides.push_back({Expression(0.0), false});
+  row_of.assign(model->rows.size(), -1);
+
+  Builder build{*this, {}, {}, {}};
+  for (std::size_t k = 0; k < model->rows.size(); ++k) {
+    const int index = static_cast<int>(k);
+    if (std::binary_search(dropped.begin(), dropped.end(), index)) continue;
+    row_of[k] = rows;
+    model_row.push_back(index);
+    build.add(model->rows[k]);
+  }
+  for (const Spring& s : model->springs) {
+    springs.push_back({s.i, s.j, build.marker(s.i, s.s_i), build.marker(s.j, s.s_j), s.stiffness, s.damping, s.length});
+  }
+  for (const TorsionElement& t : model->torsions) {
+    const TorsionSpring& s = t.spring;
+    torsions.push_back({s.i, s.j, build.marker(s.i, t.a_i), build.marker(s.i, t.b_i), build.marker(s.j, t.c_j),
+                        s.stiffness, s.damping, s.angle});
+  }
+  for (const PointForce& f : model->point_forces) {
+    point_forces.push_back({f.body, build.marker(f.body, f.point), {f.force[0], f.force[1], f.force[2]}, f.frame});
+  }
+  for (const Torque& f : model->torques) {
+    torques.push_back({f.body, {f.torque[0], f.torque[1], f.torque[2]}, f.frame});
+  }
+  drags = model->drags;
+  build.sort_markers();
+}
+
+}  // namespace poinsot

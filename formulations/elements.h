@@ -1,0 +1,124 @@
+// What a model costs: attached vectors, constraint rows by kind, and coupled pairs of bodies, as flat tables.
+//
+// Each attached vector (a body and a constant vector in its frame) stands in the tables once, however many rows use it,
+// and is evaluated once per configuration. Rows of one kind lie together. The tables do not depend on the formulation,
+// are built once and never change.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/model.h"
+
+namespace poinsot {
+
+struct Marker {
+  int body = kGround;
+  Vector3 s_bar = Vector3::Zero();
+};
+
+// Which second-derivative blocks the rows between two free bodies fill: r–r, r–x and x–x.
+struct Pair {
+  int i, j;
+  bool rr = false, rx = false, xr = false, xx = false;  // rx: (r_i, x_j) and its mirror; xr: (x_i, r_j) and its mirror
+};
+
+// Right-hand side f(t), or f(t)², of a row. Constant ones are evaluated here and never again.
+struct RightSide {
+  Expression f;
+  bool squared = false;
+};
+
+// u, v, p_i, q_j, a: indices of attached vectors. row: index of the multiplier. f: index of the right-hand side.
+// pair: index of the coupled pair, or −1 when a body is grounded.
+struct RowBase {
+  int row, i, j, f, pair;
+};
+struct DP1Row : RowBase {
+  int u, v;
+};
+struct DP2Row : RowBase {
+  int a, p, q;
+};
+struct DRow : RowBase {
+  int p, q;
+};
+struct CDRow : RowBase {
+  Vector3 c;
+  int p, q;
+};
+struct AngleRow : RowBase {
+  int a, b, v;
+};
+struct PfaffianRow : RowBase {
+  int a, p, q;
+};
+// While |f| of the DP1 row at `primary` exceeds 0.9 this one stands in.
+struct AlternateRow {
+  int primary;  // index into dp1
+  DP1Row normal, alternate;
+};
+
+struct SpringElement {
+  int i, j, p, q;
+  double stiffness, damping, length;
+};
+struct TorsionRow {
+  int i, j, a, b, c;
+  double stiffness, damping, angle;
+};
+struct PointForceElement {
+  int body, p;
+  Expression force[3];
+  Frame frame;
+};
+struct TorqueElement {
+  int body;
+  Expression torque[3];
+  Frame frame;
+};
+
+struct Elements {
+  // Rows listed in `dropped` (sorted, model numbering) are left out and the others move up.
+  Elements(std::shared_ptr<const Model> model, std::span<const int> dropped);
+
+  std::shared_ptr<const Model> model;
+  int nb = 0;
+  int rows = 0;                // without normalization
+  std::vector<int> model_row;  // model row of each row
+  std::vector<int> row_of;     // row of each model row, −1 where dropped
+
+  std::vector<Marker> markers;  // of free bodies first, of the ground from `ground_markers` on
+  int ground_markers = 0;
+  std::vector<RightSide> right_sides;  // index 0: the constant 0
+
+  std::vector<DP1Row> dp1;
+  std::vector<DP2Row> dp2;
+  std::vector<DRow> d;
+  std::vector<CDRow> cd;
+  std::vector<AngleRow> angle;
+  std::vector<PfaffianRow> pfaffian;
+  std::vector<AlternateRow> alternates;
+
+  std::vector<Pair> pairs;
+  // Body blocks that rows fill beside the inertia: (r, r), (r, x) and its mirror.
+  std::vector<char> body_rr, body_rx;
+  // Node of each row for linear solvers: rows between the same two bodies belong together.
+  std::vector<int> row_node;
+  int row_nodes = 0;
+
+  std::vector<SpringElement> springs;
+  std::vector<TorsionRow> torsions;
+  std::vector<PointForceElement> point_forces;
+  std::vector<TorqueElement> torques;
+  std::vector<LinearDrag> drags;
+  bool has_forces() const {
+    return !(springs.empty() && torsions.empty() && point_forces.empty() && torques.empty() && drags.empty());
+  }
+
+ private:
+  struct Builder;
+};
+
+}  // namespace poinsot

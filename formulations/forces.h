@@ -1,0 +1,296 @@
+// Applied forces and torques and their sensitivities, for every formulation: springs, torsion springs, point forces,
+// torques, drag. Gravity is constant and stands with the inertia.
+//
+// A force w at an attached point s is the wrench (w, E(s)ᵀw), a global torque n the wrench (0, [n; 0]); a formulation
+// pulls the ambient part back by Ŵᵀ. Matrices are K = ∂(−Q)/∂q and D = ∂(−Q)/∂v as small dense blocks over the bodies
+// an element acts on; scenes without forces never come here.
+#pragma once
+
+#include "formulations/configuration.h"
+#include "formulations/problem.h"
+
+namespace poinsot {
+
+// What acts on a body, in ambient form.
+template <class F, class T>
+struct Wrench {
+  Vec3<T> f = Vec3<T>::Zero();
+  Eigen::Matrix<T, F::ambient, 1> e = Eigen::Matrix<T, F::ambient, 1>::Zero();
+};
+
+template <class F, class T>
+class Forces {
+ public:
+  using C = Configuration<F, T>;
+  using Ambient = typename C::Ambient;
+  static constexpr int n = 3 + F::m;
+  using Block = Eigen::Matrix<T, n, n>;
+  using XX = Eigen::Matrix<T, F::m, F::m>;
+  using Arm = Eigen::Matrix<T, 3, n>;  // δ of a point or a span
+  using Line = Eigen::Matrix<T, 1, F::m>;
+
+  // Adds −Q.
+  static void residual(const C& c, std::vector<Wrench<F, T>>& sum) {
+    const Elements& e = *c.elements;
+    const auto add = [&](int body, const Vec3<T>& force, const Ambient& moment) {
+      if (body == kGround) return;
+      sum[index(body)].f -= force;
+      sum[index(body)].e -= moment;
+    };
+    for (const SpringElement& k : e.springs) {
+      const Stretch s(c, k);
+      add(k.i, s.force * s.direction, C::Et_times(c.s[index(k.p)], s.force * s.direction));
+      add(k.j, -s.force * s.direction, -C::Et_times(c.s[index(k.q)], s.force * s.direction));
+    }
+    for (std::size_t k = 0; k < e.torsions.size(); ++k) {
+      const Twist w(c, e.torsions[k], c.turns[k]);
+      add(e.torsions[k].i, Vec3<T>::Zero(), -w.torque * C::Et_times(w.u, w.c));
+      add(e.torsions[k].j, Vec3<T>::Zero(), -w.torque * C::Et_times(w.c, w.u));
+    }
+    for (const PointForceElement& k : e.point_forces) {
+      const Vec3<T> force = global(c, k.body, k.frame, k.force);
+      add(k.body, force, C::Et_times(c.s[index(k.p)], force));
+    }
+    for (const TorqueElement& k : e.torques) add(k.body, Vec3<T>::Zero(), torque(global(c, k.body, k.frame, k.torque)));
+    for (const LinearDrag& k : e.drags) {
+      add(k.body, T(-k.translational) * c.rd(k.body), torque(T(-k.rotational) * c.rate[index(k.body)].wg));
+    }
+  }
+
+  // block(body_i, body_j, full, K + D): K and D scaled; D's orientation columns multiplied by T⁻¹ of their body.
+  // Blocks come in a fixed order; orientation-only blocks (torsion springs, torques) have full = false.
+  template <class Sink>
+  static void matrix(const C& c, const StepScale& scale, const std::vector<XX>& T_inverse, Sink&& sink) {
+    const Elements& e = *c.elements;
+    const auto lowered = [&](Block D, int body) {
+      if (!T_inverse.empty()) D.template rightCols<F::m>() *= T_inverse[index(body)];
+      return D;
+    };
+    const T cq = T(scale.position), cv = T(scale.velocity);
+
+    for (const SpringElement& k : e.springs) {
+      const Stretch s(c, k);
+      const Arm arm[2] = {arm_of(c, k.i, k.p, -1), arm_of(c, k.j, k.q, 1)};
+      const int body[2] = {k.i, k.j}, point[2] = {k.p, k.q};
+      const Vec3<T> pull = s.force * s.direction;
+      for (int a = 0; a < 2; ++a) {
+        if (body[a] == kGround) continue;
+        for (int b = 0; b < 2; ++b) {
+          if (body[b] == kGround) continue;
+          Block K = arm[a].transpose() * s.stiffness * arm[b];
+          Block D = Block::Zero();
+          if (k.damping != 0) {  // tension's part c n·ḋ varies with ḋ, and ḋ with the orientation and the velocity
+            const Eigen::Matrix<T, 1, 3> along = T(k.damping) * s.direction.transpose();
+            Eigen::Matrix<T, n, 1> left = arm[a].transpose() * s.direction;
+            D = left * (along * arm[b]);
+            K.template rightCols<F::m>() +=
+                (b == 0 ? T(-1) : T(1)) * left * (along * s_dot_variation(c, body[b], point[b]));
+          }
+          if (a == b) {
+            const T sign = a == 0 ? T(-1) : T(1);
+            K.template bottomRightCorner<F::m, F::m>() +=
+                F::H(c.at[index(body[a])], Mat3<T>(sign * pull * bar(c, point[a]).transpose()));
+          }
+          sink.body_block(body[a], body[b], Block(cq * K + cv * lowered(D, body[b])));
+        }
+      }
+    }
+    for (std::size_t k = 0; k < e.torsions.size(); ++k) torsion(c, e.torsions[k], c.turns[k], cq, cv, T_inverse, sink);
+
+    for (const PointForceElement& k : e.point_forces) {
+      const Vec3<T> force = global(c, k.body, k.frame, k.force);
+      const auto& at = c.at[index(k.body)];
+      Block K = Block::Zero();
+      K.template bottomRightCorner<F::m, F::m>() = -F::H(at, Mat3<T>(force * bar(c, k.p).transpose()));
+      if (k.frame == Frame::body) {
+        const Eigen::Matrix<T, 3, F::m> turned = C::E(force) * at.W();
+        K.template topRightCorner<3, F::m>() -= turned;
+        K.template bottomRightCorner<F::m, F::m>() -= (C::E(c.s[index(k.p)]) * at.W()).transpose() * turned;
+      }
+      sink.body_block(k.body, k.body, Block(cq * K));
+    }
+    for (const TorqueElement& k : e.torques) {
+      const Vec3<T> moment = global(c, k.body, k.frame, k.torque);
+      const auto& at = c.at[index(k.body)];
+      XX K = -F::torque_variation(at, moment);
+      if (k.frame == Frame::body) K -= at.W().template topRows<3>().transpose() * (C::E(moment) * at.W());
+      sink.orientation_block(k.body, k.body, XX(cq * K));
+    }
+    for (const LinearDrag& k : e.drags) {
+      const auto& at = c.at[index(k.body)];
+      const Eigen::Matrix<T, 3, F::m> W = at.W().template topRows<3>();
+      const T drag = T(k.rotational);
+      Block K = Block::Zero(), D = Block::Zero();
+      D.template topLeftCorner<3, 3>().diagonal().array() = T(k.translational);
+      D.template bottomRightCorner<F::m, F::m>() = drag * W.transpose() * W;
+      K.template bottomRightCorner<F::m, F::m>() =
+          F::torque_variation(at, Vec3<T>(drag * c.rate[index(k.body)].wg)) +
+          drag * W.transpose() * F::angular_velocity_variation(at, c.rate[index(k.body)], c.xd(c.v, k.body));
+      sink.body_block(k.body, k.body, Block(cq * K + cv * lowered(D, k.body)));
+    }
+  }
+
+  // Springs' and torsion springs' stored energy.
+  static T energy(const C& c) {
+    const Elements& e = *c.elements;
+    T sum = T(0);
+    for (const SpringElement& k : e.springs) {
+      using std::sqrt;
+      const T stretch = sqrt(c.span(k.i, k.j, k.p, k.q).squaredNorm()) - T(k.length);
+      sum += T(0.5 * k.stiffness) * stretch * stretch;
+    }
+    for (std::size_t k = 0; k < e.torsions.size(); ++k) {
+      const T twist = angle(c, e.torsions[k], c.turns[k]) - T(e.torsions[k].angle);
+      sum += T(0.5 * e.torsions[k].stiffness) * twist * twist;
+    }
+    return sum;
+  }
+
+  // Angle of a torsion spring with its full turns.
+  static T angle(const C& c, const TorsionRow& k, int turns) {
+    using std::atan2;
+    const Vec3<T>& v = c.s[index(k.c)];
+    return atan2(c.s[index(k.b)].dot(v), c.s[index(k.a)].dot(v)) + T(2 * EIGEN_PI * turns);
+  }
+
+ private:
+  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
+  static Vec3<T> bar(const C& c, int marker) { return c.elements->markers[index(marker)].s_bar.template cast<T>(); }
+  static Ambient torque(const Vec3<T>& moment) {
+    Ambient e = Ambient::Zero();
+    e.template head<3>() = moment;
+    return e;
+  }
+  static Vec3<T> global(const C& c, int body, Frame frame, const Expression (&components)[3]) {
+    const Vec3<T> w(T(components[0].at(c.time).f), T(components[1].at(c.time).f), T(components[2].at(c.time).f));
+    return frame == Frame::global ? w : Vec3<T>(c.at[index(body)].A * w);
+  }
+
+  // Tension of a spring, f = stiffness (l − length) + damping l̇, and ∂(f n)/∂d.
+  struct Stretch {
+    Vec3<T> direction = Vec3<T>::Zero();
+    T force = T(0);
+    Mat3<T> stiffness;
+
+    Stretch(const C& c, const SpringElement& k) {
+      using std::sqrt;
+      const Vec3<T> d = c.span(k.i, k.j, k.p, k.q);
+      const T l = sqrt(d.squaredNorm());
+      if (plain(l) == 0) {  // the direction of a spring of no length is undefined: it pulls in none
+        stiffness = T(k.stiffness) * Mat3<T>::Identity();
+        return;
+      }
+      direction = d / l;
+      force = T(k.stiffness) * (l - T(k.length));
+      const Mat3<T> along = direction * direction.transpose();
+      stiffness = T(k.stiffness) * along;
+      if (k.damping != 0) {
+        const Vec3<T> d_dot = c.span_rate(k.i, k.j, k.p, k.q);
+        const T l_dot = direction.dot(d_dot);
+        force += T(k.damping) * l_dot;
+        stiffness += T(k.damping) / l * direction * (d_dot - l_dot * direction).transpose();
+      }
+      stiffness += force / l * (Mat3<T>::Identity() - along);
+    }
+  };
+
+  // δ of s_p (with r) on one side of a span.
+  static Arm arm_of(const C& c, int body, int point, int sign) {
+    Arm arm = Arm::Zero();
+    if (body == kGround) return arm;
+    arm.template leftCols<3>().diagonal().array() = T(sign);
+    arm.template rightCols<F::m>() = T(sign) * (C::E(c.s[index(point)]) * c.at[index(body)].W());
+    return arm;
+  }
+  static Eigen::Matrix<T, 3, F::m> s_dot_variation(const C& c, int body, int marker) {
+    return F::s_dot_variation(c.at[index(body)], c.rate[index(body)], c.xd(c.v, body), bar(c, marker));
+  }
+
+  // θ = atan2(y, x), x = a·c, y = b·c; ∇θ is the gradient of u·c at fixed u = (x b − y a)/(x² + y²).
+  struct Twist {
+    T x, y, xd = T(0), yd = T(0), rho2, torque;
+    Vec3<T> u, c;
+
+    Twist(const C& at, const TorsionRow& k, int turns) : c(at.s[index(k.c)]) {
+      const Vec3<T>&a = at.s[index(k.a)], &b = at.s[index(k.b)];
+      x = a.dot(c);
+      y = b.dot(c);
+      rho2 = x * x + y * y;
+      u = (x * b - y * a) / rho2;
+      torque = T(k.stiffness) * (angle(at, k, turns) - T(k.angle));
+      if (k.damping != 0) {
+        const Vec3<T>&ad = at.s_dot[index(k.a)], &bd = at.s_dot[index(k.b)], &cd = at.s_dot[index(k.c)];
+        xd = ad.dot(c) + a.dot(cd);
+        yd = bd.dot(c) + b.dot(cd);
+        torque += T(k.damping) * (x * yd - y * xd) / rho2;
+      }
+    }
+  };
+
+  // K = k ∇θ∇θᵀ + torque ∇²θ + c ∇θ (∂θ̇/∂q)ᵀ, D = c ∇θ∇θᵀ.
+  template <class Sink>
+  static void torsion(const C& c, const TorsionRow& k, int turns, const T& cq, const T& cv,
+                      const std::vector<XX>& T_inverse, Sink&& sink) {
+    const Twist w(c, k, turns);
+    const Vec3<T>&a = c.s[index(k.a)], &b = c.s[index(k.b)];
+    const int body[2] = {k.i, k.j};
+    Line gx[2], gy[2], gxd[2], gyd[2];  // gradients of x, y, ẋ, ẏ with the orientations of i and j
+    const auto pulled = [&](int of, const Ambient& e) {
+      return Line((c.at[index(of)].W().transpose() * e).transpose());
+    };
+    if (k.i != kGround) {
+      gx[0] = pulled(k.i, C::Et_times(a, w.c));
+      gy[0] = pulled(k.i, C::Et_times(b, w.c));
+    }
+    if (k.j != kGround) {
+      gx[1] = pulled(k.j, C::Et_times(w.c, a));
+      gy[1] = pulled(k.j, C::Et_times(w.c, b));
+    }
+    if (k.damping != 0) {
+      const Vec3<T>&ad = c.s_dot[index(k.a)], &bd = c.s_dot[index(k.b)], &cd = c.s_dot[index(k.c)];
+      if (k.i != kGround) {
+        gxd[0] = w.c.transpose() * s_dot_variation(c, k.i, k.a) + pulled(k.i, C::Et_times(a, cd));
+        gyd[0] = w.c.transpose() * s_dot_variation(c, k.i, k.b) + pulled(k.i, C::Et_times(b, cd));
+      }
+      if (k.j != kGround) {
+        gxd[1] = a.transpose() * s_dot_variation(c, k.j, k.c) + pulled(k.j, C::Et_times(w.c, ad));
+        gyd[1] = b.transpose() * s_dot_variation(c, k.j, k.c) + pulled(k.j, C::Et_times(w.c, bd));
+      }
+    }
+    const T x = w.x, y = w.y, r2 = w.rho2, tx = -y / r2, ty = x / r2;
+    const T txx = T(2) * x * y / (r2 * r2), txy = (y * y - x * x) / (r2 * r2);
+    for (int p = 0; p < 2; ++p) {
+      if (body[p] == kGround) continue;
+      const Line grad_p = tx * gx[p] + ty * gy[p];
+      for (int q = 0; q < 2; ++q) {
+        if (body[q] == kGround) continue;
+        const Line grad_q = tx * gx[q] + ty * gy[q];
+        XX second = txx * (gx[p].transpose() * gx[q] - gy[p].transpose() * gy[q]) +
+                    txy * (gx[p].transpose() * gy[q] + gy[p].transpose() * gx[q]);
+        if (p == q) {
+          const Vec3<T>& weigh_i = w.c;
+          second += p == 0 ? F::H(c.at[index(k.i)], Mat3<T>(weigh_i * u_bar(c, k, w).transpose()))
+                           : F::H(c.at[index(k.j)], Mat3<T>(w.u * bar(c, k.c).transpose()));
+        } else {
+          const auto block = p == 0 ? C::EtE(w.u, w.c) : C::EtE(w.c, w.u);
+          second += c.at[index(body[p])].W().transpose() * block * c.at[index(body[q])].W();
+        }
+        XX K = T(k.stiffness) * grad_p.transpose() * grad_q + w.torque * second;
+        XX D = XX::Zero();
+        if (k.damping != 0) {  // θ̇ = tx ẋ + ty ẏ
+          const Line rate_q =
+              (txx * w.xd + txy * w.yd) * gx[q] + (txy * w.xd - txx * w.yd) * gy[q] + tx * gxd[q] + ty * gyd[q];
+          K += T(k.damping) * grad_p.transpose() * rate_q;
+          D = T(k.damping) * grad_p.transpose() * grad_q;
+          if (!T_inverse.empty()) D *= T_inverse[index(body[q])];
+        }
+        sink.orientation_block(body[p], body[q], XX(cq * K + cv * D));
+      }
+    }
+  }
+  static Vec3<T> u_bar(const C& c, const TorsionRow& k, const Twist& w) {
+    return (w.x * bar(c, k.b) - w.y * bar(c, k.a)) / w.rho2;
+  }
+};
+
+}  // namespace poinsot

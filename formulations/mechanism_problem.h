@@ -1,0 +1,227 @@
+// Problem over Mechanism<F, double>: the virtual seam, one call per evaluation of the whole mechanism.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/check.h"
+#include "formulations/mechanism.h"
+
+namespace poinsot {
+
+template <class F>
+class MechanismProblem final : public Problem {
+ public:
+  explicit MechanismProblem(std::shared_ptr<const Elements> elements) : mechanism_(std::move(elements)) {
+    bodies_ = mechanism_.nb();
+    nq_ = mechanism_.nq();
+    nv_ = mechanism_.nv();
+    nc_ = mechanism_.nc();
+  }
+
+  std::unique_ptr<Problem> clone() const override {
+    auto copy = std::make_unique<MechanismProblem>(mechanism_.c.elements);
+    copy->mechanism_.c.turns = mechanism_.c.turns;
+    return copy;
+  }
+  std::string_view formulation() const override { return F::name; }
+  const Model& model() const override { return *mechanism_.c.elements->model; }
+  const std::vector<int>& model_rows() const override { return mechanism_.c.elements->model_row; }
+
+  Status from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const override {
+    expect(q, nq_), expect(v, nv_);
+    for (int b = 0; b < bodies_; ++b) {
+      const BodyState& state = states[static_cast<std::size_t>(b)];
+      double* r = q.data() + b * M::kQ;
+      double* rd = v.data() + b * M::kV;
+      Eigen::Map<Vector3>{r} = state.r;
+      Eigen::Map<Vector3>{rd} = state.rd;
+      F::from_rotation(state.A, r + 3);
+      typename F::template Position<double> at;
+      F::position(r + 3, at);
+      if (!F::rates_from(at, state.w, rd + 3)) {
+        return {Failure::orientation_singularity, 0,
+                "the orientation of body '" + model().bodies[static_cast<std::size_t>(b)].name +
+                    "' is singular in formulation " + std::string(F::name)};
+      }
+    }
+    return {};
+  }
+
+  void to_bodies(std::span<const double> a, std::span<BodyState> states) const override {
+    expect(a, nv_);
+    const auto& c = mechanism_.c;
+    for (int b = 0; b < bodies_; ++b) {
+      const std::size_t k = static_cast<std::size_t>(b);
+      const double* ab = a.data() + b * M::kV;
+      BodyState& state = states[k];
+      state.r = c.r(b);
+      state.A = c.at[k].A;
+      state.rd = c.rd(b);
+      state.w = c.rate[k].w;
+      state.rdd = Eigen::Map<const Vector3>(ab);
+      state.wd = F::angular_acceleration(c.at[k], c.rate[k], c.xd(c.v, b), ab + 3);
+    }
+  }
+
+  void retract(std::span<const double> q, std::span<const double> dq, std::span<double> q_out) const override {
+    expect(q, nq_), expect(dq, nv_), expect(q_out, nq_);
+    M::retract(q.data(), dq.data(), q_out.data(), bodies_);
+  }
+
+  void set_position(double t, std::span<const double> q) override {
+    expect(q, nq_);
+    mechanism_.set_position(t, q.data());
+  }
+  void set_velocity(std::span<const double> v) override {
+    expect(v, nv_);
+    mechanism_.set_velocity(v.data());
+  }
+
+  void position_residual(std::span<double> Phi) const override {
+    expect(Phi, nc_);
+    mechanism_.constraint_residual(1.0, 0.0, Phi.data());
+  }
+  void velocity_residual(std::span<double> r) const override {
+    expect(r, nc_);
+    mechanism_.velocity_residual(r.data());
+  }
+  void nu(std::span<double> out) const override {
+    expect(out, nc_);
+    mechanism_.nu(out.data());
+  }
+  void gamma(std::span<double> out) override {
+    expect(out, nc_);
+    mechanism_.gamma(out.data());
+  }
+  void equations_of_motion(std::span<const double> a, std::span<const double> lambda, std::span<double> out) override {
+    expect(a, nv_), expect(lambda, nc_), expect(out, nv_);
+    mechanism_.residual(a.data(), lambda.data(), out.data(), nullptr, nullptr);
+  }
+  void step_residual(const StepScale& scale, std::span<const double> a, std::span<const double> lambda,
+                     std::span<double> out) override {
+    expect(a, nv_), expect(lambda, nc_), expect(out, nv_ + nc_);
+    mechanism_.residual(a.data(), lambda.data(), out.data(), &scale, out.data() + nv_);
+  }
+
+  Pattern pattern(MatrixKind kind) const override {
+    const std::vector<double> zeros(static_cast<std::size_t>(std::max(nq_, nv_) + nc_), 0.0);  // places, no values
+    M scratch(mechanism_.c.elements);
+    scratch.set_position(0, zeros.data());
+    scratch.set_velocity(zeros.data());
+    Pattern pattern;
+    pattern.n = kind == MatrixKind::kinematic ? std::max(nv_, nc_) : nv_ + nc_;
+    Recorder recorder{pattern.blocks};
+    scratch.write_matrix(kind, {1, 1, 1}, nullptr, zeros.data(), zeros.data(), recorder);
+    for (int k = 0; k < pattern.n; ++k) pattern.node.push_back(node_of(k));
+    return pattern;
+  }
+
+  void assemble(MatrixKind kind, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
+                std::span<const double> lambda, std::span<const int> slots, std::span<double> values) override {
+    std::fill(values.begin(), values.end(), 0.0);
+    Writer writer{slots.data(), values.data()};
+    mechanism_.write_matrix(kind, scale, dq.empty() ? nullptr : dq.data(), a.data(), lambda.data(), writer);
+    check(writer.slot == slots.data() + slots.size(), "an assembled matrix has the blocks of its pattern");
+  }
+  void lower(std::span<const double> dq, std::span<double> z) const override { M::lower(dq.data(), z.data(), bodies_); }
+
+  bool accept(double, std::span<double> q, std::span<double> v, std::span<double> a) override {
+    count_turns();
+    bool changed = false;
+    if constexpr (requires { F::rechart; }) {
+      for (int b = 0; b < bodies_; ++b) {
+        const std::size_t k = static_cast<std::size_t>(b);
+        changed |= F::rechart(mechanism_.c.at[k], mechanism_.c.rate[k], q.data() + b * M::kQ + 3,
+                              v.data() + b * M::kV + 3, a.data() + b * M::kV + 3);
+      }
+    }
+    return changed;
+  }
+
+  void reaction(int group, std::span<const double> lambda, Vector3& force, Vector3& moment) const override {
+    const Elements& e = *mechanism_.c.elements;
+    const Group& of = e.model->groups[static_cast<std::size_t>(group)];
+    force.setZero();
+    moment.setZero();
+    int first = 0, count = 0;
+    for (int k = 0; k < of.rows; ++k) {
+      const int row = e.row_of[static_cast<std::size_t>(of.first_row + k)];
+      if (row < 0) continue;
+      if (count++ == 0) first = row;
+    }
+    if (count == 0) return;
+    mechanism_.reaction(first, count, lambda.data(), force, moment);
+    if (of.j != kGround) {
+      moment -= (mechanism_.c.at[static_cast<std::size_t>(of.j)].A * of.point_j).cross(force);
+    } else {
+      moment -= of.point_j.cross(force);
+    }
+  }
+  double energy() const override { return mechanism_.energy(); }
+
+  std::string describe_unknown(int k) const override {
+    const Elements& e = *mechanism_.c.elements;
+    if (k < nv_) return body_name(k / M::kV);
+    if (k - nv_ >= e.rows) return body_name(k - nv_ - e.rows) + " (its normalization)";
+    return describe_row(*e.model, e.model_row[static_cast<std::size_t>(k - nv_)]);
+  }
+
+ private:
+  using M = Mechanism<F, double>;
+
+  struct Recorder {
+    std::vector<Block>& blocks;
+    template <class Derived>
+    void block(int row, int col, const Eigen::MatrixBase<Derived>&) {
+      blocks.push_back(
+          {row, col, static_cast<int>(Derived::RowsAtCompileTime), static_cast<int>(Derived::ColsAtCompileTime)});
+    }
+  };
+  struct Writer {
+    const int* slot;
+    double* values;
+    template <class Derived>
+    void block(int, int, const Eigen::MatrixBase<Derived>& m) {
+      for (Eigen::Index c = 0; c < Derived::ColsAtCompileTime; ++c) {
+        double* column = values + *slot++;
+        for (Eigen::Index r = 0; r < Derived::RowsAtCompileTime; ++r) column[r] += m(r, c);
+      }
+    }
+  };
+
+  template <class T>
+  static void expect(std::span<T> vector, int size) {
+    check(vector.size() == static_cast<std::size_t>(size), "a vector has the length the problem asks for");
+  }
+
+  int node_of(int unknown) const {
+    const Elements& e = *mechanism_.c.elements;
+    if (unknown < nv_) return unknown / M::kV;
+    const int row = unknown - nv_;
+    return row < e.rows ? bodies_ + e.row_node[static_cast<std::size_t>(row)] : row - e.rows;
+  }
+
+  std::string body_name(int b) const { return "body '" + model().bodies[static_cast<std::size_t>(b)].name + "'"; }
+
+  // The turn of a torsion spring that is nearest to where it was: a step turns it by less than half a turn.
+  void count_turns() {
+    auto& c = mechanism_.c;
+    for (std::size_t k = 0; k < c.turns.size(); ++k) {
+      const double now = Forces<F, double>::angle(c, c.elements->torsions[k], 0);
+      const double before = last_angle_.empty() ? 0 : last_angle_[k];
+      c.turns[k] = static_cast<int>(std::lround((before - now) / (2 * EIGEN_PI)));
+    }
+    last_angle_.resize(c.turns.size());
+    for (std::size_t k = 0; k < c.turns.size(); ++k) {
+      last_angle_[k] = Forces<F, double>::angle(c, c.elements->torsions[k], c.turns[k]);
+    }
+  }
+
+  M mechanism_;
+  std::vector<double> last_angle_;  // of every torsion spring, rad, at the last accepted step
+};
+
+}  // namespace poinsot

@@ -1,0 +1,319 @@
+// The reps formulation: orientation by the ZXZ Euler angles ε = (φ, θ, ψ), R(ε) = A₁(φ) A₂(θ) A₃(ψ), singular at sin θ
+// = 0.
+//
+// Near the singularity the body-fixed frame is chosen anew: A = R(ε) C with C one of three cyclic permutations of the
+// axes, the chart, stored beside the angles. Everything below is written for A, so vectors and inertias of the scene
+// stay as they are, and a change of chart is a change of (ε, ε̇, ε̈) and of nothing else.
+//   δs = E(s) W δε, E(s) = −s̃, W = [e_z, A₁ e_x, A₁A₂ e_z]: global angular velocity ω = W ε̇
+//   s̈⁰ = N s̄, N = Σ_ab (∂²A/∂ε_a∂ε_b) ε̇_a ε̇_b (the paper's D),   H(S)_ab = (∂²A/∂ε_a∂ε_b) : S
+// Kinetics in the chart's frame (J_c = C J̄ Cᵀ, ω_c = B ε̇): Bᵀ (J_c (B ε̈ + Ḃ ε̇) + ω̃_c J_c ω_c).
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "core/so3.h"
+
+namespace poinsot {
+
+struct REPS {
+  static constexpr std::string_view name = "reps";
+  static constexpr int m = 3;
+  static constexpr int stored = 4;  // φ, θ, ψ, number of the chart
+  static constexpr int ambient = 3;
+  static constexpr bool normalized = false;
+  static constexpr bool lie_group = false;
+
+  static constexpr double kTooSmall = 1e-8;    // |sin θ| at which the rates are lost
+  static constexpr double kLeaveChart = 0.25;  // |sin θ| below which the chart is left; another one offers √(2/3)
+
+  template <class T>
+  using X = Eigen::Matrix<T, m, 1>;
+  template <class T>
+  using XX = Eigen::Matrix<T, m, m>;
+  template <class T>
+  using Map = Eigen::Matrix<T, ambient, m>;
+
+  template <class T>
+  struct Position {
+    Mat3<T> A, W_hat, B;
+    T sp, cp, st, ct, ss, cs;  // sines and cosines of φ, θ, ψ
+    int chart;
+    const Mat3<T>& W() const { return W_hat; }
+  };
+  template <class T>
+  struct Velocity {
+    Vec3<T> w;
+    Vec3<T> wg;
+    Vec3<T> wc;  // in the chart's frame
+  };
+
+  template <class T>
+  static void position(const T* x, Position<T>& at) {
+    using std::cos, std::sin;
+    at.sp = sin(x[0]), at.cp = cos(x[0]);
+    at.st = sin(x[1]), at.ct = cos(x[1]);
+    at.ss = sin(x[2]), at.cs = cos(x[2]);
+    at.chart = static_cast<int>(plain(x[3]));
+    const T &sp = at.sp, &cp = at.cp, &st = at.st, &ct = at.ct, &ss = at.ss, &cs = at.cs;
+    Mat3<T> R;
+    R << cp * cs - sp * ct * ss, -cp * ss - sp * ct * cs, sp * st,  //
+        sp * cs + cp * ct * ss, -sp * ss + cp * ct * cs, -cp * st,  //
+        st * ss, st * cs, ct;
+    at.A = to_scene(at.chart, R);
+    at.W_hat << T(0), cp, sp * st,  //
+        T(0), sp, -cp * st,         //
+        T(1), T(0), ct;
+    at.B << st * ss, cs, T(0),  //
+        st * cs, -ss, T(0),     //
+        ct, T(0), T(1);
+  }
+  template <class T>
+  static void velocity(const Position<T>& at, const T* xd, Velocity<T>& rate) {
+    const Eigen::Map<const Vec3<T>> ed(xd);
+    rate.wc = at.B * ed;
+    rate.wg = at.W_hat * ed;
+    rate.w = vector_to_scene<T>(at.chart, rate.wc);
+  }
+
+  template <class T>
+  static Mat3<T> A_dot(const Position<T>& at, const Velocity<T>& rate, const T*) {
+    return tilde<T>(rate.wg) * at.A;
+  }
+  // Ä⁰ = (ω̇⁰)~ A + ω̃ω̃ A with ω̇⁰ = Ẇ ε̇
+  template <class T>
+  static Mat3<T> A_ddot0(const Position<T>& at, const Velocity<T>& rate, const T* xd) {
+    const Mat3<T> w = tilde<T>(rate.wg);
+    return (tilde<T>(W_dot(at, xd) * Eigen::Map<const Vec3<T>>(xd)) + w * w) * at.A;
+  }
+  // Column a: Σ_b (∂²A/∂ε_a∂ε_b) ε̇_b s̄.
+  template <class T>
+  static Eigen::Matrix<T, 3, m> s_dot_variation(const Position<T>& at, const Velocity<T>&, const T* xd,
+                                                const Vec3<T>& s_bar) {
+    const Vec3<T> s = at.A * s_bar;
+    Eigen::Matrix<T, 3, m> v = Eigen::Matrix<T, 3, m>::Zero();
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) v.col(a) += second_partial(at, a, b, s) * xd[b];
+    }
+    return v;
+  }
+
+  template <class T>
+  static XX<T> H(const Position<T>& at, const Mat3<T>& S) {
+    // With Z = S Aᵀ = Σ w sᵀ: ∂²s/∂ε_a∂ε_b = W_a × (W_b × s) for a ≤ b (the order of the rotations), so that
+    // H_ab = Σ (W_a·s)(W_b·w) − (W_a·W_b)(s·w).
+    const Mat3<T> Z = S * at.A.transpose();
+    XX<T> h = at.W_hat.transpose() * Z * at.W_hat - Z.trace() * (at.W_hat.transpose() * at.W_hat);
+    for (int a = 0; a < 3; ++a) {
+      for (int b = a + 1; b < 3; ++b) h(a, b) = h(b, a);
+    }
+    return h;
+  }
+  template <class T>
+  static XX<T> torque_variation(const Position<T>& at, const Vec3<T>& n) {
+    XX<T> v = XX<T>::Zero();
+    for (int k = 1; k < 3; ++k) {
+      for (int l = 0; l < k; ++l) v(k, l) = W_partial(at, k, l).dot(n);
+    }
+    return v;
+  }
+
+  template <class T>
+  static Eigen::Matrix<T, 3, m> angular_velocity_variation(const Position<T>& at, const Velocity<T>&, const T* xd) {
+    Eigen::Matrix<T, 3, m> v = Eigen::Matrix<T, 3, m>::Zero();
+    for (int l = 0; l < 3; ++l) {
+      for (int k = l + 1; k < 3; ++k) v.col(l) += W_partial(at, k, l) * xd[k];
+    }
+    return v;
+  }
+
+  template <class T>
+  static X<T> inertia_residual(const Position<T>& at, const Velocity<T>& rate, const T* xd, const T* xdd,
+                               const Mat3<T>& J) {
+    const Mat3<T> Jc = inertia_to_chart(at.chart, J);
+    const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot(at, xd) * Eigen::Map<const Vec3<T>>(xd);
+    return at.B.transpose() * (Jc * wd + rate.wc.cross(Jc * rate.wc));
+  }
+  template <class T>
+  static XX<T> mass(const Position<T>& at, const Mat3<T>& J) {
+    return at.B.transpose() * inertia_to_chart(at.chart, J) * at.B;
+  }
+  static constexpr bool simplified_keeps_rate_term = false;
+  template <class T>
+  static XX<T> inertia_rate_variation(const Position<T>& at, const Velocity<T>& rate, const T* xd, const Mat3<T>& J) {
+    const Mat3<T> Jc = inertia_to_chart(at.chart, J);
+    const Vec3<T> ed = Eigen::Map<const Vec3<T>>(xd);
+    const Mat3<T> L = tilde<T>(rate.wc) * Jc - tilde<T>(Jc * rate.wc);
+    Mat3<T> inner = Jc * B_dot(at, xd) + L * at.B;
+    inner.col(1) += Jc * (B_partial(at, 1) * ed);
+    inner.col(2) += Jc * (B_partial(at, 2) * ed);
+    return at.B.transpose() * inner;
+  }
+  static constexpr bool inertia_depends_on_position = true;
+  template <class T>
+  static XX<T> inertia_position_variation(const Position<T>& at, const Velocity<T>& rate, const T* xd, const T* xdd,
+                                          const Mat3<T>& J) {
+    const Mat3<T> Jc = inertia_to_chart(at.chart, J);
+    const Vec3<T> ed = Eigen::Map<const Vec3<T>>(xd), edd = Eigen::Map<const Vec3<T>>(xdd);
+    const Mat3<T> L = tilde<T>(rate.wc) * Jc - tilde<T>(Jc * rate.wc);
+    const Vec3<T> u = Jc * (at.B * edd + B_dot(at, xd) * ed) + rate.wc.cross(Jc * rate.wc);
+    XX<T> v = XX<T>::Zero();
+    for (int k = 1; k < 3; ++k) {
+      const Mat3<T> Bk = B_partial(at, k);
+      const Mat3<T> Bkd = ed[1] * B_second_partial(at, k, 1) + ed[2] * B_second_partial(at, k, 2);
+      v.col(k) = Bk.transpose() * u + at.B.transpose() * (Jc * (Bk * edd + Bkd * ed) + L * (Bk * ed));
+    }
+    return v;
+  }
+
+  template <class T>
+  static void retract(const T* x, const T* dx, T* out) {
+    for (int k = 0; k < 3; ++k) out[k] = x[k] + dx[k];
+    out[3] = x[3];
+  }
+
+  // Chart 0 is the scene's own frame; another one is taken only where it is (nearly) singular.
+  template <class T>
+  static void from_rotation(const Mat3<T>& A, T* x) {
+    from_rotation_in(A, plain(sin_theta(A, 0)) > kLeaveChart ? 0 : best_chart(A), x);
+  }
+  template <class T>
+  static bool rates_from(const Position<T>& at, const Vec3<T>& w, T* xd) {  // ε̇ = B⁻¹ ω_c
+    using std::abs;
+    if (plain(abs(at.st)) < kTooSmall) return false;
+    const Vec3<T> wc = vector_to_chart<T>(at.chart, w);
+    xd[0] = (at.ss * wc[0] + at.cs * wc[1]) / at.st;
+    xd[1] = at.cs * wc[0] - at.ss * wc[1];
+    xd[2] = wc[2] - at.ct * xd[0];
+    return true;
+  }
+  template <class T>
+  static Vec3<T> angular_acceleration(const Position<T>& at, const Velocity<T>&, const T* xd, const T* xdd) {
+    const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot(at, xd) * Eigen::Map<const Vec3<T>>(xd);
+    return vector_to_scene<T>(at.chart, wd);
+  }
+
+  // Changes to the best chart where this one is nearly singular; ε̈ keeps the angular acceleration. True when it did.
+  static bool rechart(const Position<double>& at, const Velocity<double>& rate, double* x, double* xd, double* xdd) {
+    if (std::abs(at.st) >= kLeaveChart) return false;
+    const Vec3<double> wd = angular_acceleration(at, rate, xd, xdd);
+    from_rotation_in(at.A, best_chart(at.A), x);
+    Position<double> there;
+    position(x, there);
+    rates_from(there, rate.w, xd);
+    const Vec3<double> bias =
+        vector_to_scene<double>(there.chart, B_dot(there, xd) * Eigen::Map<const Vec3<double>>(xd));
+    rates_from<double>(there, wd - bias, xdd);
+    return true;
+  }
+
+ private:
+  // Axis k of the scene's body frame is axis (k + chart) mod 3 of the chart's frame.
+  static int axis(int chart, int k) { return (k + chart) % 3; }
+  template <class T>
+  static Mat3<T> to_scene(int chart, const Mat3<T>& R) {
+    if (chart == 0) return R;
+    Mat3<T> A;
+    for (int k = 0; k < 3; ++k) A.col(k) = R.col(axis(chart, k));
+    return A;
+  }
+  template <class T>
+  static Vec3<T> vector_to_scene(int chart, const Vec3<T>& c) {
+    return {c[axis(chart, 0)], c[axis(chart, 1)], c[axis(chart, 2)]};
+  }
+  template <class T>
+  static Vec3<T> vector_to_chart(int chart, const Vec3<T>& s) {
+    Vec3<T> c;
+    for (int k = 0; k < 3; ++k) c[axis(chart, k)] = s[k];
+    return c;
+  }
+  template <class T>
+  static Mat3<T> inertia_to_chart(int chart, const Mat3<T>& J) {
+    if (chart == 0) return J;
+    Mat3<T> Jc;
+    for (int k = 0; k < 3; ++k) {
+      for (int l = 0; l < 3; ++l) Jc(axis(chart, k), axis(chart, l)) = J(k, l);
+    }
+    return Jc;
+  }
+
+  // The chart's z axis is the scene's axis (2 − chart) mod 3 = column of A; sin θ is its distance from the global z.
+  template <class T>
+  static T sin_theta(const Mat3<T>& A, int chart) {
+    using std::sqrt;
+    const int column = (2 - chart + 3) % 3;
+    return sqrt(A(0, column) * A(0, column) + A(1, column) * A(1, column));
+  }
+  template <class T>
+  static int best_chart(const Mat3<T>& A) {
+    int best = 0;
+    for (int chart = 1; chart < 3; ++chart) {
+      if (plain(sin_theta(A, chart)) > plain(sin_theta(A, best))) best = chart;
+    }
+    return best;
+  }
+  template <class T>
+  static void from_rotation_in(const Mat3<T>& A, int chart, T* x) {
+    using std::atan2;
+    Mat3<T> R;
+    for (int k = 0; k < 3; ++k) R.col(axis(chart, k)) = A.col(k);
+    x[0] = atan2(R(0, 2), -R(1, 2));
+    x[1] = atan2(sin_theta(A, chart), R(2, 2));
+    x[2] = atan2(R(2, 0), R(2, 1));
+    x[3] = T(chart);
+  }
+
+  // ∂W_k/∂ε_l: a later axis is turned by an earlier angle, W_l × W_k for l < k, else 0.
+  template <class T>
+  static Vec3<T> W_partial(const Position<T>& at, int k, int l) {
+    return l < k ? Vec3<T>(at.W_hat.col(l).cross(at.W_hat.col(k))) : Vec3<T>(Vec3<T>::Zero());
+  }
+  template <class T>
+  static Mat3<T> W_dot(const Position<T>& at, const T* xd) {
+    Mat3<T> W;
+    W.col(0).setZero();
+    W.col(1) = W_partial(at, 1, 0) * xd[0];
+    W.col(2) = W_partial(at, 2, 0) * xd[0] + W_partial(at, 2, 1) * xd[1];
+    return W;
+  }
+  // ∂²s/∂ε_a∂ε_b for s = A s̄
+  template <class T>
+  static Vec3<T> second_partial(const Position<T>& at, int a, int b, const Vec3<T>& s) {
+    const Vec3<T> first = at.W_hat.col(std::min(a, b)), second = at.W_hat.col(std::max(a, b));
+    return first.cross(second.cross(s));
+  }
+
+  // B depends on θ (k = 1) and ψ (k = 2) only.
+  template <class T>
+  static Mat3<T> B_partial(const Position<T>& at, int k) {
+    Mat3<T> b = Mat3<T>::Zero();
+    if (k == 1) {
+      b.col(0) << at.ct * at.ss, at.ct * at.cs, -at.st;
+    } else {
+      b.col(0) << at.st * at.cs, -at.st * at.ss, T(0);
+      b.col(1) << -at.ss, -at.cs, T(0);
+    }
+    return b;
+  }
+  template <class T>
+  static Mat3<T> B_second_partial(const Position<T>& at, int k, int l) {
+    Mat3<T> b = Mat3<T>::Zero();
+    if (k == 1 && l == 1) {
+      b.col(0) << -at.st * at.ss, -at.st * at.cs, -at.ct;
+    } else if (k == 2 && l == 2) {
+      b.col(0) << -at.st * at.ss, -at.st * at.cs, T(0);
+      b.col(1) << -at.cs, at.ss, T(0);
+    } else {
+      b.col(0) << at.ct * at.cs, -at.ct * at.ss, T(0);
+    }
+    return b;
+  }
+  template <class T>
+  static Mat3<T> B_dot(const Position<T>& at, const T* xd) {
+    return xd[1] * B_partial(at, 1) + xd[2] * B_partial(at, 2);
+  }
+};
+
+}  // namespace poinsot

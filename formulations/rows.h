@@ -1,0 +1,271 @@
+// The constraint rows of a mechanism, one kernel per kind, for every formulation: every row is a dot product u·v −
+// f(t).
+//
+// A row's gradient is (−g, e_i | g, e_j): g for r_j and −g for r_i, and for the orientations the ambient vectors
+// e = Σ E(s)ᵀw over the attached vectors s the row depends on, which a formulation pulls back by Ŵᵀ. The second
+// variation, weighed by λ, is collected per body and per coupled pair in the same ambient form; see SecondVariation.
+#pragma once
+
+#include "formulations/configuration.h"
+
+namespace poinsot {
+
+// What the rows add to the matrix, before Ŵ: bodies' S = Σ λ w s̄ᵀ for H(S), and blocks E(s)ᵀE(z) between variations.
+template <class F, class T>
+struct SecondVariation {
+  using AA = Eigen::Matrix<T, F::ambient, F::ambient>;
+  using RA3 = Eigen::Matrix<T, 3, F::ambient>;
+  struct OnBody {  // of bodies whose position and orientation, or two of whose own vectors, meet in one row
+    Mat3<T> rr = Mat3<T>::Zero();
+    RA3 rx = RA3::Zero();
+    RA3 xr_transposed = RA3::Zero();
+    AA xx = AA::Zero();
+  };
+  struct OnPair {  // (i, j) and, mirrored, (j, i); xr blocks are kept transposed
+    T rr = T(0);
+    RA3 rx_ij = RA3::Zero(), rx_ji = RA3::Zero(), xr_ij_transposed = RA3::Zero(), xr_ji_transposed = RA3::Zero();
+    AA xx_ij = AA::Zero(), xx_ji = AA::Zero();
+  };
+
+  explicit SecondVariation(const Elements& elements)
+      : S(static_cast<std::size_t>(elements.nb)), body(S.size()), pair(elements.pairs.size()) {}
+
+  void clear(const Elements& elements) {
+    for (Mat3<T>& sum : S) sum.setZero();
+    for (std::size_t b = 0; b < body.size(); ++b) {
+      if (elements.body_rx[b]) body[b] = OnBody();
+    }
+    for (std::size_t k = 0; k < pair.size(); ++k) {
+      const Pair& p = elements.pairs[k];
+      if (p.rx || p.xr) {
+        pair[k] = OnPair();
+      } else {
+        pair[k].xx_ij.setZero();
+        pair[k].xx_ji.setZero();
+      }
+    }
+  }
+
+  std::vector<Mat3<T>> S;
+  std::vector<OnBody> body;
+  std::vector<OnPair> pair;
+};
+
+template <class F, class T>
+class Rows {
+ public:
+  using C = Configuration<F, T>;
+  using Ambient = typename C::Ambient;
+
+  struct Gradient {
+    int row, i, j;
+    Ambient ei, ej;
+    Vec3<T> g;
+  };
+
+  // visit(gradient, has_r, Phi): every holonomic row, kind by kind. The order is the order of assembly.
+  template <class Visit>
+  static void holonomic(const C& c, Visit&& visit) {
+    const Elements& e = *c.elements;
+    const auto s = [&](int k) -> const Vec3<T>& { return c.s[index(k)]; };
+    for (const DP1Row& k : c.dp1) {
+      const Vec3<T>&u = s(k.u), &v = s(k.v);
+      visit(direction_pair(k, u, v), std::false_type(), T(u.dot(v) - c.f[index(k.f)].f));
+    }
+    for (const AngleRow& k : e.angle) {
+      const Vec3<T> u = driven(c, k), v = s(k.v);
+      visit(direction_pair(k, u, v), std::false_type(), T(u.dot(v)));
+    }
+    for (const DP2Row& k : e.dp2) {
+      const Vec3<T>& a = s(k.a);
+      const Vec3<T> d = c.span(k.i, k.j, k.p, k.q);
+      visit(Gradient{k.row, k.i, k.j, C::Et_times(a, d) - C::Et_times(s(k.p), a), C::Et_times(s(k.q), a), a},
+            std::true_type(), T(a.dot(d) - c.f[index(k.f)].f));
+    }
+    for (const DRow& k : e.d) {
+      const Vec3<T> d = c.span(k.i, k.j, k.p, k.q);
+      visit(along(k, s(k.p), s(k.q), Vec3<T>(T(2) * d)), std::true_type(), T(d.dot(d) - c.f[index(k.f)].f));
+    }
+    for (const CDRow& k : e.cd) {
+      const Vec3<T> n = k.c.template cast<T>();
+      visit(along(k, s(k.p), s(k.q), n), std::true_type(), T(n.dot(c.span(k.i, k.j, k.p, k.q)) - c.f[index(k.f)].f));
+    }
+  }
+
+  // visit(gradient, has_r, Ψv − f): the velocity rows; needs compute_s_dot.
+  template <class Visit>
+  static void velocity(const C& c, Visit&& visit) {
+    for (const PfaffianRow& k : c.elements->pfaffian) {
+      const Vec3<T>& a = c.s[index(k.a)];
+      visit(along(k, c.s[index(k.p)], c.s[index(k.q)], a), std::true_type(),
+            T(a.dot(c.span_rate(k.i, k.j, k.p, k.q)) - c.f[index(k.f)].f));
+    }
+  }
+
+  // ν by row: ∂Φ/∂t with the opposite sign; f of a velocity row.
+  static void nu(const C& c, T* out) {
+    const Elements& e = *c.elements;
+    const auto rate = [&](const auto& rows) {
+      for (const auto& k : rows) out[k.row] = T(c.f[index(k.f)].fd);
+    };
+    rate(c.dp1), rate(e.dp2), rate(e.d), rate(e.cd);
+    for (const AngleRow& k : e.angle) {
+      out[k.row] = -driven_rate(c, k, T(c.f[index(k.f)].fd)).dot(c.s[index(k.v)]);
+    }
+    for (const PfaffianRow& k : e.pfaffian) out[k.row] = T(c.f[index(k.f)].f);
+  }
+
+  // γ = −(v·ü⁰ + 2 u̇·v̇ + u·v̈⁰) + f̈ by row; needs compute_s_dot. N by body: s̈⁰ = N s̄.
+  static void gamma(const C& c, const std::vector<Mat3<T>>& N, T* out) {
+    const Elements& e = *c.elements;
+    const auto s = [&](int k) -> const Vec3<T>& { return c.s[index(k)]; };
+    const auto sd = [&](int k) -> const Vec3<T>& { return c.s_dot[index(k)]; };
+    const auto sdd = [&](int k) -> Vec3<T> {
+      const Marker& marker = e.markers[index(k)];
+      if (marker.body == kGround) return Vec3<T>::Zero();
+      return N[index(marker.body)] * marker.s_bar.template cast<T>();
+    };
+    for (const DP1Row& k : c.dp1) {
+      out[k.row] = c.f[index(k.f)].fdd - s(k.v).dot(sdd(k.u)) - 2 * sd(k.u).dot(sd(k.v)) - s(k.u).dot(sdd(k.v));
+    }
+    for (const AngleRow& k : e.angle) {  // u = A_i ū(t): ü⁰ = N ū + 2 Ȧ ū' + A ū''
+      const Jet2<double>& f = c.f[index(k.f)];
+      const T sn = std::sin(f.f), cs = std::cos(f.f);
+      const auto u_of = [&](const Vec3<T>& a, const Vec3<T>& b) -> Vec3<T> { return cs * b - sn * a; };
+      const auto u1_of = [&](const Vec3<T>& a, const Vec3<T>& b) -> Vec3<T> { return T(-f.fd) * (cs * a + sn * b); };
+      const Vec3<T> u = u_of(s(k.a), s(k.b)), u1 = u1_of(s(k.a), s(k.b));
+      const Vec3<T> u2 = T(-f.fdd) * (cs * s(k.a) + sn * s(k.b)) - T(f.fd * f.fd) * u;
+      const Vec3<T> ud = u_of(sd(k.a), sd(k.b)) + u1;
+      const Vec3<T> udd = u_of(sdd(k.a), sdd(k.b)) + T(2) * u1_of(sd(k.a), sd(k.b)) + u2;
+      out[k.row] = -s(k.v).dot(udd) - 2 * ud.dot(sd(k.v)) - u.dot(sdd(k.v));
+    }
+    for (const DP2Row& k : e.dp2) {
+      const Vec3<T> d = c.span(k.i, k.j, k.p, k.q), dd = c.span_rate(k.i, k.j, k.p, k.q);
+      out[k.row] = c.f[index(k.f)].fdd - d.dot(sdd(k.a)) - 2 * sd(k.a).dot(dd) - s(k.a).dot(sdd(k.q) - sdd(k.p));
+    }
+    for (const DRow& k : e.d) {
+      const Vec3<T> d = c.span(k.i, k.j, k.p, k.q), dd = c.span_rate(k.i, k.j, k.p, k.q);
+      out[k.row] = c.f[index(k.f)].fdd - 2 * d.dot(sdd(k.q) - sdd(k.p)) - 2 * dd.dot(dd);
+    }
+    for (const CDRow& k : e.cd) {
+      out[k.row] = c.f[index(k.f)].fdd - k.c.template cast<T>().dot(sdd(k.q) - sdd(k.p));
+    }
+    for (const PfaffianRow& k : e.pfaffian) {
+      const Vec3<T> dd = c.span_rate(k.i, k.j, k.p, k.q);
+      out[k.row] = c.f[index(k.f)].fd - sd(k.a).dot(dd) - s(k.a).dot(sdd(k.q) - sdd(k.p));
+    }
+  }
+
+  // Σ λ (second variation of the row).
+  static void second_variation(const C& c, const T* lambda, SecondVariation<F, T>& sum) {
+    const Elements& e = *c.elements;
+    const auto s = [&](int k) -> const Vec3<T>& { return c.s[index(k)]; };
+    const auto bar = [&](int k) -> Vec3<T> { return e.markers[index(k)].s_bar.template cast<T>(); };
+    const auto on_S = [&](int body, const Vec3<T>& weighed, const Vec3<T>& s_bar) {
+      if (body != kGround) sum.S[index(body)] += weighed * s_bar.transpose();
+    };
+    const auto directions = [&](const RowBase& k, const Vec3<T>& u, const Vec3<T>& u_bar, int v) {
+      const T l = lambda[k.row];
+      on_S(k.i, l * s(v), u_bar);
+      on_S(k.j, l * u, bar(v));
+      if (k.pair < 0) return;
+      const auto block = C::EtE(l * u, s(v));
+      sum.pair[index(k.pair)].xx_ij += block;
+      sum.pair[index(k.pair)].xx_ji += block.transpose();
+    };
+    for (const DP1Row& k : c.dp1) directions(k, s(k.u), bar(k.u), k.v);
+    for (const AngleRow& k : e.angle) {
+      const double sn = std::sin(c.f[index(k.f)].f), cs = std::cos(c.f[index(k.f)].f);
+      directions(k, driven(c, k), T(cs) * bar(k.b) - T(sn) * bar(k.a), k.v);
+    }
+    for (const DP2Row& k : e.dp2) {
+      const T l = lambda[k.row];
+      const Vec3<T> a = l * s(k.a), d = l * c.span(k.i, k.j, k.p, k.q);
+      on_S(k.i, d, bar(k.a));
+      on_S(k.i, -a, bar(k.p));
+      on_S(k.j, a, bar(k.q));
+      if (k.i != kGround) {
+        auto& own = sum.body[index(k.i)];
+        own.rx -= C::E(a);
+        own.xr_transposed -= C::E(a);
+        const auto block = C::EtE(a, s(k.p));
+        own.xx -= block + block.transpose();
+      }
+      if (k.pair < 0) continue;
+      auto& pair = sum.pair[index(k.pair)];
+      pair.rx_ji += C::E(a);
+      pair.xr_ij_transposed += C::E(a);
+      const auto block = C::EtE(a, s(k.q));
+      pair.xx_ij += block;
+      pair.xx_ji += block.transpose();
+    }
+    for (const DRow& k : e.d) {
+      const T l = T(2) * lambda[k.row];
+      const Vec3<T> d = l * c.span(k.i, k.j, k.p, k.q);
+      on_S(k.i, -d, bar(k.p));
+      on_S(k.j, d, bar(k.q));
+      const auto own = [&](int body, int point) {
+        if (body == kGround) return;
+        auto& mine = sum.body[index(body)];
+        mine.rr.diagonal().array() += l;
+        mine.rx += C::E(l * s(point));
+        mine.xr_transposed += C::E(l * s(point));
+        mine.xx += C::EtE(l * s(point), s(point));
+      };
+      own(k.i, k.p);
+      own(k.j, k.q);
+      if (k.pair < 0) continue;
+      auto& pair = sum.pair[index(k.pair)];
+      pair.rr -= l;
+      pair.rx_ij -= C::E(l * s(k.q));
+      pair.rx_ji -= C::E(l * s(k.p));
+      pair.xr_ij_transposed -= C::E(l * s(k.p));
+      pair.xr_ji_transposed -= C::E(l * s(k.q));
+      const auto block = C::EtE(l * s(k.p), s(k.q));
+      pair.xx_ij -= block;
+      pair.xx_ji -= block.transpose();
+    }
+    for (const CDRow& k : e.cd) {
+      const Vec3<T> n = lambda[k.row] * k.c.template cast<T>();
+      on_S(k.i, -n, bar(k.p));
+      on_S(k.j, n, bar(k.q));
+    }
+    for (const PfaffianRow& k : e.pfaffian) {  // the reaction Ψᵀλ varies with a_j only; no mirror
+      const Vec3<T> a = lambda[k.row] * s(k.a);
+      on_S(k.i, -a, bar(k.p));
+      on_S(k.j, a, bar(k.q));
+      if (k.j != kGround) {
+        sum.body[index(k.j)].rx += C::E(a);
+        sum.body[index(k.j)].xx += C::EtE(s(k.q), a);
+      }
+      if (k.pair < 0) continue;
+      sum.pair[index(k.pair)].rx_ij -= C::E(a);
+      sum.pair[index(k.pair)].xx_ij -= C::EtE(s(k.p), a);
+    }
+  }
+
+ private:
+  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
+
+  static Gradient direction_pair(const RowBase& k, const Vec3<T>& u, const Vec3<T>& v) {
+    const Ambient e = C::Et_times(u, v);
+    Ambient other = e;  // [v × u; u·v]
+    other.template head<3>() = -e.template head<3>();
+    return {k.row, k.i, k.j, e, other, Vec3<T>::Zero()};
+  }
+  // Gradient of w·d at fixed w.
+  static Gradient along(const RowBase& k, const Vec3<T>& p, const Vec3<T>& q, const Vec3<T>& w) {
+    return {k.row, k.i, k.j, -C::Et_times(p, w), C::Et_times(q, w), w};
+  }
+  static Vec3<T> driven(const C& c, const AngleRow& k) {
+    const double f = c.f[index(k.f)].f;
+    return T(std::cos(f)) * c.s[index(k.b)] - T(std::sin(f)) * c.s[index(k.a)];
+  }
+  // A_i ∂ū/∂t
+  static Vec3<T> driven_rate(const C& c, const AngleRow& k, const T& fd) {
+    const double f = c.f[index(k.f)].f;
+    return -fd * (T(std::cos(f)) * c.s[index(k.a)] + T(std::sin(f)) * c.s[index(k.b)]);
+  }
+};
+
+}  // namespace poinsot
