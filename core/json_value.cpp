@@ -102,6 +102,11 @@ const std::string& JsonValue::string(std::string_view allowed) const {
   return value_->get_ref<const std::string&>();
 }
 
+bool JsonValue::boolean(std::string_view allowed) const {
+  if (!value_->is_boolean()) expected(allowed);
+  return value_->get<bool>();
+}
+
 double JsonValue::number(std::string_view allowed) const {
   if (value_->is_number()) return value_->get<double>();  // finite: the parser refuses numbers out of range
   if (!value_->is_string()) expected(allowed);

@@ -39,6 +39,7 @@ class JsonValue {
   bool is_array() const;
   bool is_string() const;
   const std::string& string(std::string_view allowed = "a string") const;
+  bool boolean(std::string_view allowed = "true or false") const;
   // A number, or a string holding a constant expression; always finite.
   double number(std::string_view allowed = "a number") const;
 
