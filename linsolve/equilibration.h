@@ -1,0 +1,36 @@
+// Row and column factors that bring a matrix to entries of size one: (D_r A D_c) y = D_r b, x = D_c y.
+//
+// Forces, lengths and 1/h² meet in one matrix; pivots and condition numbers mean something only after scaling. The
+// factors are powers of two, so scaling rounds nothing. Ruiz' iteration: every sweep divides each row and column by the
+// root of its largest entry (D. Ruiz, A scaling algorithm to equilibrate both rows and columns norms in matrices,
+// 2001).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "linsolve/csc_layout.h"
+
+namespace poinsot {
+
+class Equilibration {
+ public:
+  void resize(int n);
+
+  // Finds the factors; false where an entry is not finite.
+  bool find(const CscLayout& layout, std::span<const double> values);
+  // scaled ← D_r A D_c in the same layout; false where an entry is not finite. May be used with factors of other
+  // values.
+  bool scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled) const;
+
+  void scale_right_hand_side(std::span<double> b) const;  // b ← D_r b
+  void scale_solution(std::span<double> y) const;         // y ← D_c y
+
+  std::span<const double> row() const { return row_; }
+  std::span<const double> col() const { return col_; }
+
+ private:
+  std::vector<double> row_, col_, row_max_, col_max_;
+};
+
+}  // namespace poinsot

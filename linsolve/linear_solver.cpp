@@ -1,0 +1,69 @@
+#include "linsolve/linear_solver.h"
+
+#include <cmath>
+#include <new>
+
+#include "core/check.h"
+
+namespace poinsot {
+namespace {
+
+// Libraries and containers say in many ways that there is no memory left; a caller sees one.
+template <class Work>
+LinearStatus guarded(Work&& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    return {LinearFailure::out_of_memory, -1, "not enough memory for the linear solver"};
+  }
+}
+
+bool fits(const Pattern& pattern) {
+  if (pattern.n < 1 || pattern.node.size() != static_cast<std::size_t>(pattern.n)) return false;
+  for (const Block& b : pattern.blocks)
+    if (b.rows < 1 || b.cols < 1 || b.row < 0 || b.col < 0 || b.row > pattern.n - b.rows || b.col > pattern.n - b.cols)
+      return false;
+  for (const int node : pattern.node)
+    if (node < 0) return false;
+  return true;
+}
+
+bool all_finite(std::span<const double> x) {
+  // x · 0 is NaN for an infinity and for NaN, and a sum keeps it: no branch in the loop.
+  double sum = 0;
+  for (const double xi : x) sum += xi * 0;
+  return sum == 0;
+}
+
+}  // namespace
+
+LinearStatus LinearSolver::analyze(const Pattern& pattern) {
+  check(fits(pattern), "every block of a pattern lies in its matrix, and every unknown has a node");
+  state_ = State::empty;
+  n_ = pattern.n;
+  ++statistics_.analyses;
+  LinearStatus status = guarded([&] { return do_analyze(pattern); });
+  if (status.ok()) state_ = State::analyzed;
+  return status;
+}
+
+LinearStatus LinearSolver::factor() {
+  check(state_ != State::empty, "LinearSolver::factor comes after analyze");
+  state_ = State::analyzed;
+  LinearStatus status = guarded([&] { return do_factor(); });
+  if (status.ok()) state_ = State::factored;
+  return status;
+}
+
+LinearStatus LinearSolver::solve(std::span<double> b) {
+  check(state_ == State::factored, "LinearSolver::solve comes after a factor that was ok");
+  check(b.size() == static_cast<std::size_t>(n_), "LinearSolver::solve gets one number for each unknown");
+  ++statistics_.solves;
+  LinearStatus status = guarded([&] { return do_solve(b); });
+  if (status.ok() && !all_finite(b))
+    status = {LinearFailure::not_finite, -1, "the solution of the linear system is not finite"};
+  if (!status.ok()) state_ = State::analyzed;
+  return status;
+}
+
+}  // namespace poinsot

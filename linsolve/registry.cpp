@@ -1,0 +1,33 @@
+#include "linsolve/registry.h"
+
+#include "linsolve/back_ends.h"
+
+namespace poinsot {
+namespace {
+
+constexpr LinearSolverEntry kEntries[] = {
+    {"klu", "sparse LU that keeps its pivots while they stay good (SuiteSparse KLU); for systems of every size",
+     make_klu},
+    {"dense", "LU with partial pivoting of the full matrix; for a handful of bodies, refuses more than 2000 unknowns",
+     make_dense},
+    {"eigen_sparselu", "supernodal sparse LU of Eigen with fresh pivots every time; a reference without SuiteSparse",
+     make_eigen_sparselu},
+#ifdef POINSOT_UMFPACK
+    {"umfpack", "multifrontal sparse LU with fresh pivots every time (SuiteSparse UMFPACK, GPL); a reference",
+     make_umfpack},
+#endif
+};
+
+}  // namespace
+
+std::span<const LinearSolverEntry> linear_solvers() {
+  return kEntries;
+}
+
+const LinearSolverEntry* find_linear_solver(std::string_view name) {
+  for (const LinearSolverEntry& entry : kEntries)
+    if (entry.name == name) return &entry;
+  return nullptr;
+}
+
+}  // namespace poinsot
