@@ -23,7 +23,7 @@ class MechanismProblem final : public Problem {
 
   std::unique_ptr<Problem> clone() const override {
     auto copy = std::make_unique<MechanismProblem>(mechanism_.c.elements);
-    copy->mechanism_.c.turns = mechanism_.c.turns;
+    copy->mechanism_.c.twist = mechanism_.c.twist;
     return copy;
   }
   std::string_view formulation() const override { return F::name; }
@@ -128,8 +128,17 @@ class MechanismProblem final : public Problem {
   }
   void lower(std::span<const double> dq, std::span<double> z) const override { M::lower(dq.data(), z.data(), bodies_); }
 
+  bool has_discrete_state() const override {
+    return requires {
+      F::rechart;
+    }
+    || !mechanism_.c.twist.empty();
+  }
   bool accept(double, std::span<double> q, std::span<double> v, std::span<double> a) override {
-    count_turns();
+    auto& c = mechanism_.c;
+    for (std::size_t k = 0; k < c.twist.size(); ++k) {
+      c.twist[k] = Forces<F, double>::angle(c, c.elements->torsions[k], c.twist[k]);
+    }
     bool changed = false;
     if constexpr (requires { F::rechart; }) {
       for (int b = 0; b < bodies_; ++b) {
@@ -206,22 +215,7 @@ class MechanismProblem final : public Problem {
 
   std::string body_name(int b) const { return "body '" + model().bodies[static_cast<std::size_t>(b)].name + "'"; }
 
-  // The turn of a torsion spring that is nearest to where it was: a step turns it by less than half a turn.
-  void count_turns() {
-    auto& c = mechanism_.c;
-    for (std::size_t k = 0; k < c.turns.size(); ++k) {
-      const double now = Forces<F, double>::angle(c, c.elements->torsions[k], 0);
-      const double before = last_angle_.empty() ? 0 : last_angle_[k];
-      c.turns[k] = static_cast<int>(std::lround((before - now) / (2 * EIGEN_PI)));
-    }
-    last_angle_.resize(c.turns.size());
-    for (std::size_t k = 0; k < c.turns.size(); ++k) {
-      last_angle_[k] = Forces<F, double>::angle(c, c.elements->torsions[k], c.turns[k]);
-    }
-  }
-
   M mechanism_;
-  std::vector<double> last_angle_;  // of every torsion spring, rad, at the last accepted step
 };
 
 }  // namespace poinsot

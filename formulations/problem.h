@@ -88,6 +88,8 @@ class Problem {
   // z ← T(dq)⁻¹ z for the body part of a solution: the acceleration correction δa.
   virtual void lower(std::span<const double> dq, std::span<double> z) const = 0;
 
+  // Whether accept() has anything to do.
+  virtual bool has_discrete_state() const = 0;
   // The step to (t, q, v) is accepted. What is discrete is brought up to date: turns of torsion springs, the body-fixed
   // frames of reps. May rewrite q, v and a (not what they mean); returns true when it did, and then set_position and
   // set_velocity are due again.

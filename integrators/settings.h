@@ -22,6 +22,7 @@ struct Settings {
   int max_iterations = 20;
   double every = 0;  // s between outputs; 0: every step
   Assembly assembly = Assembly::small;
+  bool reactions = false;  // kinematics: find the multipliers, too (inverse dynamics)
 };
 
 }  // namespace poinsot

@@ -1,0 +1,44 @@
+// From the state a scene gives to one a run can start from: dependent rows set aside, positions and velocities on the
+// constraints, and told what was done.
+//
+// A state that satisfies the constraints is left untouched to the last bit. Others are projected mass-orthogonally,
+// which moves them least; positions only where they are nearly right (or where the settings say so), velocities always,
+// because scenes with drivers may leave them out.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/body_state.h"
+#include "core/model.h"
+#include "core/status.h"
+#include "integrators/settings.h"
+
+namespace poinsot {
+
+struct InitialState {
+  Status status;
+  std::vector<BodyState> bodies;
+  std::vector<int> dropped;  // model rows that depend on others and agree with them, sorted
+  std::vector<std::string> notices;
+};
+
+// Throws InputError where the scene asks for what cannot be: conflicting constraints, a pose far from the constraints,
+// a violated state with Assembly::never.
+InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings);
+
+// The bodies as the model gives them.
+std::vector<BodyState> given_state(const Model& model);
+
+// Largest |Φ| and |G v − ν| of a state, and the model rows where they occur; dropped rows are measured, too.
+struct Violation {
+  double position = 0, velocity = 0;
+  int position_row = -1, velocity_row = -1;
+};
+Violation violation(const std::shared_ptr<const Model>& model, const std::vector<BodyState>& states);
+
+// Violations up to this are rounding of the scene's numbers and are left as they are (m, rad, m/s, rad/s).
+inline constexpr double kSatisfied = 1e-10;
+
+}  // namespace poinsot

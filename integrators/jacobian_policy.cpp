@@ -1,0 +1,28 @@
+#include "integrators/jacobian_policy.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace poinsot {
+namespace {
+
+constexpr JacobianEntry kJacobians[] = {
+    {"exact", "the full Newton matrix, made anew in every iteration", MatrixKind::exact, Refresh::every_iteration},
+    {"simplified",
+     "the original study's: without the reactions' variations, factored once a step; no predictor in kinematics",
+     MatrixKind::simplified, Refresh::every_step},
+};
+
+}  // namespace
+
+std::span<const JacobianEntry> jacobians() {
+  return kJacobians;
+}
+
+const JacobianEntry* find_jacobian(std::string_view name) {
+  const auto at = std::find_if(std::begin(kJacobians), std::end(kJacobians),
+                               [&](const JacobianEntry& entry) { return entry.name == name; });
+  return at == std::end(kJacobians) ? nullptr : at;
+}
+
+}  // namespace poinsot

@@ -1,0 +1,26 @@
+// Which matrix Newton's method iterates with, and when it is made anew: the configuration's key "jacobian".
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "formulations/problem.h"
+
+namespace poinsot {
+
+enum class Refresh {
+  every_iteration,
+  every_step,  // once, at the first iterate of the step
+};
+
+struct JacobianEntry {
+  std::string_view name;
+  std::string_view about;
+  MatrixKind matrix;  // of dynamics; in kinematics the matrix is always G
+  Refresh refresh;
+};
+
+std::span<const JacobianEntry> jacobians();
+const JacobianEntry* find_jacobian(std::string_view name);  // nullptr where no entry has the name
+
+}  // namespace poinsot

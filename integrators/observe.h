@@ -1,0 +1,36 @@
+// What every integrator does at a sample and at its end: measure the constraint violation, hand out, add up times.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "core/phase_clock.h"
+#include "integrators/integrator.h"
+
+namespace poinsot {
+
+// The problem stands at (t, q, v).
+inline void sample(const Observer& observe, const Problem& problem, double t, std::span<const double> q,
+                   std::span<const double> v, std::span<const double> a, std::span<const double> lambda,
+                   Statistics& statistics) {
+  std::vector<double> r(static_cast<std::size_t>(problem.nc()));
+  problem.position_residual(r);
+  for (double x : r) statistics.violation.position = std::max(statistics.violation.position, std::abs(x));
+  problem.velocity_residual(r);
+  for (double x : r) statistics.violation.velocity = std::max(statistics.violation.velocity, std::abs(x));
+  if (observe) observe({t, problem, q, v, a, lambda});
+}
+
+inline void finish(PhaseClock& clock, Statistics& statistics) {
+  clock.stop();
+  auto& s = statistics.seconds;
+  s.total += clock.total();
+  s.assembly += clock.seconds(Phase::assembly);
+  s.factor += clock.seconds(Phase::factor);
+  s.solve += clock.seconds(Phase::solve);
+  s.other += clock.seconds(Phase::other);
+}
+
+}  // namespace poinsot

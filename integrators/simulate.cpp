@@ -1,0 +1,108 @@
+#include "integrators/simulate.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/check.h"
+#include "core/input_error.h"
+#include "formulations/registry.h"
+#include "integrators/consistent.h"
+#include "integrators/initial_state.h"
+#include "integrators/jacobian_policy.h"
+#include "linsolve/registry.h"
+
+namespace poinsot {
+namespace {
+
+template <class Entry>
+const Entry& find(const Entry* entry, std::string_view key, std::string_view name, std::span<const Entry> all) {
+  if (entry) return *entry;
+  std::string names;
+  for (const Entry& e : all) names += (names.empty() ? "" : ", ") + std::string(e.name);
+  throw InputError(fmt::format("{} '{}' is not known; there are {}", key, name, names));
+}
+
+void check_numbers(const Settings& s) {
+  const auto positive = [](std::string_view key, double value) {
+    if (!(value > 0) || !std::isfinite(value)) {
+      throw InputError(fmt::format("{} is {}; it must be greater than 0", key, value));
+    }
+  };
+  positive("step", s.step);
+  positive("end", s.end);
+  positive("tolerance", s.tolerance);
+  if (s.max_iterations < 1)
+    throw InputError(fmt::format("max_iterations is {}; it must be at least 1", s.max_iterations));
+}
+
+const IntegratorEntry& integrator_of(const Settings& settings) {
+  if (settings.analysis == Analysis::kinematics) return *find_integrator("kinematics");
+  const IntegratorEntry& entry =
+      find(find_integrator(settings.integrator), "integrator", settings.integrator, integrators());
+  if (entry.analysis != Analysis::dynamics) {
+    throw InputError(fmt::format("integrator '{}' is not one of dynamics", entry.name));
+  }
+  return entry;
+}
+
+void refuse_free_motion(const Problem& problem) {
+  for (const Row& row : problem.model().rows) {
+    if (row.type == RowType::pfaffian) {
+      throw InputError(
+          fmt::format("{} is a velocity constraint, which leaves positions free; use analysis dynamics",
+                      "constraint '" + problem.model().groups[static_cast<std::size_t>(row.group)].name + "'"));
+    }
+  }
+  const int free = problem.nv() - problem.nc();
+  if (free > 0) {
+    throw InputError(
+        fmt::format("kinematics needs a mechanism without degrees of freedom, this one has {}; add drivers, "
+                    "or use analysis dynamics",
+                    free));
+  }
+}
+
+}  // namespace
+
+Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe) {
+  check_numbers(settings);
+  const FormulationEntry& formulation =
+      find(find_formulation(settings.formulation), "formulation", settings.formulation, formulations());
+  const LinearSolverEntry& linear_solver =
+      find(find_linear_solver(settings.linear_solver), "linear_solver", settings.linear_solver, linear_solvers());
+  find(find_jacobian(settings.jacobian), "jacobian", settings.jacobian, jacobians());
+  const IntegratorEntry& integrator = integrator_of(settings);
+
+  const auto model = std::make_shared<const Model>(compile(scene));
+  Outcome outcome;
+  InitialState start = find_initial_state(model, settings);
+  outcome.status = start.status;
+  outcome.notices = std::move(start.notices);
+  outcome.reactions_undetermined = !start.dropped.empty();
+  if (!outcome.status.ok()) return outcome;
+
+  const std::unique_ptr<Problem> problem = formulation.make(model, start.dropped);
+  if (settings.analysis == Analysis::kinematics) refuse_free_motion(*problem);
+  State state;
+  state.q.resize(static_cast<std::size_t>(problem->nq()));
+  state.v.resize(static_cast<std::size_t>(problem->nv()));
+  state.a.resize(state.v.size());
+  state.lambda.resize(static_cast<std::size_t>(problem->nc()));
+  outcome.status = problem->from_bodies(start.bodies, state.q, state.v);
+  if (!outcome.status.ok()) return outcome;
+  if (settings.analysis == Analysis::dynamics) {
+    problem->set_position(0, state.q);
+    problem->set_velocity(state.v);
+    if (problem->has_discrete_state()) problem->accept(0, state.q, state.v, state.a);
+    problem->set_position(0, state.q);
+    problem->set_velocity(state.v);
+    outcome.status = Consistent(*problem, linear_solver.name).accelerations(*problem, 0, state.a, state.lambda);
+    if (!outcome.status.ok()) return outcome;
+  }
+  const std::unique_ptr<LinearSolver> solver = linear_solver.make();
+  outcome.status = integrator.make()->run(*problem, *solver, settings, state, observe, outcome.statistics);
+  return outcome;
+}
+
+}  // namespace poinsot
