@@ -23,23 +23,26 @@ void BodyNames::add(const JsonValue& value, int number) {
         fmt::format("found \"{}\", the name of /bodies/{} already, expected a name of its own", name, entry->second));
   }
   constexpr std::size_t kShort = 12;
-  list_ = numbers_.size() <= kShort ? list_ + ", " + name : "";
+  if (numbers_.size() <= kShort) {
+    list_ += (list_.empty() ? "" : ", ") + name;
+  } else {
+    list_.clear();
+  }
 }
 
 int BodyNames::read(const JsonValue& value) const {
   const std::string& name = value.string("the name of a body");
   if (name == "ground") return kGround;
   const auto found = numbers_.find(name);
-  if (found == numbers_.end()) {
-    value.expected(list_.empty() ? "the name of a body" : "the name of a body: ground" + list_);
-  }
+  if (found == numbers_.end()) value.expected("the name of a body" + (list_.empty() ? "" : ": ground, " + list_));
   return found->second;
 }
 
 int BodyNames::read_moving(const JsonValue& value) const {
-  const int body = read(value);
-  if (body == kGround) value.expected("a body that can move");
-  return body;
+  const std::string& name = value.string("the name of a body");
+  const auto found = numbers_.find(name);  // the ground is not among them
+  if (found == numbers_.end()) value.expected("the name of a body that can move" + (list_.empty() ? "" : ": " + list_));
+  return found->second;
 }
 
 std::pair<int, int> BodyNames::read_pair(const JsonValue& value) const {

@@ -26,7 +26,8 @@ Scene parse_scene(std::string_view text, std::string_view file) {
   const JsonValue root = document.root();
   root.keys("a scene", {"scene", "name", "about", "gravity", "bodies", "constraints", "joints", "drivers", "forces"});
   const JsonValue version = root.required("scene");
-  if (version.number("1, the version of the format") != 1) version.expected("1, the version of the format");
+  constexpr std::string_view kVersion = "1, the version of the format";
+  if (version.is_string() || version.number(kVersion) != 1) version.expected(kVersion);
 
   Scene scene;
   if (const auto name = root.optional("name")) scene.name = name->string();

@@ -26,7 +26,7 @@ Matrix3 project(const Matrix3& A, const JsonValue& value) {
   constexpr double kFar = 10 * kOrientationTolerance;  // a defect that the tolerance, moving each entry, cannot reach
   const double given = defect(A);
   if (!(given <= kFar)) {
-    value.fail(fmt::format("found a matrix A with AᵀA off the identity by {:.2g}, expected a rotation to within {:.0e}",
+    value.fail(fmt::format("found a matrix A with AᵀA off the identity by {:.2g}, expected a rotation to within {}",
                            given, kOrientationTolerance));
   }
   if (A.determinant() < 0) value.fail("found a reflection (its determinant is -1), expected a rotation");
@@ -35,8 +35,8 @@ Matrix3 project(const Matrix3& A, const JsonValue& value) {
   for (int k = 0; k < 4; ++k) R = R * (1.5 * Matrix3::Identity() - 0.5 * R.transpose() * R);
   const double moved = (R - A).cwiseAbs().maxCoeff();
   if (moved > kOrientationTolerance) {
-    value.fail(fmt::format("found a matrix whose entries are off the nearest rotation by up to {:.2g}, expected {:.0e}",
-                           moved, kOrientationTolerance));
+    value.fail(fmt::format("found entries up to {:.2g} off the nearest rotation, expected at most {}", moved,
+                           kOrientationTolerance));
   }
   return R;
 }
@@ -52,7 +52,7 @@ Matrix3 read_euler_parameters(const JsonValue& value) {
   const double norm = p.norm();
   if (!(std::abs(norm - 1) <= kOrientationTolerance)) {
     value.fail(
-        fmt::format("found Euler parameters of norm {:.6g}, expected 1 to within {:.0e}", norm, kOrientationTolerance));
+        fmt::format("found Euler parameters of norm {:.6g}, expected 1 to within {}", norm, kOrientationTolerance));
   }
   p /= norm;
   return Eigen::Quaterniond(p[0], p[1], p[2], p[3]).toRotationMatrix();
