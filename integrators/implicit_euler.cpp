@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "integrators/jacobian_policy.h"
 #include "integrators/observe.h"
@@ -54,7 +56,7 @@ class ImplicitEuler final : public Integrator {
         problem.retract(span(q_n), span(dq), span(q));
       };
       bool converged = false;
-      double correction = 0;
+      double correction = 0, before = INFINITY;
       for (int k = 0; k < settings.max_iterations && !converged; ++k) {
         advance();
         problem.set_position(t, span(q));
@@ -73,7 +75,9 @@ class ImplicitEuler final : public Integrator {
         z += delta;
         correction = delta.norm();
         ++statistics.newton_iterations;
-        converged = correction < settings.tolerance;
+        converged = correction < settings.tolerance ||
+                    (correction > 0.5 * before && is_rounding(delta.head(nv), scale.position, q));
+        before = correction;
         if (!std::isfinite(correction)) break;
       }
       if (!converged) {
@@ -104,6 +108,13 @@ class ImplicitEuler final : public Integrator {
   }
 
  private:
+  // A correction that has stopped to shrink and moves positions by no more than their rounding: Newton's method cannot
+  // do better in this arithmetic, whatever the tolerance asks (with small steps Φ/h² magnifies the rounding of Φ).
+  static bool is_rounding(const Eigen::Ref<const Vector>& delta, double h2, const Vector& q) {
+    constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+    return h2 * delta.cwiseAbs().maxCoeff() <= kRounding * std::max(1.0, q.cwiseAbs().maxCoeff());
+  }
+
   static Status not_converged(const Problem& problem, double t, const Vector& delta, double correction,
                               const Settings& settings) {
     if (!std::isfinite(correction)) {
