@@ -2,9 +2,12 @@
 //
 // Vectors are laid out as formulations/problem.h says. Everything is computed once per configuration and read by the
 // row and force kernels; a scalar type T other than double serves the derivative tests and extended-precision
-// references.
+// references. Time is a T as well: a dual time differentiates the right-hand sides with everything else.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -12,6 +15,16 @@
 #include "formulations/elements.h"
 
 namespace poinsot {
+
+// f, ḟ, f̈ at time t as numbers T. The third derivative is not known: f̈ of a dual time is a constant.
+template <class T>
+Jet2<T> lift(const Jet2<double>& f, const T&) {
+  return {T(f.f), T(f.fd), T(f.fdd)};
+}
+template <class T>
+Jet2<Dual<T>> lift(const Jet2<double>& f, const Dual<T>& t) {
+  return {{T(f.f), T(f.fd) * t.d}, {T(f.fd), T(f.fdd) * t.d}, T(f.fdd)};
+}
 
 template <class F, class T>
 class Configuration {
@@ -29,23 +42,23 @@ class Configuration {
         s_dot(s.size(), Vec3<T>::Zero()),
         f(elements->right_sides.size()),
         dp1(elements->dp1),
-        turns(elements->torsions.size(), 0) {
+        twist(elements->torsions.size(), 0.0) {
     for (std::size_t k = static_cast<std::size_t>(elements->ground_markers); k < s.size(); ++k) {
       s[k] = elements->markers[k].s_bar.template cast<T>();
     }
     for (std::size_t k = 0; k < f.size(); ++k) {
       const RightSide& side = elements->right_sides[k];
       if (side.f.is_constant()) {
-        f[k] = evaluate(side, 0.0);
+        f[k] = evaluate(side, T(0));
       } else {
         moving.push_back(static_cast<int>(k));
       }
     }
   }
 
-  void set_position(double t, const T* q_in) {
+  void set_position(const T& t, const T* q_in) {
     q = q_in;
-    if (t != time) set_time(t);
+    if (!std::is_floating_point_v<T> || t != time) set_time(t);
     for (std::size_t b = 0; b < at.size(); ++b) F::position(x(q, static_cast<int>(b)), at[b]);
     for (std::size_t k = 0; k < static_cast<std::size_t>(elements->ground_markers); ++k) {
       const Marker& marker = elements->markers[k];
@@ -119,35 +132,35 @@ class Configuration {
   }
 
   std::shared_ptr<const Elements> elements;
-  double time = std::numeric_limits<double>::quiet_NaN();
+  T time = T(std::numeric_limits<double>::quiet_NaN());
   const T* q = nullptr;  // the caller's; valid while the caller's point is
   const T* v = nullptr;
   std::vector<typename F::template Position<T>> at;
   std::vector<typename F::template Velocity<T>> rate;
   std::vector<Ambient> ambient_rate;  // Ŵ ẋ: global angular velocity, in rp also the stretch rate
   std::vector<Vec3<T>> s, s_dot;      // of every marker, global
-  std::vector<Jet2<double>> f;        // of every right-hand side
+  std::vector<Jet2<T>> f;             // of every right-hand side
   std::vector<DP1Row> dp1;            // with the alternates that stand in at this time
-  std::vector<int> turns;             // full turns of every torsion spring, as of the last accepted step
+  std::vector<double> twist;          // angle of every torsion spring at the last accepted step, rad
 
  private:
   static Vec3<T> vector3(const T* data, int body, int stride) {
     return body == kGround ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(Eigen::Map<const Vec3<T>>(data + body * stride));
   }
 
-  static Jet2<double> evaluate(const RightSide& side, double t) {
-    const Jet2<double> jet = side.f.at(t);
-    if (!side.squared) return jet;
-    return {jet.f * jet.f, 2 * jet.f * jet.fd, 2 * (jet.fd * jet.fd + jet.f * jet.fdd)};
+  static Jet2<T> evaluate(const RightSide& side, const T& t) {
+    const Jet2<double> jet = side.f.at(plain(t));
+    if (!side.squared) return lift(jet, t);
+    return lift(Jet2<double>{jet.f * jet.f, 2 * jet.f * jet.fd, 2 * (jet.fd * jet.fd + jet.f * jet.fdd)}, t);
   }
 
-  void set_time(double t) {
+  void set_time(const T& t) {
     time = t;
     for (int k : moving) {
       f[static_cast<std::size_t>(k)] = evaluate(elements->right_sides[static_cast<std::size_t>(k)], t);
     }
     for (const AlternateRow& row : elements->alternates) {
-      const bool swap = std::abs(f[static_cast<std::size_t>(row.normal.f)].f) > kAlternateAbove;
+      const bool swap = std::abs(plain(f[static_cast<std::size_t>(row.normal.f)].f)) > kAlternateAbove;
       dp1[static_cast<std::size_t>(row.primary)] = swap ? row.alternate : row.normal;
     }
   }

@@ -6,6 +6,9 @@
 // an element acts on; scenes without forces never come here.
 #pragma once
 
+#include <cmath>
+#include <numbers>
+
 #include "formulations/configuration.h"
 #include "formulations/problem.h"
 
@@ -43,7 +46,7 @@ class Forces {
       add(k.j, -s.force * s.direction, -C::Et_times(c.s[index(k.q)], s.force * s.direction));
     }
     for (std::size_t k = 0; k < e.torsions.size(); ++k) {
-      const Twist w(c, e.torsions[k], c.turns[k]);
+      const Twist w(c, e.torsions[k], c.twist[k]);
       add(e.torsions[k].i, Vec3<T>::Zero(), -w.torque * C::Et_times(w.u, w.c));
       add(e.torsions[k].j, Vec3<T>::Zero(), -w.torque * C::Et_times(w.c, w.u));
     }
@@ -95,7 +98,7 @@ class Forces {
         }
       }
     }
-    for (std::size_t k = 0; k < e.torsions.size(); ++k) torsion(c, e.torsions[k], c.turns[k], cq, cv, T_inverse, sink);
+    for (std::size_t k = 0; k < e.torsions.size(); ++k) torsion(c, e.torsions[k], c.twist[k], cq, cv, T_inverse, sink);
 
     for (const PointForceElement& k : e.point_forces) {
       const Vec3<T> force = global(c, k.body, k.frame, k.force);
@@ -140,17 +143,20 @@ class Forces {
       sum += T(0.5 * k.stiffness) * stretch * stretch;
     }
     for (std::size_t k = 0; k < e.torsions.size(); ++k) {
-      const T twist = angle(c, e.torsions[k], c.turns[k]) - T(e.torsions[k].angle);
+      const T twist = angle(c, e.torsions[k], c.twist[k]) - T(e.torsions[k].angle);
       sum += T(0.5 * e.torsions[k].stiffness) * twist * twist;
     }
     return sum;
   }
 
-  // Angle of a torsion spring with its full turns.
-  static T angle(const C& c, const TorsionRow& k, int turns) {
+  // Angle of a torsion spring with its full turns: of all that fit, the one nearest to `before`, so that it goes on
+  // over ±π within a step.
+  static T angle(const C& c, const TorsionRow& k, double before) {
     using std::atan2;
+    constexpr double turn = 2 * std::numbers::pi;
     const Vec3<T>& v = c.s[index(k.c)];
-    return atan2(c.s[index(k.b)].dot(v), c.s[index(k.a)].dot(v)) + T(2 * EIGEN_PI * turns);
+    const T principal = atan2(c.s[index(k.b)].dot(v), c.s[index(k.a)].dot(v));
+    return principal + T(turn * std::round((before - plain(principal)) / turn));
   }
 
  private:
@@ -162,7 +168,8 @@ class Forces {
     return e;
   }
   static Vec3<T> global(const C& c, int body, Frame frame, const Expression (&components)[3]) {
-    const Vec3<T> w(T(components[0].at(c.time).f), T(components[1].at(c.time).f), T(components[2].at(c.time).f));
+    Vec3<T> w;
+    for (int k = 0; k < 3; ++k) w[k] = lift(components[k].at(plain(c.time)), c.time).f;
     return frame == Frame::global ? w : Vec3<T>(c.at[index(body)].A * w);
   }
 
@@ -211,13 +218,13 @@ class Forces {
     T x, y, xd = T(0), yd = T(0), rho2, torque;
     Vec3<T> u, c;
 
-    Twist(const C& at, const TorsionRow& k, int turns) : c(at.s[index(k.c)]) {
+    Twist(const C& at, const TorsionRow& k, double before) : c(at.s[index(k.c)]) {
       const Vec3<T>&a = at.s[index(k.a)], &b = at.s[index(k.b)];
       x = a.dot(c);
       y = b.dot(c);
       rho2 = x * x + y * y;
       u = (x * b - y * a) / rho2;
-      torque = T(k.stiffness) * (angle(at, k, turns) - T(k.angle));
+      torque = T(k.stiffness) * (angle(at, k, before) - T(k.angle));
       if (k.damping != 0) {
         const Vec3<T>&ad = at.s_dot[index(k.a)], &bd = at.s_dot[index(k.b)], &cd = at.s_dot[index(k.c)];
         xd = ad.dot(c) + a.dot(cd);
@@ -229,9 +236,9 @@ class Forces {
 
   // K = k ∇θ∇θᵀ + torque ∇²θ + c ∇θ (∂θ̇/∂q)ᵀ, D = c ∇θ∇θᵀ.
   template <class Sink>
-  static void torsion(const C& c, const TorsionRow& k, int turns, const T& cq, const T& cv,
+  static void torsion(const C& c, const TorsionRow& k, double before, const T& cq, const T& cv,
                       const std::vector<XX>& T_inverse, Sink&& sink) {
-    const Twist w(c, k, turns);
+    const Twist w(c, k, before);
     const Vec3<T>&a = c.s[index(k.a)], &b = c.s[index(k.b)];
     const int body[2] = {k.i, k.j};
     Line gx[2], gy[2], gxd[2], gyd[2];  // gradients of x, y, ẋ, ẏ with the orientations of i and j

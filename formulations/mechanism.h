@@ -36,7 +36,7 @@ class Mechanism {
   int nv() const { return kV * nb(); }
   int nc() const { return c.elements->rows + (F::normalized ? nb() : 0); }
 
-  void set_position(double t, const T* q) { c.set_position(t, q); }
+  void set_position(const T& t, const T* q) { c.set_position(t, q); }
   void set_velocity(const T* v) {
     c.set_velocity(v);
     if (needs_s_dot_) c.compute_s_dot();

@@ -7,7 +7,7 @@
 // Kinetics: J̄ ω̄̇ + ω̃̄ J̄ ω̄. The paper's Π̄(Φ) is the x part of a constraint's gradient.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <string_view>
 
 #include "core/so3.h"

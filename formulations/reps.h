@@ -9,7 +9,7 @@
 // Kinetics in the chart's frame (J_c = C J̄ Cᵀ, ω_c = B ε̇): Bᵀ (J_c (B ε̈ + Ḃ ε̇) + ω̃_c J_c ω_c).
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string_view>

@@ -106,13 +106,13 @@ class Rows {
   static void nu(const C& c, T* out) {
     const Elements& e = *c.elements;
     const auto rate = [&](const auto& rows) {
-      for (const auto& k : rows) out[k.row] = T(c.f[index(k.f)].fd);
+      for (const auto& k : rows) out[k.row] = c.f[index(k.f)].fd;
     };
     rate(c.dp1), rate(e.dp2), rate(e.d), rate(e.cd);
     for (const AngleRow& k : e.angle) {
-      out[k.row] = -driven_rate(c, k, T(c.f[index(k.f)].fd)).dot(c.s[index(k.v)]);
+      out[k.row] = -driven_rate(c, k).dot(c.s[index(k.v)]);
     }
-    for (const PfaffianRow& k : e.pfaffian) out[k.row] = T(c.f[index(k.f)].f);
+    for (const PfaffianRow& k : e.pfaffian) out[k.row] = c.f[index(k.f)].f;
   }
 
   // γ = −(v·ü⁰ + 2 u̇·v̇ + u·v̈⁰) + f̈ by row; needs compute_s_dot. N by body: s̈⁰ = N s̄.
@@ -129,12 +129,13 @@ class Rows {
       out[k.row] = c.f[index(k.f)].fdd - s(k.v).dot(sdd(k.u)) - 2 * sd(k.u).dot(sd(k.v)) - s(k.u).dot(sdd(k.v));
     }
     for (const AngleRow& k : e.angle) {  // u = A_i ū(t): ü⁰ = N ū + 2 Ȧ ū' + A ū''
-      const Jet2<double>& f = c.f[index(k.f)];
-      const T sn = std::sin(f.f), cs = std::cos(f.f);
+      using std::cos, std::sin;
+      const Jet2<T>& f = c.f[index(k.f)];
+      const T sn = sin(f.f), cs = cos(f.f);
       const auto u_of = [&](const Vec3<T>& a, const Vec3<T>& b) -> Vec3<T> { return cs * b - sn * a; };
-      const auto u1_of = [&](const Vec3<T>& a, const Vec3<T>& b) -> Vec3<T> { return T(-f.fd) * (cs * a + sn * b); };
+      const auto u1_of = [&](const Vec3<T>& a, const Vec3<T>& b) -> Vec3<T> { return -f.fd * (cs * a + sn * b); };
       const Vec3<T> u = u_of(s(k.a), s(k.b)), u1 = u1_of(s(k.a), s(k.b));
-      const Vec3<T> u2 = T(-f.fdd) * (cs * s(k.a) + sn * s(k.b)) - T(f.fd * f.fd) * u;
+      const Vec3<T> u2 = -f.fdd * (cs * s(k.a) + sn * s(k.b)) - f.fd * f.fd * u;
       const Vec3<T> ud = u_of(sd(k.a), sd(k.b)) + u1;
       const Vec3<T> udd = u_of(sdd(k.a), sdd(k.b)) + T(2) * u1_of(sd(k.a), sd(k.b)) + u2;
       out[k.row] = -s(k.v).dot(udd) - 2 * ud.dot(sd(k.v)) - u.dot(sdd(k.v));
@@ -175,8 +176,9 @@ class Rows {
     };
     for (const DP1Row& k : c.dp1) directions(k, s(k.u), bar(k.u), k.v);
     for (const AngleRow& k : e.angle) {
-      const double sn = std::sin(c.f[index(k.f)].f), cs = std::cos(c.f[index(k.f)].f);
-      directions(k, driven(c, k), T(cs) * bar(k.b) - T(sn) * bar(k.a), k.v);
+      using std::cos, std::sin;
+      const T &f = c.f[index(k.f)].f, sn = sin(f), cs = cos(f);
+      directions(k, driven(c, k), cs * bar(k.b) - sn * bar(k.a), k.v);
     }
     for (const DP2Row& k : e.dp2) {
       const T l = lambda[k.row];
@@ -258,13 +260,15 @@ class Rows {
     return {k.row, k.i, k.j, -C::Et_times(p, w), C::Et_times(q, w), w};
   }
   static Vec3<T> driven(const C& c, const AngleRow& k) {
-    const double f = c.f[index(k.f)].f;
-    return T(std::cos(f)) * c.s[index(k.b)] - T(std::sin(f)) * c.s[index(k.a)];
+    using std::cos, std::sin;
+    const T& f = c.f[index(k.f)].f;
+    return cos(f) * c.s[index(k.b)] - sin(f) * c.s[index(k.a)];
   }
   // A_i ∂ū/∂t
-  static Vec3<T> driven_rate(const C& c, const AngleRow& k, const T& fd) {
-    const double f = c.f[index(k.f)].f;
-    return -fd * (T(std::cos(f)) * c.s[index(k.a)] + T(std::sin(f)) * c.s[index(k.b)]);
+  static Vec3<T> driven_rate(const C& c, const AngleRow& k) {
+    using std::cos, std::sin;
+    const Jet2<T>& f = c.f[index(k.f)];
+    return -f.fd * (cos(f.f) * c.s[index(k.a)] + sin(f.f) * c.s[index(k.b)]);
   }
 };
 

@@ -8,7 +8,7 @@
 // discrete form differs from Newton–Euler's by a term of the order of the step, because p·ṗ is not zero there).
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <string_view>
 
 #include "core/so3.h"
