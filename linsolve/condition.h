@@ -1,12 +1,19 @@
-// Estimates ‖A⁻¹‖₁ from a few solves: Hager's method as improved by Higham.
+// How near a factorized matrix is to a singular one, whatever the units of its rows and columns.
 //
-// Source: N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., Algorithm 15.1 and (15.13). The
-// estimate is a lower bound, seldom more than a factor of three below.
+// The measure is Bauer's: ρ(|A⁻¹||A|), the least condition number ‖D₁AD₂‖·‖(D₁AD₂)⁻¹‖ over all diagonal scalings. Its
+// inverse is, up to a modest factor, the relative change of the entries that makes A singular (F. L. Bauer, Optimally
+// scaled matrices, 1963; S. M. Rump, Structured perturbations and componentwise distance to singularity, 2003). It is
+// found as a power iteration: entries changed at random by their own size, ΔA x = ±|A|d, change the solution by
+// A⁻¹ ΔA x; d is then the size the unknowns took, and the growth from one round to the next is the estimate.
+//
+// Why not the usual condition number: [M Gᵀ; G 0] with G over h² is equilibrated with M near 1e-17 and then looks
+// singular; and the regular chain of N bodies has a condition number growing as N⁴ (a unit turn at the hinge of a rigid
+// chain moves N masses with lever arms up to N). Measured on chains, trees and loops, masses from 1e-5 to 1e3 and rows
+// over h² with h = 1e-6 included: regular 1e1 to 1e4, 2e5 for the straight chain of 100 000 bodies; with a redundant
+// constraint 1e13 and more. A matrix above 1e12 is singular to working precision.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,71 +21,48 @@
 
 namespace poinsot {
 
-class InverseNorm {
+inline constexpr double kSingularCondition = 1e12;
+
+class Condition {
  public:
-  void resize(int n) {
-    x_.resize(static_cast<std::size_t>(n));
-    sign_.resize(x_.size());
+  void resize(int n);
+
+  // The estimate for the matrix `values`; `solve` replaces its argument, a span of n numbers, by A⁻¹ times it. Infinite
+  // where the solves overflow. Takes 2 · kRounds solves.
+  template <class Solve>
+  double estimate(const CscLayout& layout, std::span<const double> values, Solve&& solve) {
+    start();
+    for (int round = 0; round < kRounds; ++round) {
+      multiply(layout, values);
+      for (int vector = 0; vector < 2; ++vector) {
+        randomize();
+        solve(std::span<double>(x_));
+        collect(vector == 0);
+      }
+      advance(round);
+    }
+    return growth_;
   }
 
-  // `solve` and `solve_transposed` replace their argument, a span of n numbers, by A⁻¹ and A⁻ᵀ times it. Infinite where
-  // the solves overflow.
-  template <class Solve, class SolveTransposed>
-  double estimate(Solve&& solve, SolveTransposed&& solve_transposed) {
-    const std::size_t n = x_.size();
-    std::ranges::fill(x_, 1.0 / static_cast<double>(n));
-    std::ranges::fill(sign_, 0.0);
-    std::size_t last = n;
-    double norm = 0;
-    for (int iteration = 0; iteration < 5; ++iteration) {
-      solve(std::span<double>(x_));
-      const double now = sum_of_magnitudes();
-      if (!std::isfinite(now)) return HUGE_VAL;
-      if (iteration > 0 && now <= norm) break;
-      norm = now;
-      bool repeated = true;
-      for (std::size_t i = 0; i < n; ++i) {
-        const double s = std::signbit(x_[i]) ? -1 : 1;
-        repeated = repeated && s == sign_[i];
-        sign_[i] = x_[i] = s;
-      }
-      if (repeated) break;
-      solve_transposed(std::span<double>(x_));
-      std::size_t largest = 0;
-      for (std::size_t i = 1; i < n; ++i)
-        if (std::abs(x_[i]) > std::abs(x_[largest])) largest = i;
-      if (largest == last) break;
-      last = largest;
-      std::ranges::fill(x_, 0.0);
-      x_[largest] = 1;
-    }
-    // A vector that catches what the iteration may miss.
-    for (std::size_t i = 0; i < n; ++i)
-      x_[i] = (i % 2 ? -1 : 1) * (1 + static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(n - 1, 1)));
-    solve(std::span<double>(x_));
-    const double other = 2 * sum_of_magnitudes() / (3 * static_cast<double>(n));
-    return std::isfinite(other) ? std::max(norm, other) : HUGE_VAL;
-  }
+  // After estimate(): the size of the unknowns, and of the terms in the rows; D_r = 1/rows, D_c = columns scale well.
+  std::span<const double> columns() const { return d_; }
+  std::span<const double> rows() const { return w_; }
+  // The unknown of largest size: where the matrix is singular and well scaled, one that its equations leave open.
+  int suspect() const { return suspect_; }
 
  private:
-  double sum_of_magnitudes() const {
-    double sum = 0;
-    for (const double xi : x_) sum += std::abs(xi);
-    return sum;
-  }
+  static constexpr int kRounds = 2;  // the first finds the scale, the second measures
 
-  std::vector<double> x_, sign_;
+  void start();
+  void multiply(const CscLayout& layout, std::span<const double> values);  // w ← |A| d
+  void randomize();                                                        // x ← ±w, also in size
+  void collect(bool first);                                                // next ← |x|, the larger of two
+  void advance(int round);                                                 // d ← next, and its growth
+
+  std::vector<double> d_, w_, x_, next_;
+  std::uint64_t random_ = 0;
+  double growth_ = 0;
+  int suspect_ = -1;
 };
-
-// Largest column sum of magnitudes.
-inline double one_norm(const CscLayout& layout, std::span<const double> values) {
-  double largest = 0;
-  for (std::size_t j = 0; j + 1 < layout.start.size(); ++j) {
-    double sum = 0;
-    for (int k = layout.start[j]; k < layout.start[j + 1]; ++k) sum += std::abs(values[static_cast<std::size_t>(k)]);
-    largest = std::max(largest, sum);
-  }
-  return largest;
-}
 
 }  // namespace poinsot

@@ -48,14 +48,27 @@ bool Equilibration::find(const CscLayout& layout, std::span<const double> values
   return true;
 }
 
-bool Equilibration::scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled) const {
-  double poison = 0;  // stays 0 as long as everything is finite
+double Equilibration::scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled) const {
+  double largest = 0, poison = 0;  // poison stays 0 as long as everything is finite
   for (std::size_t j = 0; j < col_.size(); ++j)
     for (auto k = static_cast<std::size_t>(layout.start[j]); k < static_cast<std::size_t>(layout.start[j + 1]); ++k) {
       scaled[k] = values[k] * row_[static_cast<std::size_t>(layout.row[k])] * col_[j];
+      largest = std::max(largest, std::abs(scaled[k]));
       poison += scaled[k] * 0;
     }
-  return poison == 0;
+  return largest + poison;
+}
+
+void Equilibration::improve(std::span<const double> rows, std::span<const double> columns) {
+  const auto power_of_two = [](double x) {
+    int exponent = 0;
+    std::frexp(x, &exponent);
+    return std::ldexp(1.0, exponent);
+  };
+  for (std::size_t i = 0; i < row_.size(); ++i) {
+    if (rows[i] > 0) row_[i] /= power_of_two(rows[i]);
+    if (columns[i] > 0) col_[i] *= power_of_two(columns[i]);
+  }
 }
 
 void Equilibration::scale_right_hand_side(std::span<double> b) const {

@@ -19,9 +19,11 @@ class Equilibration {
 
   // Finds the factors; false where an entry is not finite.
   bool find(const CscLayout& layout, std::span<const double> values);
-  // scaled ← D_r A D_c in the same layout; false where an entry is not finite. May be used with factors of other
-  // values.
-  bool scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled) const;
+  // scaled ← D_r A D_c in the same layout, with factors that may come from other values. The magnitude of its largest
+  // entry; NaN where an entry is not finite.
+  double scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled) const;
+  // D_r ← D_r / rows, D_c ← D_c · columns.
+  void improve(std::span<const double> rows, std::span<const double> columns);
 
   void scale_right_hand_side(std::span<double> b) const;  // b ← D_r b
   void scale_solution(std::span<double> y) const;         // y ← D_c y

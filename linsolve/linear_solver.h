@@ -1,7 +1,8 @@
 // Solves A x = b for a sparse, square, in general unsymmetric A whose structure is known before its values.
 //
 // 1. analyze(pattern) is called once: it fixes the layout and does all symbolic work. state() becomes analyzed.
-// 2. The caller writes the values of A: it zeroes values(), then adds every block at the slots() (see linsolve/pattern.h).
+// 2. The caller writes the values of A: it zeroes values(), then adds every block at the slots() (see
+// linsolve/pattern.h).
 // 3. factor() factorizes what values() holds; values() stays as it is. state() becomes factored when it answers ok.
 // 4. solve(b) replaces b by A⁻¹ b, as often as wanted, for the values of the last factor().
 // 5. 2 to 4 repeat; nothing is allocated in them after the first round.
@@ -30,7 +31,8 @@ struct [[nodiscard]] LinearStatus {
 };
 
 struct LinearStatistics {
-  std::int64_t analyses = 0, factorizations = 0, refactorizations = 0, solves = 0;  // refactorizations: with kept pivots
+  std::int64_t analyses = 0, factorizations = 0, refactorizations = 0,
+               solves = 0;  // refactorizations: with kept pivots
   std::int64_t nonzeros = 0, factor_nonzeros = 0;
   double reciprocal_condition = 0;  // estimate for the last factorization, of the scaled matrix; 0 where unknown
 };

@@ -1,4 +1,5 @@
-// The linear solvers there are. Help texts, error messages, the conformance suite and benchmarks are made from this table.
+// The linear solvers there are. Help texts, error messages, the conformance suite and benchmarks are made from this
+// table.
 #pragma once
 
 #include <memory>

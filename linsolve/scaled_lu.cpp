@@ -1,0 +1,104 @@
+#include "linsolve/scaled_lu.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace poinsot {
+namespace {
+
+constexpr double kDoubtfulPivot = 1e-7;
+constexpr double kRounding = 1e-11;  // above what rounding leaves of a pivot that should be zero
+constexpr double kOutgrown = 1e3;    // a scaled entry beyond this: the scaling of earlier values does not fit any more
+
+}  // namespace
+
+LinearStatus ScaledLu::singular(int unknown) {
+  return {LinearFailure::singular, unknown, "the matrix is singular to working precision"};
+}
+
+LinearStatus ScaledLu::do_analyze(const Pattern& pattern) {
+  scaling_known_ = pivots_known_ = examined_ = false;
+  if (LinearStatus status = layout_.build(pattern); !status.ok()) return status;
+  if (LinearStatus status = layout_.matching(); !status.ok()) return status;
+  slots_ = layout_.slots;
+  values_.assign(static_cast<std::size_t>(layout_.nonzeros()), 0);
+  scaled_.assign(values_.size(), 0);
+  equilibration_.resize(layout_.n);
+  condition_.resize(layout_.n);
+  statistics_.nonzeros = layout_.nonzeros();
+  return do_symbolic();
+}
+
+LinearStatus ScaledLu::do_factor() {
+  if (scaling_known_) {
+    const double largest = equilibration_.scale(layout_, values_, scaled_);
+    if (!(largest <= kOutgrown)) scaling_known_ = false;
+    if (scaling_known_ && pivots_known_ && do_refactor()) {
+      ++statistics_.refactorizations;
+      return {};
+    }
+  }
+  pivots_known_ = false;
+  LinearStatus status = factor_fresh();
+  pivots_known_ = status.ok();
+  scaling_known_ = status.ok();
+  return status;
+}
+
+LinearStatus ScaledLu::factor_fresh() {
+  if (!scaling_known_) {
+    if (!equilibration_.find(layout_, values_))
+      return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
+    equilibration_.scale(layout_, values_, scaled_);
+  }
+  ++statistics_.factorizations;
+  if (LinearStatus status = do_fresh(); !status.ok()) return status;
+  double smallest = smallest_pivot();
+  if (examined_ && smallest >= doubtful_) return {};
+  if (smallest == 0) return singular(suspect());
+
+  const auto solve = [this](std::span<double> x) { do_substitute(x); };
+  double condition = condition_.estimate(layout_, scaled_, solve);
+  int open = condition_.suspect();
+  if (smallest < kRounding) open = suspect();
+  if (smallest < kDoubtfulPivot && std::isfinite(condition)) {
+    // The pivots may have been chosen in a bad scaling; now a better one is known.
+    equilibration_.improve(condition_.rows(), condition_.columns());
+    equilibration_.scale(layout_, values_, scaled_);
+    ++statistics_.factorizations;
+    if (LinearStatus status = do_fresh(); !status.ok()) return status;
+    smallest = smallest_pivot();
+    condition = smallest > 0 ? condition_.estimate(layout_, scaled_, solve) : HUGE_VAL;
+  }
+  statistics_.reciprocal_condition = 1 / condition;
+  if (!(condition < kSingularCondition)) return singular(open);
+  examined_ = true;
+  doubtful_ = std::clamp(smallest / 10, kRounding, kDoubtfulPivot);
+  return {};
+}
+
+// 0 where one is not even a number: an earlier one was zero.
+double ScaledLu::smallest_pivot() {
+  double smallest = HUGE_VAL;
+  for (int k = 0; k < layout_.n; ++k) {
+    const double size = std::abs(pivot(k));
+    if (!(size >= smallest)) smallest = std::isnan(size) ? 0 : size;
+  }
+  return smallest;
+}
+
+// The column of the first pivot that is nothing but rounding; those after it were made with its inverse.
+int ScaledLu::suspect() {
+  for (int k = 0; k < layout_.n; ++k)
+    if (!(std::abs(pivot(k)) >= kRounding)) return pivot_column(k);
+  return -1;
+}
+
+LinearStatus ScaledLu::do_solve(std::span<double> b) {
+  equilibration_.scale_right_hand_side(b);
+  do_substitute(b);
+  equilibration_.scale_solution(b);
+  return {};
+}
+
+}  // namespace poinsot

@@ -1,0 +1,217 @@
+// Linear systems to test linear solvers on: the saddle points [M Gᵀ; G 0] of made-up mechanisms, with their structure.
+//
+// Bodies come first, b unknowns each, then the rows of the groups of constraints; rp-like bodies have a normalization
+// row each behind those, which belongs to the body's node. Everything is seeded.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "linsolve/linear_solver.h"
+#include "linsolve/pattern.h"
+
+namespace poinsot::test {
+
+// A matrix as an assembler writes it: a value for each entry of each block, column by column, blocks in pattern order.
+struct LinearSystem {
+  std::string name;
+  Pattern pattern;
+  std::vector<double> values;
+
+  void add(const Block& block, std::span<const double> entries) {
+    pattern.blocks.push_back(block);
+    values.insert(values.end(), entries.begin(), entries.end());
+  }
+
+  // The values of block k, column by column.
+  std::span<double> block(std::size_t k) {
+    std::size_t first = 0;
+    for (std::size_t m = 0; m < k; ++m) first += size(pattern.blocks[m]);
+    return std::span(values).subspan(first, size(pattern.blocks[k]));
+  }
+
+  // y ← A x in long double.
+  std::vector<long double> times(std::span<const double> x) const {
+    std::vector<long double> y(static_cast<std::size_t>(pattern.n), 0.0L);
+    std::size_t v = 0;
+    for (const Block& b : pattern.blocks)
+      for (int j = b.col; j < b.col + b.cols; ++j)
+        for (int i = b.row; i < b.row + b.rows; ++i)
+          y[static_cast<std::size_t>(i)] +=
+              static_cast<long double>(values[v++]) * static_cast<long double>(x[static_cast<std::size_t>(j)]);
+    return y;
+  }
+
+ private:
+  static std::size_t size(const Block& b) {
+    return static_cast<std::size_t>(b.rows) * static_cast<std::size_t>(b.cols);
+  }
+};
+
+// Writes the system where the solver said, as an assembler does.
+inline void write(const LinearSystem& system, LinearSolver& solver) {
+  std::ranges::fill(solver.values(), 0.0);
+  std::size_t v = 0, c = 0;
+  for (const Block& b : system.pattern.blocks)
+    for (int j = 0; j < b.cols; ++j, ++c)
+      for (int i = 0; i < b.rows; ++i)
+        solver.values()[static_cast<std::size_t>(solver.slots()[c] + i)] += system.values[v++];
+}
+
+enum class BodyKind { six, seven };  // 3 + 3 unknowns; 3 + 4 with a normalization row
+
+struct Joint {
+  int i, j;  // bodies, i may be −1: the ground
+  int rows;
+};
+
+struct Mechanism {
+  std::string name;
+  int bodies = 0;
+  std::vector<Joint> joints;
+};
+
+inline Mechanism chain(int bodies, int rows) {
+  Mechanism m{"chain_" + std::to_string(bodies) + "x" + std::to_string(rows), bodies, {}};
+  for (int k = 0; k < bodies; ++k) m.joints.push_back({k - 1, k, rows});
+  return m;
+}
+
+inline Mechanism tree(int bodies, std::mt19937_64& random) {
+  Mechanism m{"tree_" + std::to_string(bodies), bodies, {}};
+  for (int k = 0; k < bodies; ++k)
+    m.joints.push_back(
+        {std::uniform_int_distribution(-1, k - 1)(random), k, std::uniform_int_distribution(1, 6)(random)});
+  return m;
+}
+
+// Two rails with rungs: every rung closes a loop.
+inline Mechanism ladder(int rungs) {
+  Mechanism m{"ladder_" + std::to_string(rungs), 3 * rungs, {}};
+  for (int k = 0; k < rungs; ++k) {
+    const int left = 3 * k, right = left + 1, rung = left + 2;
+    m.joints.push_back({k ? left - 3 : -1, left, 3});
+    m.joints.push_back({k ? right - 3 : -1, right, 3});
+    m.joints.push_back({left, rung, 3});
+    m.joints.push_back({right, rung, 3});
+  }
+  return m;
+}
+
+// M: symmetric positive definite plus an unsymmetric perturbation, as in an exact Newton matrix; for the 4 orientation
+// unknowns of `seven` only of rank 3, with the null vector the normalization row forbids. G: random rows.
+inline LinearSystem saddle_point(const Mechanism& mechanism, BodyKind kind, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  const int b = kind == BodyKind::six ? 6 : 7, dim = b - 3;
+  LinearSystem s;
+  s.name = mechanism.name + (kind == BodyKind::six ? "_six" : "_seven");
+  int rows = 0;
+  for (const Joint& joint : mechanism.joints) rows += joint.rows;
+  const int normalization = b * mechanism.bodies + rows;
+  s.pattern.n = normalization + (kind == BodyKind::seven ? mechanism.bodies : 0);
+
+  for (int k = 0; k < mechanism.bodies; ++k) {
+    std::vector<double> p(4), matrix(static_cast<std::size_t>(b * b), 0.0), half(3 * 4);
+    double norm = 0;
+    for (double& x : p) x = normal(random), norm += x * x;
+    for (double& x : p) x /= std::sqrt(norm);
+    for (double& x : half) x = normal(random);
+    if (kind == BodyKind::seven)  // rows of `half` orthogonal to p
+      for (int r = 0; r < 3; ++r) {
+        double dot = 0;
+        for (int c = 0; c < 4; ++c) dot += half[static_cast<std::size_t>(4 * r + c)] * p[static_cast<std::size_t>(c)];
+        for (int c = 0; c < 4; ++c) half[static_cast<std::size_t>(4 * r + c)] -= dot * p[static_cast<std::size_t>(c)];
+      }
+    const double mass = std::exp(normal(random));
+    for (int c = 0; c < b; ++c)
+      for (int r = 0; r < b; ++r) {
+        double& m = matrix[static_cast<std::size_t>(c * b + r)];
+        if (r < 3 && c < 3) m = r == c ? mass : 0;
+        if (r >= 3 && c >= 3) {
+          for (int l = 0; l < 3; ++l)
+            m += half[static_cast<std::size_t>(4 * l + r - 3)] * half[static_cast<std::size_t>(4 * l + c - 3)];
+          if (kind == BodyKind::six) m += (r == c ? 0.1 : 0) + 0.01 * normal(random);
+        }
+      }
+    s.add({b * k, b * k, b, b}, matrix);
+    if (kind == BodyKind::seven) {
+      s.add({b * k + 3, normalization + k, dim, 1}, p);
+      s.add({normalization + k, b * k + 3, 1, dim}, p);
+    }
+    for (int c = 0; c < b; ++c) s.pattern.node.push_back(k);
+  }
+  int row = b * mechanism.bodies, group = mechanism.bodies;
+  for (const Joint& joint : mechanism.joints) {
+    for (const int body : {joint.i, joint.j}) {
+      if (body < 0) continue;
+      std::vector<double> g(static_cast<std::size_t>(joint.rows * b)), transposed(g.size());
+      for (int c = 0; c < b; ++c)
+        for (int r = 0; r < joint.rows; ++r)
+          transposed[static_cast<std::size_t>(r * b + c)] = g[static_cast<std::size_t>(c * joint.rows + r)] =
+              normal(random);
+      s.add({row, b * body, joint.rows, b}, g);
+      s.add({b * body, row, b, joint.rows}, transposed);
+    }
+    for (int r = 0; r < joint.rows; ++r) s.pattern.node.push_back(group);
+    row += joint.rows;
+    ++group;
+  }
+  for (int k = 0; normalization + k < s.pattern.n; ++k) s.pattern.node.push_back(k);
+  return s;
+}
+
+// The dense inverse in long double: Gauss–Jordan with full row equilibration and partial pivoting.
+class Reference {
+ public:
+  explicit Reference(const LinearSystem& s) : n_(static_cast<std::size_t>(s.pattern.n)) {
+    std::vector<long double> a(n_ * n_, 0.0L), scale(n_, 0.0L);
+    std::size_t v = 0;
+    for (const Block& b : s.pattern.blocks)
+      for (int j = b.col; j < b.col + b.cols; ++j)
+        for (int i = b.row; i < b.row + b.rows; ++i)
+          a[static_cast<std::size_t>(i) * n_ + static_cast<std::size_t>(j)] += static_cast<long double>(s.values[v++]);
+    inverse_.assign(n_ * n_, 0.0L);
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t j = 0; j < n_; ++j) scale[i] = std::max(scale[i], std::abs(a[i * n_ + j]));
+      for (std::size_t j = 0; j < n_; ++j) a[i * n_ + j] /= scale[i];
+      inverse_[i * n_ + i] = 1 / scale[i];
+    }
+    for (std::size_t k = 0; k < n_; ++k) {
+      std::size_t p = k;
+      for (std::size_t i = k + 1; i < n_; ++i)
+        if (std::abs(a[i * n_ + k]) > std::abs(a[p * n_ + k])) p = i;
+      for (std::size_t j = 0; j < n_ && p != k; ++j) {
+        std::swap(a[k * n_ + j], a[p * n_ + j]);
+        std::swap(inverse_[k * n_ + j], inverse_[p * n_ + j]);
+      }
+      const long double pivot = a[k * n_ + k];
+      for (std::size_t j = 0; j < n_; ++j) a[k * n_ + j] /= pivot, inverse_[k * n_ + j] /= pivot;
+      for (std::size_t i = 0; i < n_; ++i) {
+        const long double f = a[i * n_ + k];
+        if (i == k || f == 0) continue;
+        for (std::size_t j = 0; j < n_; ++j)
+          a[i * n_ + j] -= f * a[k * n_ + j], inverse_[i * n_ + j] -= f * inverse_[k * n_ + j];
+      }
+    }
+  }
+
+  std::vector<long double> solve(std::span<const double> b) const {
+    std::vector<long double> x(n_, 0.0L);
+    for (std::size_t i = 0; i < n_; ++i)
+      for (std::size_t j = 0; j < n_; ++j) x[i] += inverse_[i * n_ + j] * static_cast<long double>(b[j]);
+    return x;
+  }
+  long double inverse(std::size_t i, std::size_t j) const { return inverse_[i * n_ + j]; }
+
+ private:
+  std::size_t n_;
+  std::vector<long double> inverse_;
+};
+
+}  // namespace poinsot::test
