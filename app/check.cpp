@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "app/commands.h"
+#include "app/scene_check.h"
+#include "app/terminal.h"
+#include "core/scene_reader.h"
+#include "integrators/initial_state.h"
+#include "integrators/rank.h"
+
+namespace poinsot::app {
+namespace {
+
+std::string count(std::size_t n, std::string_view one) {
+  return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
+}
+
+// "joint 'hinge', driver 'motor'": the groups that rows belong to, the first few of them.
+std::string groups_text(const Model& model, std::span<const int> rows) {
+  constexpr std::size_t most = 8;
+  constexpr const char* kinds[] = {"constraint", "joint", "driver"};
+  std::vector<std::string> names;
+  for (const int row : rows) {
+    const Group& group = model.groups[static_cast<std::size_t>(model.rows[static_cast<std::size_t>(row)].group)];
+    const std::string name = fmt::format("{} '{}'", kinds[static_cast<int>(group.kind)], group.name);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  const std::size_t more = names.size() > most ? names.size() - most : 0;
+  names.resize(names.size() - more);
+  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
+
+void print_header(const Model& model) {
+  const std::size_t forces = model.point_forces.size() + model.torques.size() + model.springs.size() +
+                             model.torsions.size() + model.drags.size();
+  fmt::print("{}: {} {}, {}, {}\n", model.name, model.bodies.size(), model.bodies.size() == 1 ? "body" : "bodies",
+             count(model.rows.size(), "constraint row"), count(forces, "force"));
+}
+
+// Returns whether no constraints conflict.
+bool print_constraints(const Model& model, const RankAnalysis& analysis, std::span<const Conflict> conflicts) {
+  fmt::print("degrees of freedom: {}\n", analysis.degrees_of_freedom());
+  if (analysis.singular_position())
+    fmt::print("  the initial pose is a singular position: {} independent rows here, {} beside it\n",
+               analysis.rank_here, analysis.rank);
+  const std::size_t redundant = analysis.dependent.size() - conflicts.size();
+  fmt::print("redundant constraints: {}\n", redundant == 0 ? "none" : count(redundant, "row"));
+  const auto conflicting = [&](int row) {
+    return std::any_of(conflicts.begin(), conflicts.end(), [&](const Conflict& c) { return c.row == row; });
+  };
+  for (const Dependency& d : analysis.dependent)
+    if (!conflicting(d.row))
+      fmt::print("  {} follows from {}\n", describe_row(model, d.row), groups_text(model, d.others));
+  fmt::print("conflicting constraints: {}\n", conflicts.empty() ? "none" : count(conflicts.size(), "row"));
+  for (const Dependency& d : analysis.dependent)
+    for (const Conflict& c : conflicts)
+      if (c.row == d.row)
+        fmt::print("  {} contradicts {}: off by {:.3g} ({}) where those hold\n", describe_row(model, d.row),
+                   groups_text(model, d.others), c.by, c.position ? "position" : "velocity");
+  return conflicts.empty();
+}
+
+void print_state(const Model& model, const Violation& v) {
+  const auto line = [&](const char* what, double largest, int row) {
+    if (largest <= kSatisfied)
+      fmt::print("{}: consistent, largest violation {:.2g}\n", what, largest);
+    else
+      fmt::print("{}: violates {} by {:.3g}, the most of all\n", what, describe_row(model, row), largest);
+  };
+  line("initial pose", v.position, v.position_row);
+  line("initial velocities", v.velocity, v.velocity_row);
+}
+
+int check_scene(const std::string& file) {
+  const Scene scene = read_scene(file);
+  const auto model = std::make_shared<const Model>(compile(scene));
+  print_header(*model);
+  const std::vector<BodyState> given = given_state(*model);
+  const RankAnalysis analysis = analyze_rank(model, given);
+  const std::vector<Conflict> conflicts = find_conflicts(model, given, analysis);
+  const bool no_conflict = print_constraints(*model, analysis, conflicts);
+  print_state(*model, violation(model, given));
+  if (!no_conflict) {
+    print_error(fmt::format("{}: the constraints conflict; remove or correct one of those named", file));
+    return kWrongInput;
+  }
+  const InitialState start = find_initial_state(model, Settings{});
+  for (const std::string& notice : start.notices) fmt::print("  {}\n", notice);
+  if (!start.status.ok()) {
+    print_error(start.status.message);
+    return kNumericsFailed;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "check", "degrees of freedom, redundant and conflicting constraints, initial state, derivatives");
+  const auto file = std::make_shared<std::string>();
+  command->add_option("scene", *file, "scene file")->required()->type_name("SCENE");
+  command->callback([file, &status] { status = check_scene(*file); });
+}
+
+}  // namespace poinsot::app

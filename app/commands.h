@@ -1,0 +1,15 @@
+// The subcommands. Each adds itself to the command line and stores its exit status where it is asked to.
+//
+// A command that finds the input wrong throws InputError; main prints it and ends with status 2.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace poinsot::app {
+
+void add_run(CLI::App& app, int& status);
+void add_check(CLI::App& app, int& status);
+void add_list(CLI::App& app, int& status);
+void add_tables(CLI::App& app, int& status);
+
+}  // namespace poinsot::app

@@ -1,0 +1,37 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "app/commands.h"
+#include "formulations/registry.h"
+#include "integrators/integrator.h"
+#include "integrators/jacobian_policy.h"
+#include "linsolve/registry.h"
+
+namespace poinsot::app {
+namespace {
+
+template <class Table>
+void print_table(const char* title, const Table& table) {
+  std::size_t width = 0;
+  for (const auto& entry : table) width = std::max(width, entry.name.size());
+  fmt::print("{}\n", title);
+  for (const auto& entry : table) fmt::print("  {:<{}}  {}\n", entry.name, width, entry.about);
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, int& status) {
+  CLI::App* command =
+      app.add_subcommand("list", "formulations, integrators, linear solvers and Newton matrices there are");
+  command->callback([&status] {
+    print_table("formulations", formulations());
+    print_table("integrators", integrators());
+    print_table("linear solvers", linear_solvers());
+    print_table("jacobians", jacobians());
+    status = 0;
+  });
+}
+
+}  // namespace poinsot::app

@@ -1,0 +1,25 @@
+// The reactions as CSV: t, then for each constraint its multiplier, and for each joint and driver the force and moment
+// on body j at its point, global, N and N m.
+#pragma once
+
+#include <optional>
+
+#include "app/output_file.h"
+#include "core/model.h"
+#include "integrators/reactions.h"
+
+namespace poinsot::app {
+
+class ReactionsWriter {
+ public:
+  ReactionsWriter(const std::filesystem::path& file, const Model& model);  // throws InputError
+
+  void write(const Sample& sample);
+  void commit() { file_.commit(); }
+
+ private:
+  OutputFile file_;
+  std::optional<Reactions> reactions_;  // from the first sample on
+};
+
+}  // namespace poinsot::app

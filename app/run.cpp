@@ -1,0 +1,156 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "app/commands.h"
+#include "app/output_file.h"
+#include "app/progress.h"
+#include "app/reactions_writer.h"
+#include "app/run_record.h"
+#include "app/settings_options.h"
+#include "app/terminal.h"
+#include "app/trajectory_writer.h"
+#include "core/input_error.h"
+#include "core/scene_reader.h"
+#include "integrators/simulate.h"
+
+namespace poinsot::app {
+namespace {
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string scene, out, reactions;
+  SettingsOptions settings;
+  bool quiet = false;
+};
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  return !a.empty() && !b.empty() && fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
+}
+
+// Beside the trajectory, or beside the reactions where only they are asked for; none beside a device.
+fs::path record_path(const Options& options) {
+  const fs::path beside = options.out.empty() ? options.reactions : options.out;
+  return beside.empty() || is_device(beside) ? fs::path() : fs::path(beside).replace_extension(".json");
+}
+
+void refuse_overwriting(const Options& options) {
+  const fs::path record = record_path(options);
+  struct File {
+    const char* what;
+    fs::path path;
+  };
+  const File inputs[] = {{"the scene", options.scene}, {"the configuration", options.settings.config_file()}};
+  const File outputs[] = {{"--out", options.out}, {"--reactions", options.reactions}, {"the run record", record}};
+  for (const File& output : outputs)
+    for (const File& input : inputs)
+      if (same_file(output.path, input.path))
+        throw InputError(fmt::format("{}: {} would overwrite {}; choose another name or folder for the output",
+                                     output.path.string(), output.what, input.what));
+  for (int a = 0; a < 3; ++a)
+    for (int b = a + 1; b < 3; ++b)
+      if (same_file(outputs[a].path, outputs[b].path) && !is_device(outputs[a].path))
+        throw InputError(fmt::format("{}: {} and {} would be the same file; choose different names",
+                                     outputs[a].path.string(), outputs[a].what, outputs[b].what));
+}
+
+// The motion at the last output time, for the summary.
+struct LastState {
+  double t = 0;
+  std::vector<BodyState> bodies;
+};
+
+void print_summary(const Scene& scene, const Settings& settings, const Outcome& outcome, const LastState& last) {
+  const Statistics& s = outcome.statistics;
+  const bool kinematics = settings.analysis == Analysis::kinematics;
+  fmt::print("{}: {}, {}{}, {}, h = {:g} s\n", scene.name, kinematics ? "kinematics" : "dynamics", settings.formulation,
+             kinematics ? "" : ", " + settings.integrator, settings.linear_solver, settings.step);
+  fmt::print("t = {:g} s\n", last.t);
+  std::size_t width = 4;
+  for (const Body& body : scene.bodies) width = std::max(width, body.name.size());
+  const auto row = [](const Vector3& x) { return fmt::format("{:12.6g} {:12.6g} {:12.6g}", x.x(), x.y(), x.z()); };
+  fmt::print("  {:<{}}  {:>38}  {:>38}  {:>38}\n", "body", width, "position, m", "velocity, m/s",
+             "angular velocity (body), rad/s");
+  constexpr std::size_t most = 20;
+  for (std::size_t b = 0; b < std::min(most, last.bodies.size()); ++b)
+    fmt::print("  {:<{}}  {}  {}  {}\n", scene.bodies[b].name, width, row(last.bodies[b].r), row(last.bodies[b].rd),
+               row(last.bodies[b].w));
+  if (last.bodies.size() > most)
+    fmt::print("  ... and {} more; --out FILE.csv writes all\n", last.bodies.size() - most);
+  const double steps = static_cast<double>(std::max<std::int64_t>(s.steps, 1));
+  fmt::print("{} steps, {:.2f} Newton iterations, {:.2f} factorizations and {:.2f} solves a step\n", s.steps,
+             static_cast<double>(s.newton_iterations) / steps, static_cast<double>(s.factorizations) / steps,
+             static_cast<double>(s.solves) / steps);
+  const auto share = [&](double seconds) { return s.seconds.total > 0 ? 100 * seconds / s.seconds.total : 0.0; };
+  fmt::print(
+      "{:.3g} s, {:.3g} us a step: assembly {:.0f} %, factorization {:.0f} %, solve {:.0f} %, the rest {:.0f} %\n",
+      s.seconds.total, 1e6 * s.seconds.total / steps, share(s.seconds.assembly), share(s.seconds.factor),
+      share(s.seconds.solve), share(s.seconds.other));
+  fmt::print("largest violation of the constraints: position {:.2g}, velocity {:.2g}\n", s.violation.position,
+             s.violation.velocity);
+}
+
+int run(const Options& options) {
+  std::vector<std::string> notices;
+  Settings settings = options.settings.resolve(notices);
+  settings.reactions = !options.reactions.empty();
+  const Scene scene = read_scene(options.scene);
+  refuse_overwriting(options);
+
+  std::optional<TrajectoryWriter> trajectory;
+  std::optional<ReactionsWriter> reactions;
+  std::optional<OutputFile> record;
+  if (!options.out.empty()) trajectory.emplace(options.out, scene);
+  if (!options.reactions.empty()) reactions.emplace(options.reactions, compile(scene));
+  if (const fs::path path = record_path(options); !path.empty()) record.emplace(path);
+
+  const bool summary = !trajectory && !reactions && !options.quiet;
+  LastState last;
+  Outcome outcome;
+  {
+    Progress progress(settings.end, "s", !options.quiet);
+    outcome = simulate(scene, settings, [&](const Sample& sample) {
+      if (trajectory) trajectory->write(sample);
+      if (reactions) reactions->write(sample);
+      if (summary) {
+        last.t = sample.t;
+        last.bodies.resize(scene.bodies.size());
+        sample.problem.to_bodies(sample.a, last.bodies);
+      }
+      progress.at(sample.t);
+    });
+  }
+  outcome.notices.insert(outcome.notices.begin(), notices.begin(), notices.end());
+
+  if (record) record->write(to_json(RunRecord{options.scene, scene, to_json(settings), outcome}));
+  if (trajectory) trajectory->commit();
+  if (reactions) reactions->commit();
+  if (record) record->commit();
+
+  if (!options.quiet)
+    for (const std::string& notice : outcome.notices) print_notice(notice);
+  if (summary) print_summary(scene, settings, outcome, last);
+  if (outcome.status.ok()) return kDone;
+  print_error(outcome.status.message);
+  return kNumericsFailed;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("run", "compute the motion of a scene");
+  const auto options = std::make_shared<Options>();
+  command->add_option("scene", options->scene, "scene file")->required()->type_name("SCENE");
+  options->settings.add_to(*command);
+  command->add_option("--out", options->out, "trajectory, CSV; the run record is written beside it as .json")
+      ->type_name("FILE.csv");
+  command->add_option("--reactions", options->reactions, "multipliers and reaction forces, CSV")->type_name("FILE.csv");
+  command->add_flag("--quiet", options->quiet, "nothing but errors: no progress, no notices, no summary");
+  command->footer(
+      "Without --out and --reactions a short summary is printed. Numbers may be constant expressions, as\n"
+      "in scenes: --step 1/1000 --end 2*pi.");
+  command->callback([options, &status] { status = run(*options); });
+}
+
+}  // namespace poinsot::app

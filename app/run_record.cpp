@@ -1,0 +1,52 @@
+#include "app/run_record.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/provenance.h"
+
+namespace poinsot::app {
+
+std::string to_json(const RunRecord& record) {
+  using Json = nlohmann::ordered_json;
+  const auto& [failure, time, message] = record.outcome.status;
+  const Statistics& s = record.outcome.statistics;
+  const Provenance& origin = provenance();
+
+  Json json;
+  json["status"] = name(failure);
+  json["incomplete"] = failure != Failure::none;
+  json["message"] = message;
+  if (failure != Failure::none) json["failure_time"] = time;
+  json["notices"] = record.outcome.notices;
+  json["reactions_undetermined"] = record.outcome.reactions_undetermined;
+  json["statistics"] = {{"steps", s.steps},
+                        {"newton_iterations", s.newton_iterations},
+                        {"jacobian_evaluations", s.jacobian_evaluations},
+                        {"factorizations", s.factorizations},
+                        {"solves", s.solves},
+                        {"seconds",
+                         {{"total", s.seconds.total},
+                          {"assembly", s.seconds.assembly},
+                          {"factor", s.seconds.factor},
+                          {"solve", s.seconds.solve},
+                          {"other", s.seconds.other}}},
+                        {"violation", {{"position", s.violation.position}, {"velocity", s.violation.velocity}}}};
+  Json libraries;
+  for (const Library& library : origin.libraries) libraries[library.name] = library.version;
+  json["program"] = {{"name", "poinsot"},
+                     {"version", origin.version},
+                     {"commit", origin.commit},
+                     {"dirty", origin.dirty},
+                     {"compiler", origin.compiler},
+                     {"flags", origin.flags},
+                     {"build_type", origin.build_type},
+                     {"libraries", libraries}};
+  json["processor"] = processor();
+  json["configuration"] = Json::parse(record.configuration);
+  json["scene_file"] = record.scene_file.string();
+  json["scene"] = Json::parse(record.scene.source, nullptr, true, true);
+  // A message may quote bytes of a file that are not UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace poinsot::app

@@ -1,0 +1,21 @@
+// The record beside the results: what was computed, how it ended, from what input and by which program.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/scene.h"
+#include "integrators/simulate.h"
+
+namespace poinsot::app {
+
+struct RunRecord {
+  std::filesystem::path scene_file;
+  const Scene& scene;
+  std::string configuration;  // JSON, as resolved: a configuration file that repeats the run
+  const Outcome& outcome;
+};
+
+std::string to_json(const RunRecord& record);
+
+}  // namespace poinsot::app

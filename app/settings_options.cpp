@@ -1,0 +1,43 @@
+#include "app/settings_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace poinsot::app {
+namespace {
+
+std::string help_text(const SettingEntry& entry) {
+  std::string names;
+  if (entry.names) names = fmt::format(": {}", fmt::join(entry.names(), ", "));
+  return fmt::format("{}{} (default {})", entry.about, names, value_text(entry, Settings{}));
+}
+
+}  // namespace
+
+void SettingsOptions::add_to(CLI::App& command) {
+  command.add_option("--config", config_file_, "solver configuration, JSON with the keys below")->type_name("FILE");
+  for (const SettingEntry& entry : setting_entries()) {
+    if (std::holds_alternative<Assembly Settings::*>(entry.member)) {
+      const std::string key(entry.key);
+      const auto give = [this, &entry](const char* value) {
+        return [this, &entry, value] { given_.emplace_back(&entry, value); };
+      };
+      CLI::Option* on = command.add_flag_callback("--" + key, give("true"), help_text(entry));
+      command.add_flag_callback("--no-" + key, give("false"), "refuse such a state")->excludes(on);
+      continue;
+    }
+    const auto give = [this, &entry](const std::string& text) { given_.emplace_back(&entry, text); };
+    command.add_option_function<std::string>(option_name(entry), give, help_text(entry))
+        ->type_name(entry.names ? "NAME" : "X");
+  }
+}
+
+Settings SettingsOptions::resolve(std::vector<std::string>& notices) const {
+  Settings settings;
+  if (!config_file_.empty()) read_settings(config_file_, settings);
+  for (const auto& [entry, text] : given_) set_setting(*entry, text, settings);
+  fit_time_grid(settings, notices);
+  return settings;
+}
+
+}  // namespace poinsot::app

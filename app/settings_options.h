@@ -1,0 +1,27 @@
+// The solver configuration on the command line: --config FILE and an option for every key, which wins over the file.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "integrators/settings_reader.h"
+
+namespace poinsot::app {
+
+class SettingsOptions {
+ public:
+  // The object must live as long as the command is parsed.
+  void add_to(CLI::App& command);
+
+  const std::string& config_file() const { return config_file_; }
+  // Defaults, then the file, then the command line; the time grid fitted. Throws InputError.
+  Settings resolve(std::vector<std::string>& notices) const;
+
+ private:
+  std::string config_file_;
+  std::vector<std::pair<const SettingEntry*, std::string>> given_;
+};
+
+}  // namespace poinsot::app

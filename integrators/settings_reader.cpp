@@ -1,0 +1,224 @@
+#include "integrators/settings_reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "core/expression.h"
+#include "core/input_error.h"
+#include "core/json_document.h"
+#include "formulations/registry.h"
+#include "integrators/integrator.h"
+#include "integrators/jacobian_policy.h"
+#include "linsolve/registry.h"
+
+namespace poinsot {
+namespace {
+
+template <class Table>
+std::vector<std::string> names_of(const Table& table) {
+  std::vector<std::string> names;
+  for (const auto& entry : table) names.emplace_back(entry.name);
+  return names;
+}
+
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> names;
+  for (const IntegratorEntry& entry : integrators())
+    if (entry.analysis == Analysis::dynamics) names.emplace_back(entry.name);
+  return names;
+}
+
+const std::array kEntries{
+    SettingEntry{"analysis", "what is computed", &Settings::analysis,
+                 [] {
+                   return std::vector<std::string>{"kinematics", "dynamics"};
+                 },
+                 false},  // as in the enumeration
+    SettingEntry{"formulation", "orientation coordinates", &Settings::formulation,
+                 [] { return names_of(formulations()); }, false},
+    SettingEntry{"integrator", "time stepping of dynamics", &Settings::integrator, integrator_names, false},
+    SettingEntry{"linear_solver", "solver of the linear systems", &Settings::linear_solver,
+                 [] { return names_of(linear_solvers()); }, false},
+    SettingEntry{"jacobian", "matrix of Newton's method", &Settings::jacobian, [] { return names_of(jacobians()); },
+                 false},
+    SettingEntry{"step", "step size h, s", &Settings::step, nullptr, false},
+    SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false},
+    SettingEntry{"tolerance", "Newton: 2-norm of the correction", &Settings::tolerance, nullptr, false},
+    SettingEntry{"rtol", "relative tolerance of integrators with error control", &Settings::rtol, nullptr, false},
+    SettingEntry{"atol", "absolute tolerance of integrators with error control", &Settings::atol, nullptr, false},
+    SettingEntry{"max_iterations", "Newton: iterations allowed in a step", &Settings::max_iterations, nullptr, false},
+    SettingEntry{"every", "time between output rows, s; 0: every step", &Settings::every, nullptr, true},
+    SettingEntry{"assemble", "project an initial state that violates the constraints", &Settings::assembly, nullptr,
+                 false},
+};
+
+// Where a setting was found, and how to speak of it when it is wrong.
+struct Source {
+  const JsonValue* place = nullptr;      // in a file, or
+  const SettingEntry* option = nullptr;  // on the command line, with
+  std::string_view text;                 // its value
+
+  [[noreturn]] void expected(std::string_view allowed) const {
+    if (place) place->expected(allowed);
+    throw InputError(fmt::format("{}: found \"{}\", expected {}", option_name(*option), text, allowed));
+  }
+};
+
+std::string one_of(const SettingEntry& entry) {
+  return fmt::format("one of {}", fmt::join(entry.names(), ", "));
+}
+
+std::string allowed_number(const SettingEntry& entry) {
+  if (std::holds_alternative<int Settings::*>(entry.member)) return "a whole number, at least 1";
+  return entry.zero_allowed ? "a number, at least 0" : "a number greater than 0";
+}
+
+void set_number(const SettingEntry& entry, double value, const Source& source, Settings& settings) {
+  const bool in_range = std::isfinite(value) && (value > 0 || (entry.zero_allowed && value == 0));
+  if (const auto* number = std::get_if<double Settings::*>(&entry.member)) {
+    if (!in_range) source.expected(allowed_number(entry));
+    settings.*(*number) = value;
+  } else {
+    if (!in_range || value != std::floor(value) || value > 1e9) source.expected(allowed_number(entry));
+    settings.*std::get<int Settings::*>(entry.member) = static_cast<int>(value);
+  }
+}
+
+void set_name(const SettingEntry& entry, std::string_view name, const Source& source, Settings& settings) {
+  const std::vector<std::string> names = entry.names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) source.expected(one_of(entry));
+  if (const auto* text = std::get_if<std::string Settings::*>(&entry.member)) settings.*(*text) = name;
+  if (const auto* analysis = std::get_if<Analysis Settings::*>(&entry.member))
+    settings.*(*analysis) = static_cast<Analysis>(found - names.begin());
+}
+
+// A type that holds the keys of all entries: the reader takes them as a list.
+template <std::size_t... k>
+void refuse_unknown_keys(const JsonValue& root, std::index_sequence<k...>) {
+  root.keys("a solver configuration", {kEntries[k].key...});
+}
+
+}  // namespace
+
+std::span<const SettingEntry> setting_entries() {
+  return kEntries;
+}
+
+const SettingEntry* find_setting(std::string_view key) {
+  const auto entry = std::find_if(kEntries.begin(), kEntries.end(), [&](const auto& e) { return e.key == key; });
+  return entry == kEntries.end() ? nullptr : &*entry;
+}
+
+std::string option_name(const SettingEntry& entry) {
+  std::string name = "--" + std::string(entry.key);
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
+std::string value_text(const SettingEntry& entry, const Settings& settings) {
+  if (const auto* text = std::get_if<std::string Settings::*>(&entry.member)) return settings.*(*text);
+  if (const auto* number = std::get_if<double Settings::*>(&entry.member))
+    return fmt::format("{}", settings.*(*number));
+  if (const auto* count = std::get_if<int Settings::*>(&entry.member)) return fmt::format("{}", settings.*(*count));
+  if (entry.names) return entry.names()[static_cast<std::size_t>(settings.analysis)];
+  switch (settings.assembly) {
+    case Assembly::always:
+      return "true";
+    case Assembly::never:
+      return "false";
+    case Assembly::small:
+      break;
+  }
+  return "where the violation is small";
+}
+
+void set_setting(const SettingEntry& entry, std::string_view text, Settings& settings) {
+  const Source source{nullptr, &entry, text};
+  if (std::holds_alternative<Assembly Settings::*>(entry.member)) {
+    if (text != "true" && text != "false") source.expected("true or false");
+    settings.assembly = text == "true" ? Assembly::always : Assembly::never;
+    return;
+  }
+  if (entry.names) return set_name(entry, text, source, settings);
+  double value = 0;
+  try {
+    value = Expression::parse_constant(text).at(0.0).f;
+  } catch (const ExpressionError& error) {
+    throw InputError(fmt::format("{}: found \"{}\" ({}), expected {}", option_name(entry), text, error.what(),
+                                 allowed_number(entry)));
+  }
+  set_number(entry, value, source, settings);
+}
+
+void read_settings(const std::filesystem::path& file, Settings& settings) {
+  parse_settings(read_text(file.string()), file.string(), settings);
+}
+
+void parse_settings(std::string_view text, std::string_view file, Settings& settings) {
+  const JsonDocument document(text, file);
+  const JsonValue root = document.root();
+  refuse_unknown_keys(root, std::make_index_sequence<kEntries.size()>{});
+  for (const SettingEntry& entry : kEntries) {
+    const std::optional<JsonValue> value = root.optional(entry.key);
+    if (!value) continue;
+    const Source source{&*value, nullptr, {}};
+    if (std::holds_alternative<Assembly Settings::*>(entry.member))
+      settings.assembly = value->boolean() ? Assembly::always : Assembly::never;
+    else if (entry.names)
+      set_name(entry, value->string(one_of(entry)), source, settings);
+    else
+      set_number(entry, value->number(allowed_number(entry)), source, settings);
+  }
+}
+
+std::string to_json(const Settings& settings) {
+  nlohmann::ordered_json json;
+  for (const SettingEntry& entry : kEntries) {
+    if (const auto* number = std::get_if<double Settings::*>(&entry.member))
+      json[entry.key] = settings.*(*number);
+    else if (const auto* count = std::get_if<int Settings::*>(&entry.member))
+      json[entry.key] = settings.*(*count);
+    else if (entry.names)
+      json[entry.key] = value_text(entry, settings);
+    else if (settings.assembly != Assembly::small)  // the default is what is done where the key is left out
+      json[entry.key] = settings.assembly == Assembly::always;
+  }
+  return json.dump(2);
+}
+
+void fit_time_grid(Settings& settings, std::vector<std::string>& notices) {
+  constexpr double rounding =
+      1e-9;  // of the ratio, relative: far above the error of decimal fractions, far below a step
+  const double ratio = settings.end / settings.step;
+  if (!(ratio < 1e15))
+    throw InputError(
+        fmt::format("step: found {:g} s with end {:g} s, which are {:g} steps, expected at most 1e15; "
+                    "try a larger step",
+                    settings.step, settings.end, ratio));
+  double steps = std::max(1.0, std::round(ratio));
+  if (std::abs(ratio - steps) > rounding * steps) {
+    steps = std::ceil(ratio);
+    const double shortened = settings.end / steps;
+    notices.push_back(
+        fmt::format("end {} s is not a multiple of step {} s: the step is shortened to {} s, so that step {} "
+                    "lands on the end exactly",
+                    settings.end, settings.step, shortened, static_cast<std::int64_t>(steps)));
+    settings.step = shortened;
+  }
+  if (settings.every == 0) return;
+  const double rows = settings.every / settings.step;
+  const double nearest = std::max(1.0, std::round(rows));
+  if (std::abs(rows - nearest) > rounding * nearest)
+    throw InputError(fmt::format("every: found {} s, expected a multiple of the step {} s; try {}", settings.every,
+                                 settings.step, nearest * settings.step));
+}
+
+}  // namespace poinsot

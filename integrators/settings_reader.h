@@ -1,0 +1,48 @@
+// Reads the solver configuration: a strict JSON file with comments, or single values as the command line gives them.
+//
+// One table holds every key with what it means and what it may be; the file, the command line, the help texts, the
+// messages and the run record are made from it. Numbers may be written as constant expressions ("1/1000", "2*pi").
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "integrators/settings.h"
+
+namespace poinsot {
+
+struct SettingEntry {
+  std::string_view key;    // in the file; on the command line with dashes, "--linear-solver"
+  std::string_view about;  // one line, with the unit
+  std::variant<Analysis Settings::*, std::string Settings::*, double Settings::*, int Settings::*, Assembly Settings::*>
+      member;
+  std::vector<std::string> (*names)();  // what a key with a name may be; nullptr for numbers and switches
+  bool zero_allowed;                    // numbers: at least 0 instead of greater than 0
+};
+
+std::span<const SettingEntry> setting_entries();
+const SettingEntry* find_setting(std::string_view key);  // nullptr where no entry has the key
+std::string option_name(const SettingEntry& entry);      // "--linear-solver"
+// "rA", "0.001": a setting as it would be written in the file, without quotes.
+std::string value_text(const SettingEntry& entry, const Settings& settings);
+
+// Sets one key from text, as after an option on the command line. Throws InputError that begins with the option's name.
+void set_setting(const SettingEntry& entry, std::string_view text, Settings& settings);
+
+// Sets what the file says, keeps the rest. Throws InputError: file, key path, what was found, what is allowed.
+void read_settings(const std::filesystem::path& file, Settings& settings);
+void parse_settings(std::string_view text, std::string_view file, Settings& settings);
+
+// The settings as a configuration file, every key of it.
+std::string to_json(const Settings& settings);
+
+// Makes t_n = n step, n = 0..N, land on `end` exactly: where `end` is no multiple of `step`, the step is shortened to
+// end/N with the next larger N, and a sentence that says so is added to `notices`. Throws InputError where `every` is
+// no multiple of the step.
+void fit_time_grid(Settings& settings, std::vector<std::string>& notices);
+
+}  // namespace poinsot

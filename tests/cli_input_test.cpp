@@ -1,0 +1,159 @@
+// Every way to be wrong on the command line and in the configuration: one sentence, status 2, nothing written.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "command_line.h"
+#include "formulations/registry.h"
+#include "integrators/settings_reader.h"
+#include "linsolve/registry.h"
+
+namespace poinsot::test {
+namespace {
+
+class WrongInput : public CommandLine {
+ protected:
+  WrongInput() {
+    write("pendulum.json", kPendulum);
+    before_ = files();
+  }
+
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& message) {
+    const Result result = poinsot(arguments);
+    SCOPED_TRACE(fmt::format("poinsot {}", fmt::join(arguments, " ")));
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(result.err, message + "\n");
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(files(), before_);
+  }
+
+  void expect_configuration_refused(const std::string& text, const std::string& message) {
+    write("config.json", text);
+    before_ = files();
+    SCOPED_TRACE(text);
+    expect_refused({"run", "pendulum.json", "--config", "config.json", "--out", "a.csv"}, message);
+  }
+
+ private:
+  std::vector<std::string> before_;
+};
+
+std::string names(const char* key) {
+  return fmt::format("{}", fmt::join(find_setting(key)->names(), ", "));
+}
+
+TEST_F(WrongInput, Usage) {
+  const std::string commands = "run, check, list, tables; see poinsot --help";
+  expect_refused({}, "poinsot: found no command, expected one of " + commands);
+  expect_refused({"fly"}, "poinsot: found \"fly\", expected one of " + commands);
+  expect_refused({"--fly"}, "poinsot: found \"--fly\", expected one of " + commands);
+  expect_refused({"run"}, "poinsot: found no scene, expected poinsot run SCENE; see poinsot run --help");
+  expect_refused({"check"}, "poinsot: found no scene, expected poinsot check SCENE; see poinsot check --help");
+  expect_refused({"run", "pendulum.json", "--stepp", "1"}, "poinsot: --stepp: unknown option; see poinsot run --help");
+  expect_refused({"run", "pendulum.json", "more"},
+                 "poinsot: found \"more\", expected nothing more; see poinsot run --help");
+  expect_refused({"run", "pendulum.json", "--step"},
+                 "poinsot: --step: expected one value, once; see poinsot run --help");
+  expect_refused({"run", "pendulum.json", "--step", "1", "--step", "2"},
+                 "poinsot: --step: expected one value, once; see poinsot run --help");
+}
+
+TEST_F(WrongInput, Scene) {
+  expect_refused({"run", "none.json", "--out", "a.csv"},
+                 "poinsot: none.json: cannot be read: No such file or directory");
+  write("bad.json",
+        R"({"scene": 1, "bodies": [{"name": "a", "mass": -1, "inertia": [1, 1, 1], "position": [0, 0, 0]}]})");
+  const Result result = poinsot({"run", "bad.json", "--out", "a.csv"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_TRUE(result.err.starts_with("poinsot: bad.json: /bodies/0/mass: found -1, expected ")) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(folder() / "a.csv"));
+  EXPECT_EQ(poinsot({"check", "bad.json"}).err, result.err);
+}
+
+TEST_F(WrongInput, CommandLineValues) {
+  const auto refused = [&](const char* option, const char* value, const std::string& message) {
+    expect_refused({"run", "pendulum.json", "--out", "a.csv", option, value}, "poinsot: " + message);
+  };
+  refused("--step", "0", "--step: found \"0\", expected a number greater than 0");
+  refused("--step", "-1", "--step: found \"-1\", expected a number greater than 0");
+  refused("--every", "-1", "--every: found \"-1\", expected a number, at least 0");
+  refused("--max-iterations", "2.5", "--max-iterations: found \"2.5\", expected a whole number, at least 1");
+  for (const char* key : {"analysis", "formulation", "integrator", "linear_solver", "jacobian"}) {
+    const std::string option = option_name(*find_setting(key));
+    refused(option.c_str(), "no_such", fmt::format("{}: found \"no_such\", expected one of {}", option, names(key)));
+  }
+  EXPECT_TRUE(poinsot({"run", "pendulum.json", "--end", "1/0"}).err.starts_with("poinsot: --end: found \"1/0\" ("));
+  const Result text = poinsot({"run", "pendulum.json", "--step", "small"});
+  EXPECT_EQ(text.status, 2);
+  EXPECT_TRUE(text.err.starts_with("poinsot: --step: found \"small\" (")) << text.err;
+  EXPECT_TRUE(text.err.ends_with("), expected a number greater than 0\n")) << text.err;
+}
+
+TEST_F(WrongInput, Configuration) {
+  std::vector<std::string_view> keys;
+  for (const SettingEntry& entry : setting_entries()) keys.push_back(entry.key);
+  expect_configuration_refused(
+      R"({"stepp": 1})",
+      fmt::format("poinsot: config.json: /stepp: unknown key, expected for a solver configuration: {}",
+                  fmt::join(keys, ", ")));
+  expect_configuration_refused(R"({"step": true})",
+                               "poinsot: config.json: /step: found true, expected a number greater than 0");
+  expect_configuration_refused(R"({"step": 0})",
+                               "poinsot: config.json: /step: found 0, expected a number greater than 0");
+  expect_configuration_refused(R"({"max_iterations": 0})",
+                               "poinsot: config.json: /max_iterations: found 0, expected a whole number, at least 1");
+  expect_configuration_refused(
+      R"({"linear_solver": "slu"})",
+      fmt::format("poinsot: config.json: /linear_solver: found \"slu\", expected one of {}", names("linear_solver")));
+  expect_configuration_refused(
+      R"({"formulation": 3})",
+      fmt::format("poinsot: config.json: /formulation: found 3, expected one of {}", names("formulation")));
+  expect_configuration_refused(R"({"step": 1, "step": 2})",
+                               "poinsot: config.json: /step: found the key twice, expected it once");
+  expect_configuration_refused(
+      "[]",
+      "poinsot: config.json: /: found an array of 0 values, expected a solver configuration as "
+      "an object");
+  write("config.json", "{\"step\": 1,\n \"end\" 2}");
+  const Result syntax = poinsot({"run", "pendulum.json", "--config", "config.json"});
+  EXPECT_EQ(syntax.status, 2);
+  EXPECT_TRUE(syntax.err.starts_with("poinsot: config.json: line 2, column 8: ")) << syntax.err;
+  EXPECT_EQ(lines(syntax.err).size(), 1u);
+}
+
+TEST_F(WrongInput, TimeGrid) {
+  expect_refused({"run", "pendulum.json", "--step", "0.01", "--end", "1", "--every", "0.015", "--out", "a.csv"},
+                 "poinsot: every: found 0.015 s, expected a multiple of the step 0.01 s; try 0.02");
+  expect_refused(
+      {"run", "pendulum.json", "--step", "1e-300", "--out", "a.csv"},
+      "poinsot: step: found 1e-300 s with end 1 s, which are 1e+300 steps, expected at most 1e15; try a larger step");
+}
+
+TEST_F(WrongInput, OutputPaths) {
+  const auto refused = [&](std::vector<std::string> arguments, const std::string& message) {
+    arguments.insert(arguments.begin(), {"run", "pendulum.json"});
+    expect_refused(arguments, "poinsot: " + message);
+  };
+  refused({"--out", "no/such/a.csv"}, "no/such/a.csv: cannot be written: No such file or directory");
+  refused({"--out", "."}, ".: cannot be written: it is a directory; give a file name");
+  refused({"--out", "a.csv", "--reactions", "no/r.csv"}, "no/r.csv: cannot be written: No such file or directory");
+  refused({"--out", "pendulum.csv"},
+          "pendulum.json: the run record would overwrite the scene; choose another name or folder for the output");
+  refused({"--out", "pendulum.json"},
+          "pendulum.json: --out would overwrite the scene; choose another name or folder for the output");
+  refused({"--out", "a.csv", "--reactions", "./a.csv"},
+          "a.csv: --out and --reactions would be the same file; choose different names");
+  refused({"--out", "a.json"}, "a.json: --out and the run record would be the same file; choose different names");
+}
+
+TEST_F(WrongInput, KinematicsOfAMechanismThatCanMove) {
+  const Result result = poinsot({"run", "pendulum.json", "--analysis", "kinematics", "--out", "a.csv"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(
+      result.err,
+      "poinsot: kinematics needs a mechanism without degrees of freedom, this one has 1; add drivers, or use analysis "
+      "dynamics\n");
+  EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
+}
+
+}  // namespace
+}  // namespace poinsot::test

@@ -1,0 +1,212 @@
+// `poinsot run`: what it writes, what it says, and how it ends.
+#include <fmt/format.h>
+#include <pty.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstring>
+
+#include "command_line.h"
+#include "core/provenance.h"
+#include "formulations/registry.h"
+#include "integrators/settings_reader.h"
+
+namespace poinsot::test {
+namespace {
+
+class Run : public CommandLine {
+ protected:
+  Run() { write("pendulum.json", kPendulum); }
+};
+
+TEST_F(Run, PrintsASummaryWithoutAnOutputFile) {
+  const Result result = poinsot({"run", "pendulum.json", "--end", "0.1"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err, "");
+  for (const char* part : {"pendulum: dynamics, rA, implicit_euler, klu, h = 0.001 s", "t = 0.1 s", "rod", "100 steps",
+                           "Newton iterations", "assembly", "largest violation"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
+  EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
+}
+
+TEST_F(Run, QuietSaysNothing) {
+  const Result result = poinsot({"run", "pendulum.json", "--end", "0.1", "--quiet"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST_F(Run, TheCommandLineWinsOverTheConfiguration) {
+  write("config.json", R"({
+    // how to solve
+    "formulation": "rp", "jacobian": "simplified", "step": "1/200", "end": 0.1, "max_iterations": 30
+  })");
+  const Result result = poinsot(
+      {"run", "pendulum.json", "--config", "config.json", "--formulation", "reps", "--end", "0.2", "--out", "a.csv"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json used = read_json("a.json")["configuration"];
+  EXPECT_EQ(used["formulation"], "reps");
+  EXPECT_EQ(used["jacobian"], "simplified");
+  EXPECT_EQ(used["step"], 0.005);
+  EXPECT_EQ(used["end"], 0.2);
+  EXPECT_EQ(used["max_iterations"], 30);
+  EXPECT_EQ(used["linear_solver"], Settings{}.linear_solver);
+}
+
+TEST_F(Run, TheRecordSaysWhereTheNumbersComeFrom) {
+  const Result result = poinsot({"run", "pendulum.json", "--end", "0.1", "--out", "a.csv", "--reactions", "r.csv"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.csv", "a.json", "pendulum.json", "r.csv"}));
+  const nlohmann::json record = read_json("a.json");
+  EXPECT_EQ(record["status"], "ok");
+  EXPECT_EQ(record["incomplete"], false);
+  EXPECT_EQ(record["message"], "");
+  EXPECT_EQ(record["scene"], nlohmann::json::parse(kPendulum, nullptr, true, true));
+  EXPECT_EQ(record["scene_file"], "pendulum.json");
+  const Provenance& origin = provenance();
+  EXPECT_EQ(record["program"]["version"], origin.version);
+  EXPECT_EQ(record["program"]["commit"], origin.commit);
+  EXPECT_EQ(record["program"]["compiler"], origin.compiler);
+  EXPECT_EQ(record["program"]["flags"], origin.flags);
+  EXPECT_EQ(record["program"]["libraries"].size(), origin.libraries.size());
+  EXPECT_EQ(record["processor"], processor());
+  for (const SettingEntry& entry : setting_entries())
+    EXPECT_EQ(record["configuration"].contains(entry.key), entry.key != "assemble") << entry.key;
+
+  const nlohmann::json& statistics = record["statistics"];
+  EXPECT_EQ(statistics["steps"], 100);
+  for (const char* count : {"newton_iterations", "jacobian_evaluations", "factorizations", "solves"})
+    EXPECT_GE(statistics[count], 100) << count;
+  double sum = 0;
+  for (const char* phase : {"assembly", "factor", "solve", "other"}) {
+    EXPECT_GT(statistics["seconds"][phase], 0) << phase;
+    sum += statistics["seconds"][phase].get<double>();
+  }
+  EXPECT_NEAR(sum, statistics["seconds"]["total"].get<double>(), 1e-9);
+  EXPECT_LT(statistics["violation"]["position"], 1e-7);
+  EXPECT_TRUE(statistics["violation"].contains("velocity"));
+}
+
+TEST_F(Run, TheRecordedConfigurationRepeatsTheRun) {
+  ASSERT_EQ(poinsot({"run", "pendulum.json", "--end", "2/3", "--step", "1/300", "--formulation", "rp", "--no-assemble",
+                     "--out", "a.csv"})
+                .status,
+            0);
+  write("again.json", read_json("a.json")["configuration"].dump());
+  const Result again = poinsot({"run", "pendulum.json", "--config", "again.json", "--out", "b.csv"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(read("a.csv") == read("b.csv"));
+}
+
+TEST_F(Run, TheSameInputGivesTheSameBytesWhateverRunsBesideIt) {
+  for (const FormulationEntry& formulation : formulations()) {
+    const std::vector<std::string> common{"run",   "pendulum.json", "--formulation", std::string(formulation.name),
+                                          "--end", "0.5",           "--quiet"};
+    const auto with = [&](const char* out, const char* reactions) {
+      std::vector<std::string> arguments = common;
+      arguments.insert(arguments.end(), {"--out", out, "--reactions", reactions});
+      return arguments;
+    };
+    ASSERT_EQ(poinsot(with("a.csv", "ra.csv")).status, 0);
+    const pid_t first = start(with("b.csv", "rb.csv"), "1"), second = start(with("c.csv", "rc.csv"), "2");
+    ASSERT_EQ(finish(first, "1").status, 0);
+    ASSERT_EQ(finish(second, "2").status, 0);
+    for (const char* other : {"b.csv", "c.csv"}) EXPECT_TRUE(read("a.csv") == read(other)) << formulation.name;
+    for (const char* other : {"rb.csv", "rc.csv"}) EXPECT_TRUE(read("ra.csv") == read(other)) << formulation.name;
+  }
+}
+
+TEST_F(Run, AStepThatDoesNotDivideTheEndIsShortenedWithANotice) {
+  const Result result = poinsot({"run", "pendulum.json", "--step", "0.03", "--end", "0.1", "--out", "a.csv"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err,
+            "poinsot: note: end 0.1 s is not a multiple of step 0.03 s: the step is shortened to 0.025 s, so that step "
+            "4 lands "
+            "on the end exactly\n");
+  EXPECT_EQ(read_json("a.json")["configuration"]["step"], 0.025);
+  EXPECT_EQ(read_json("a.json")["notices"].size(), 1u);
+  const std::vector<std::string> rows = lines(read("a.csv"));
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_EQ(std::stod(fields(rows.back())[0]), 0.1);
+}
+
+TEST_F(Run, ReactionsAloneHaveTheirRecordBesideThem) {
+  ASSERT_EQ(poinsot({"run", "pendulum.json", "--end", "0.01", "--reactions", "r.csv"}).status, 0);
+  EXPECT_EQ(files(), (std::vector<std::string>{"pendulum.json", "r.csv", "r.json"}));
+}
+
+TEST_F(Run, ADeviceIsWrittenDirectly) {
+  const Result result = poinsot({"run", "pendulum.json", "--end", "0.01", "--out", "/dev/stdout", "--quiet"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(lines(result.out).size(), 12u);
+  EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
+}
+
+TEST_F(Run, WhatWasComputedBeforeANumericalFailureIsKept) {
+  write("overstretched.json", kOverstretched);
+  for (const FormulationEntry& formulation : formulations()) {
+    SCOPED_TRACE(formulation.name);
+    const Result result =
+        poinsot({"run", "overstretched.json", "--formulation", std::string(formulation.name), "--step", "0.01", "--end",
+                 "2", "--quiet", "--out", "a.csv", "--reactions", "r.csv"});
+    EXPECT_EQ(result.status, 3);
+    ASSERT_EQ(lines(result.err).size(), 1u) << result.err;
+    EXPECT_TRUE(result.err.starts_with("poinsot: ")) << result.err;
+    EXPECT_NE(result.err.find("t = "), std::string::npos) << result.err;
+    const nlohmann::json record = read_json("a.json");
+    EXPECT_NE(record["status"], "ok");
+    EXPECT_EQ(record["incomplete"], true);
+    EXPECT_EQ("poinsot: " + record["message"].get<std::string>() + "\n", result.err);
+    const std::vector<std::string> rows = lines(read("a.csv"));
+    ASSERT_GT(rows.size(), 50u);
+    EXPECT_EQ(lines(read("r.csv")).size(), rows.size());
+    const double last = std::stod(fields(rows.back())[0]);
+    EXPECT_LT(last, 1.05);
+    EXPECT_NEAR(record["failure_time"].get<double>(), last + 0.01, 1e-9);
+    EXPECT_EQ(files(), (std::vector<std::string>{"a.csv", "a.json", "overstretched.json", "pendulum.json", "r.csv"}));
+  }
+}
+
+// Reads what the program writes to a terminal until `part` comes up, or for a minute.
+std::string watch_terminal(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+                           const char* part) {
+  std::vector<const char*> argv{POINSOT_PROGRAM};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  argv.push_back(nullptr);
+  int terminal = -1;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (child == 0) {
+    if (chdir(folder.c_str()) != 0) _exit(127);
+    execv(POINSOT_PROGRAM, const_cast<char* const*>(argv.data()));
+    _exit(127);
+  }
+  std::string seen;
+  char buffer[4096];
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (seen.find(part) == std::string::npos && std::chrono::steady_clock::now() < deadline) {
+    const ssize_t count = ::read(terminal, buffer, sizeof buffer);
+    if (count <= 0) break;
+    seen.append(buffer, static_cast<std::size_t>(count));
+  }
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  close(terminal);
+  return seen;
+}
+
+TEST_F(Run, ALongRunShowsItsProgressOnATerminal) {
+  const std::string seen = watch_terminal(folder(), {"run", "pendulum.json", "--end", "10000"}, " left");
+  EXPECT_NE(seen.find(" of 10000 s, "), std::string::npos) << seen;
+}
+
+TEST_F(Run, ErrorsAreColouredOnATerminalOnly) {
+  const std::vector<std::string> wrong{"run", "none.json"};
+  unsetenv("NO_COLOR");
+  EXPECT_NE(watch_terminal(folder(), wrong, "\n").find("\x1b[1;31mpoinsot:"), std::string::npos);
+  setenv("NO_COLOR", "1", 1);
+  EXPECT_EQ(watch_terminal(folder(), wrong, "\n").find('\x1b'), std::string::npos);
+  unsetenv("NO_COLOR");
+  EXPECT_EQ(poinsot(wrong).err.find('\x1b'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace poinsot::test

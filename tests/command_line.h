@@ -1,0 +1,120 @@
+// Runs the program as a user does, in a folder of its own, and keeps what it says and what it leaves.
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace poinsot::test {
+
+struct Result {
+  int status = -1;
+  std::string out, err;
+};
+
+inline std::string read(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error("no file " + file.string());
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+// A line of CSV, taken apart; the tests' own names need no quotes.
+inline std::vector<std::string> fields(const std::string& line) {
+  std::vector<std::string> result;
+  std::stringstream stream(line);
+  for (std::string field; std::getline(stream, field, ',');) result.push_back(field);
+  return result;
+}
+
+inline std::vector<std::string> lines(const std::string& text) {
+  std::vector<std::string> result;
+  std::stringstream stream(text);
+  for (std::string line; std::getline(stream, line);) result.push_back(line);
+  return result;
+}
+
+class CommandLine : public testing::Test {
+ protected:
+  CommandLine() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "poinsot-XXXXXX").string();
+    if (!mkdtemp(pattern.data())) throw std::runtime_error("no folder for the test");
+    folder_ = pattern;
+  }
+  ~CommandLine() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path folder() const { return folder_; }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  std::string read(const std::string& name) const { return test::read(folder_ / name); }
+  nlohmann::json read_json(const std::string& name) const { return nlohmann::json::parse(read(name)); }
+
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_))
+      if (!entry.path().filename().string().starts_with(".said")) names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  // `poinsot ARGUMENTS` in the folder; returns its process.
+  pid_t start(const std::vector<std::string>& arguments, const std::string& tag = "") const {
+    const std::string out = (folder_ / (".said.out" + tag)).string(), err = (folder_ / (".said.err" + tag)).string();
+    std::vector<const char*> argv{POINSOT_PROGRAM};
+    for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child != 0) return child;
+    if (chdir(folder_.c_str()) != 0) _exit(127);
+    dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+    dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666), STDOUT_FILENO);
+    dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666), STDERR_FILENO);
+    execv(POINSOT_PROGRAM, const_cast<char* const*>(argv.data()));
+    _exit(127);
+  }
+
+  Result finish(pid_t child, const std::string& tag = "") const {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(".said.out" + tag), read(".said.err" + tag)};
+  }
+
+  Result poinsot(const std::vector<std::string>& arguments) const { return finish(start(arguments)); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+// A rod of 2 m on a hinge at the origin, horizontal at rest, swinging about x.
+inline const char* const kPendulum = R"({
+  "scene": 1,
+  "name": "pendulum", // a comment
+  "gravity": [0, 0, -9.81],
+  "bodies": [{"name": "rod", "mass": 3, "inertia": [1, "1/100", 1], "position": [0, 1, 0]}],
+  "joints": [{"type": "revolute", "bodies": ["ground", "rod"], "point": [0, 0, 0], "axis": [1, 0, 0]}]
+})";
+
+// The same rod pulled about by a telescope from (0, 3, 0), which from t = 1 on is too long for it: at t = 1 rod and
+// telescope are stretched out in line.
+inline const char* const kOverstretched = R"({
+  "scene": 1,
+  "name": "overstretched",
+  "gravity": [0, 0, -9.81],
+  "bodies": [{"name": "rod", "mass": 3, "inertia": [1, "1/100", 1], "position": [0, 0, -1],
+              "orientation": {"axis": [1, 0, 0], "angle": "-pi/2"}}],
+  "joints": [{"type": "revolute", "bodies": ["ground", "rod"], "point": [0, 0, 0], "axis": [1, 0, 0]}],
+  "drivers": [{"type": "distance", "name": "telescope", "bodies": ["ground", "rod"], "s_i": [0, 3, 0], "s_j": [0, 1, 0],
+               "length": "sqrt(13) + (5 - sqrt(13))*t"}]
+})";
+
+}  // namespace poinsot::test
