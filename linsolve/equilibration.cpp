@@ -10,7 +10,7 @@ constexpr int kSweeps = 3;  // the norms end within a factor of two of each othe
 
 // The power of two next to 1/√m. An empty row or column stays as it is: the factorization will find it.
 double factor(double m) {
-  if (!(m > 0)) return 1;
+  if (!(m > 0) || !std::isfinite(m)) return 1;
   int exponent = 0;
   std::frexp(m, &exponent);
   return std::ldexp(1.0, -(exponent >> 1));
@@ -19,33 +19,49 @@ double factor(double m) {
 }  // namespace
 
 void Equilibration::resize(int n) {
-  for (auto* v : {&row_, &col_, &row_max_, &col_max_}) v->assign(static_cast<std::size_t>(n), 1.0);
+  for (auto* v : {&row_, &col_, &row_max_, &col_max_, &row_min_, &col_min_})
+    v->assign(static_cast<std::size_t>(n), 1.0);
 }
 
 bool Equilibration::find(const CscLayout& layout, std::span<const double> values) {
   std::ranges::fill(row_, 1.0);
   std::ranges::fill(col_, 1.0);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    std::ranges::fill(row_max_, 0.0);
-    bool finite = true;
-    for (std::size_t j = 0; j < col_.size(); ++j) {
-      double column = 0;
-      for (int k = layout.start[j]; k < layout.start[j + 1]; ++k) {
-        const auto i = static_cast<std::size_t>(layout.row[static_cast<std::size_t>(k)]);
-        const double a = std::abs(values[static_cast<std::size_t>(k)]) * row_[i] * col_[j];
-        finite = finite && std::isfinite(a);
-        column = std::max(column, a);
-        row_max_[i] = std::max(row_max_[i], a);
-      }
-      col_max_[j] = column;
-    }
-    if (!finite) return false;
-    for (std::size_t i = 0; i < row_.size(); ++i) {
-      row_[i] *= factor(row_max_[i]);
-      col_[i] *= factor(col_max_[i]);
-    }
-  }
+  for (int k = 0; k < kSweeps; ++k)
+    if (!sweep(layout, values, false)) return false;
   return true;
+}
+
+void Equilibration::find_by_means(const CscLayout& layout, std::span<const double> values) {
+  std::ranges::fill(row_, 1.0);
+  std::ranges::fill(col_, 1.0);
+  for (int k = 0; k < kSweeps; ++k) (void)sweep(layout, values, true);
+  for (int k = 0; k < kSweeps; ++k) (void)sweep(layout, values, false);
+}
+
+bool Equilibration::sweep(const CscLayout& layout, std::span<const double> values, bool means) {
+  std::ranges::fill(row_max_, 0.0);
+  std::ranges::fill(row_min_, HUGE_VAL);
+  bool finite = true;
+  for (std::size_t j = 0; j < col_.size(); ++j) {
+    double largest = 0, smallest = HUGE_VAL;
+    for (int k = layout.start[j]; k < layout.start[j + 1]; ++k) {
+      const auto i = static_cast<std::size_t>(layout.row[static_cast<std::size_t>(k)]);
+      const double a = std::abs(values[static_cast<std::size_t>(k)]) * row_[i] * col_[j];
+      finite = finite && std::isfinite(a);
+      if (a == 0) continue;
+      largest = std::max(largest, a);
+      smallest = std::min(smallest, a);
+      row_max_[i] = std::max(row_max_[i], a);
+      row_min_[i] = std::min(row_min_[i], a);
+    }
+    col_max_[j] = largest;
+    col_min_[j] = smallest;
+  }
+  for (std::size_t i = 0; i < row_.size(); ++i) {
+    row_[i] *= factor(means ? std::sqrt(row_max_[i]) * std::sqrt(row_min_[i]) : row_max_[i]);
+    col_[i] *= factor(means ? std::sqrt(col_max_[i]) * std::sqrt(col_min_[i]) : col_max_[i]);
+  }
+  return finite;
 }
 
 double Equilibration::scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled) const {

@@ -19,6 +19,10 @@ class Equilibration {
 
   // Finds the factors; false where an entry is not finite.
   bool find(const CscLayout& layout, std::span<const double> values);
+  // Factors from the geometric mean of the largest and the smallest entry: brings out blocks that find() leaves tiny
+  // beside others, as M beside G over h², and exaggerates entries that are nothing but rounding. The entries are
+  // finite.
+  void find_by_means(const CscLayout& layout, std::span<const double> values);
   // scaled ← D_r A D_c in the same layout, with factors that may come from other values. The magnitude of its largest
   // entry; NaN where an entry is not finite.
   double scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled) const;
@@ -32,7 +36,9 @@ class Equilibration {
   std::span<const double> col() const { return col_; }
 
  private:
-  std::vector<double> row_, col_, row_max_, col_max_;
+  bool sweep(const CscLayout& layout, std::span<const double> values, bool means);
+
+  std::vector<double> row_, col_, row_max_, col_max_, row_min_, col_min_;
 };
 
 }  // namespace poinsot

@@ -34,7 +34,7 @@ struct LinearStatistics {
   std::int64_t analyses = 0, factorizations = 0, refactorizations = 0,
                solves = 0;  // refactorizations: with kept pivots
   std::int64_t nonzeros = 0, factor_nonzeros = 0;
-  double reciprocal_condition = 0;  // estimate for the last factorization, of the scaled matrix; 0 where unknown
+  double reciprocal_condition = 0;  // whatever the scaling (linsolve/condition.h), when last examined; 0 where unknown
 };
 
 class LinearSolver {

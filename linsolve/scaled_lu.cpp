@@ -51,40 +51,47 @@ LinearStatus ScaledLu::factor_fresh() {
       return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
     equilibration_.scale(layout_, values_, scaled_);
   }
-  ++statistics_.factorizations;
-  if (LinearStatus status = do_fresh(); !status.ok()) return status;
-  double smallest = smallest_pivot();
-  if (examined_ && smallest >= doubtful_) return {};
-  if (smallest == 0) return singular(suspect());
+  if (LinearStatus status = factor_scaled(); !status.ok()) return status;
+  if (examined_ && smallest_ >= doubtful_) return {};
 
-  const auto solve = [this](std::span<double> x) { do_substitute(x); };
-  double condition = condition_.estimate(layout_, scaled_, solve);
-  int open = condition_.suspect();
-  if (smallest < kRounding) open = suspect();
-  if (smallest < kDoubtfulPivot && std::isfinite(condition)) {
+  int open = suspect();
+  double condition = estimate();
+  if (!std::isfinite(condition)) {
+    // Rounding swallows what is 1e-17 of its neighbours; in another scaling it may not.
+    equilibration_.find_by_means(layout_, values_);
+    equilibration_.scale(layout_, values_, scaled_);
+    if (LinearStatus status = factor_scaled(); !status.ok()) return status;
+    condition = estimate();
+  }
+  if (open < 0) open = condition_.suspect();
+  if (smallest_ < kDoubtfulPivot && std::isfinite(condition)) {
     // The pivots may have been chosen in a bad scaling; now a better one is known.
     equilibration_.improve(condition_.rows(), condition_.columns());
     equilibration_.scale(layout_, values_, scaled_);
-    ++statistics_.factorizations;
-    if (LinearStatus status = do_fresh(); !status.ok()) return status;
-    smallest = smallest_pivot();
-    condition = smallest > 0 ? condition_.estimate(layout_, scaled_, solve) : HUGE_VAL;
+    if (LinearStatus status = factor_scaled(); !status.ok()) return status;
+    condition = estimate();
   }
   statistics_.reciprocal_condition = 1 / condition;
   if (!(condition < kSingularCondition)) return singular(open);
   examined_ = true;
-  doubtful_ = std::clamp(smallest / 10, kRounding, kDoubtfulPivot);
+  doubtful_ = std::clamp(smallest_ / 10, kRounding, kDoubtfulPivot);
   return {};
 }
 
-// 0 where one is not even a number: an earlier one was zero.
-double ScaledLu::smallest_pivot() {
-  double smallest = HUGE_VAL;
+LinearStatus ScaledLu::factor_scaled() {
+  ++statistics_.factorizations;
+  if (LinearStatus status = do_fresh(); !status.ok()) return status;
+  smallest_ = HUGE_VAL;
   for (int k = 0; k < layout_.n; ++k) {
     const double size = std::abs(pivot(k));
-    if (!(size >= smallest)) smallest = std::isnan(size) ? 0 : size;
+    if (!(size >= smallest_)) smallest_ = std::isnan(size) ? 0 : size;  // not a number: an earlier pivot was zero
   }
-  return smallest;
+  return {};
+}
+
+double ScaledLu::estimate() {
+  if (smallest_ == 0) return HUGE_VAL;
+  return condition_.estimate(layout_, scaled_, [this](std::span<double> x) { do_substitute(x); });
 }
 
 // The column of the first pivot that is nothing but rounding; those after it were made with its inverse.

@@ -40,7 +40,8 @@ class ScaledLu : public LinearSolver {
   LinearStatus do_solve(std::span<double> b) final;
 
   LinearStatus factor_fresh();
-  double smallest_pivot();
+  LinearStatus factor_scaled();
+  double estimate();
   int suspect();
 
   CscLayout layout_;
@@ -51,6 +52,7 @@ class ScaledLu : public LinearSolver {
   bool pivots_known_ = false;
   bool examined_ = false;  // the condition was found good before; now smaller pivots than these raise doubts:
   double doubtful_ = 0;
+  double smallest_ = 0;  // pivot of the last fresh factorization
 };
 
 }  // namespace poinsot
