@@ -54,8 +54,6 @@ class Kinematics final : public Integrator {
       if (problem.has_discrete_state() && problem.accept(t, span(q), span(v), span(a))) {
         problem.set_position(t, span(q));
         problem.set_velocity(span(v));
-        status = system.refresh(t, {}, {}, {}, {});  // G has changed with the coordinates
-        if (!status.ok()) break;
       }
       if (grid.sampled(n)) {
         clock.lap(Phase::other);
@@ -81,7 +79,7 @@ class Kinematics final : public Integrator {
     for (int k = 0; k < settings.max_iterations; ++k) {
       problem.set_position(t, span(q));
       problem.position_residual(span(delta));
-      if (newton || !system.ready()) {
+      if (newton || k == 0) {
         if (Status status = system.refresh(t, {}, {}, {}, {}); !status.ok()) return status;
       }
       delta = -delta;

@@ -22,8 +22,7 @@ Status StepSystem::refresh(double t, const StepScale& scale, std::span<const dou
   const LinearStatus status = solver_.factor();
   ++statistics_.factorizations;
   clock_.lap(Phase::factor);
-  ready_ = status.ok();
-  return ready_ ? Status{} : explain(problem_, t, status);
+  return status.ok() ? Status{} : explain(problem_, t, status);
 }
 
 Status StepSystem::solve(double t, std::span<double> b) {

@@ -20,7 +20,6 @@ class StepSystem {
                  std::span<const double> lambda);
   // b ← A⁻¹ b.
   Status solve(double t, std::span<double> b);
-  bool ready() const { return ready_; }
 
  private:
   Problem& problem_;
@@ -28,7 +27,6 @@ class StepSystem {
   MatrixKind kind_;
   Statistics& statistics_;
   PhaseClock& clock_;
-  bool ready_ = false;
 };
 
 // What a linear solver's failure means for the mechanism: which body or constraint, what to try.
