@@ -12,6 +12,7 @@
 
 #include "core/input_error.h"
 #include "core/model.h"
+#include "tests/scale.h"
 
 namespace poinsot {
 namespace {
@@ -81,7 +82,7 @@ TEST(SceneReader, answers_to_text_that_is_not_a_document) {
 }
 
 TEST(SceneReader, survives_documents_nested_a_million_deep) {
-  const std::size_t depth = 1'000'000;
+  const auto depth = static_cast<std::size_t>(scaled(1'000'000));
   EXPECT_EQ(error_of(std::string(depth, '[') + std::string(depth, ']')),
             "case.json: /: found an array of 1 value, expected a scene as an object");
   EXPECT_NE(error_of(std::string(depth, '[')), "");
@@ -186,7 +187,7 @@ TEST(SceneReader, projects_only_what_is_off) {
 
 // Nothing grows faster than the scene: 100 000 bodies and joints take seconds, quadratic work would take minutes.
 TEST(SceneReader, reads_a_long_chain) {
-  const int n = 100'000;
+  const int n = scaled(100'000);
   std::string bodies, joints;
   for (int k = 0; k < n; ++k) {
     bodies += fmt::format(R"({}{{"name":"rod{}","mass":1,"inertia":[1e-3,"1/12","1/12"],"position":[0,{},0]}})",
@@ -198,8 +199,8 @@ TEST(SceneReader, reads_a_long_chain) {
   const auto start = std::chrono::steady_clock::now();
   const Model model = compile(parse_scene(text, "chain.json"));
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  EXPECT_EQ(model.rows.size(), 5U * n);
-  EXPECT_EQ(model.groups.back().name, "revolute100000");
+  EXPECT_EQ(model.rows.size(), 5 * static_cast<std::size_t>(n));
+  EXPECT_EQ(model.groups.back().name, fmt::format("revolute{}", n));
   EXPECT_LT(seconds.count(), 30) << "generous: it takes one second when optimized";
 }
 
