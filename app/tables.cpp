@@ -107,7 +107,8 @@ int tables(const Options& options) {
     Settings ignored;
     set_setting(*find_setting("linear_solver"), options.linear_solver, ignored);  // its message names all there are
   }
-  if (options.repetitions < 1) throw InputError("--repetitions: expected a whole number, at least 1");
+  if (options.repetitions < 1)
+    throw InputError(fmt::format("--repetitions: found {}, expected a whole number, at least 1", options.repetitions));
   const fs::path models = models_directory(options.models);
   std::vector<Scene> scenes;
   for (const Mechanism& mechanism : kMechanisms)
