@@ -3,7 +3,7 @@
 A block marked `sh` is run as it stands by a shell that stops at the first failure, in one temporary directory for all
 blocks, with the program on the PATH and the models where the README says. A block marked `bash` takes long and has its
 own place in the tests; of it, that the scripts and presets it names exist. A block marked `cmake` or `cpp` must stand
-in the example project, which is built and run by a test of its own.
+in the example project, which is built and run by a test of its own. And every option of `poinsot run` is spoken of.
 """
 
 import json
@@ -40,6 +40,11 @@ with tempfile.TemporaryDirectory() as directory:
                 problems.append(f"not in tests/example_project:\n{block}")
         elif language != "text":
             problems.append(f"a block marked {language}: nothing exercises it")
+
+options = subprocess.run(["poinsot", "run", "--help"], env=environment, capture_output=True, text=True, check=True)
+for option in set(re.findall(r"--([a-z-]+)", options.stdout)) - {"help"}:
+    if f"`--{option}" not in text and f"`{option.replace('-', '_')}`" not in text:
+        problems.append(f"nothing about --{option}")
 
 ran = [language for language, _ in blocks].count("sh")
 if ran == 0 or text.count("\n```") != 2 * len(blocks):
