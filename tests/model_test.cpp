@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <map>
 #include <random>
 
@@ -80,6 +81,26 @@ Scene two_bodies(Random& random) {
   return scene;
 }
 
+// Of the rows' derivatives with respect to the motion of one body from the initial pose, by central differences.
+Eigen::Index rank(const Model& model, std::size_t body) {
+  const std::vector<Pose> poses = initial_poses(model);
+  Eigen::MatrixXd gradient(static_cast<Eigen::Index>(model.rows.size()), 6);
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    const auto at = [&](const Row& row, double step) {
+      std::vector<Pose> moved = poses;
+      if (k < 3) moved[body].r[k] += step;
+      if (k >= 3) moved[body].A *= turn(step, Vector3::Unit(k - 3));
+      return residual(row, moved, 0);
+    };
+    constexpr double kStep = 1e-5;
+    for (Eigen::Index r = 0; r < gradient.rows(); ++r) {
+      const Row& row = model.rows[static_cast<std::size_t>(r)];
+      gradient(r, k) = (at(row, kStep) - at(row, -kStep)) / (2 * kStep);
+    }
+  }
+  return Eigen::FullPivLU<Eigen::MatrixXd>(gradient).setThreshold(1e-4).rank();
+}
+
 constexpr std::pair<int, int> kPairs[] = {{kGround, 0}, {0, kGround}, {0, 1}, {1, 0}};
 
 struct JointCase {
@@ -125,6 +146,8 @@ TEST(Model, expands_joints_by_table_1) {
       for (const Row& row : model.rows) EXPECT_NEAR(residual(row, poses, 0), 0, 1e-14) << where;
       const Pose on_j = j == kGround ? Pose{} : poses[static_cast<std::size_t>(j)];
       EXPECT_LT((on_j.r + on_j.A * model.groups[0].point_j - joint.point).norm(), 1e-14) << where;
+
+      EXPECT_EQ(rank(model, static_cast<std::size_t>(i == kGround ? j : i)), model.groups[0].rows) << where;
 
       // The motions it allows: a body turns about, and slides along, the axis.
       Pose& moved = poses[static_cast<std::size_t>(i == kGround ? j : i)];
