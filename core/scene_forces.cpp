@@ -1,6 +1,4 @@
 // Applied forces of a scene file. For each type: the keys it has, then what they hold.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <tuple>
 
