@@ -1,0 +1,58 @@
+// Problems seen densely: any formulation of a model, its matrices without a linear solver, vectors as Eigen's.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "formulations/problem.h"
+#include "formulations/registry.h"
+
+namespace poinsot::test {
+
+using VectorX = Eigen::VectorXd;
+using MatrixX = Eigen::MatrixXd;
+
+inline std::span<const double> view(const VectorX& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+inline std::span<double> view(VectorX& v) {
+  return {v.data(), static_cast<std::size_t>(v.size())};
+}
+
+inline std::unique_ptr<Problem> make_problem(std::string_view formulation, const Model& model) {
+  return find_formulation(formulation)->make(std::make_shared<const Model>(model), {});
+}
+
+// Assembled as a linear solver would have it, in a dense array of which everything outside the pattern stays zero.
+inline MatrixX assemble(Problem& problem, MatrixKind kind, const StepScale& scale, const VectorX& dq, const VectorX& a,
+                        const VectorX& lambda) {
+  const Pattern pattern = problem.pattern(kind);
+  MatrixX matrix(pattern.n, pattern.n);
+  std::vector<int> slots;
+  for (const Block& block : pattern.blocks) {
+    for (int c = 0; c < block.cols; ++c) slots.push_back((block.col + c) * pattern.n + block.row);
+  }
+  problem.assemble(kind, scale, view(dq), view(a), view(lambda), slots,
+                   {matrix.data(), static_cast<std::size_t>(matrix.size())});
+  return matrix;
+}
+
+inline MatrixX gradient(Problem& problem) {
+  return assemble(problem, MatrixKind::kinematic, {}, VectorX(), VectorX(), VectorX())
+      .topLeftCorner(problem.nc(), problem.nv());
+}
+
+// |a − b| relative to the larger of both and of `scale`, in the largest component.
+inline double difference(const VectorX& a, const VectorX& b, double scale) {
+  const double size = std::max({a.lpNorm<Eigen::Infinity>(), b.lpNorm<Eigen::Infinity>(), scale});
+  const double error = (a - b).lpNorm<Eigen::Infinity>();
+  return std::isfinite(error) ? error / size : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace poinsot::test
