@@ -1,0 +1,76 @@
+#include "core/scene_writer.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <string_view>
+
+#include "core/check.h"
+
+namespace poinsot {
+namespace {
+
+std::string vector(const Vector3& v) {
+  return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
+}
+
+std::string_view type_name(JointType type) {
+  switch (type) {
+    case JointType::revolute:
+      return "revolute";
+    case JointType::spherical:
+      return "spherical";
+    case JointType::universal:
+      return "universal";
+    case JointType::cylindrical:
+      return "cylindrical";
+    case JointType::translational:
+      return "translational";
+    case JointType::fixed:
+      break;
+  }
+  return "fixed";
+}
+
+std::string body(const Body& b) {
+  check(b.inertia.isDiagonal(0), "generated bodies have principal axes");
+  std::string text = fmt::format(
+      "{{\"name\": \"{}\", \"mass\": {}, \"inertia\": {}, \"position\": {}, \"orientation\": {{\"matrix\": [", b.name,
+      b.mass, vector(b.inertia.diagonal()), vector(b.position));
+  for (int row = 0; row < 3; ++row) text += (row ? ", " : "") + vector(b.orientation.row(row));
+  text += "]}";
+  if (!b.velocity.isZero(0)) text += fmt::format(", \"velocity\": {}", vector(b.velocity));
+  if (!b.angular_velocity.isZero(0)) text += fmt::format(", \"angular_velocity\": {}", vector(b.angular_velocity));
+  return text + "}";
+}
+
+std::string joint(const Scene& scene, const Joint& j) {
+  const auto name = [&](int b) -> std::string_view {
+    return b == kGround ? "ground" : std::string_view(scene.bodies[static_cast<std::size_t>(b)].name);
+  };
+  std::string text = fmt::format(R"({{"type": "{}", "name": "{}", "bodies": ["{}", "{}"], "point": {})",
+                                 type_name(j.type), j.name, name(j.i), name(j.j), vector(j.point));
+  if (!j.axis.isZero(0)) text += fmt::format(", \"axis\": {}", vector(j.axis));
+  if (!j.axis_i.isZero(0)) text += fmt::format(", \"axis_i\": {}, \"axis_j\": {}", vector(j.axis_i), vector(j.axis_j));
+  return text + "}";
+}
+
+}  // namespace
+
+std::string to_json(const Scene& scene) {
+  check(scene.constraints.empty() && scene.drivers.empty() && scene.forces.empty(),
+        "generated scenes have joints only");
+  std::string text = fmt::format(
+      "{{\n  \"scene\": 1,\n  \"name\": \"{}\",\n  \"about\": \"{}\",\n  \"gravity\": {},\n  \"bodies\": [\n",
+      scene.name, scene.about, vector(scene.gravity));
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    text += fmt::format("{}    {}", k ? ",\n" : "", body(scene.bodies[k]));
+  }
+  text += "\n  ],\n  \"joints\": [\n";
+  for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+    text += fmt::format("{}    {}", k ? ",\n" : "", joint(scene, scene.joints[k]));
+  }
+  return text + "\n  ]\n}\n";
+}
+
+}  // namespace poinsot
