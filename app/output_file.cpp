@@ -5,8 +5,11 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <climits>
+#include <csignal>
 #include <cstring>
 
 #include "core/input_error.h"
@@ -16,6 +19,37 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kBuffer = 1 << 20;
+
+// Temporary files that are being written. A run that is interrupted (Ctrl-C) removes them; a signal handler may neither
+// allocate nor lock, so their paths lie here.
+struct Unfinished {
+  std::atomic<bool> active = false;
+  char path[PATH_MAX] = {};
+};
+std::array<Unfinished, 32> unfinished;
+
+extern "C" void remove_unfinished(int signal) {
+  for (const Unfinished& file : unfinished)
+    if (file.active) unlink(file.path);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void remember(const fs::path& file) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (std::signal(signal, remove_unfinished) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup stays in force
+  for (Unfinished& free : unfinished) {
+    if (free.active || file.native().size() >= sizeof free.path) continue;
+    std::strcpy(free.path, file.c_str());
+    free.active = true;
+    return;
+  }
+}
+
+void forget(const fs::path& file) {
+  for (Unfinished& one : unfinished)
+    if (one.active && file == one.path) one.active = false;
+}
 
 [[noreturn]] void refuse(const fs::path& target, std::string_view reason) {
   throw InputError(fmt::format("{}: cannot be written: {}", target.string(), reason));
@@ -40,6 +74,7 @@ OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
     temporary_ = real;
     temporary_ += fmt::format(".{}.partial", getpid());
     descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor_ >= 0) remember(temporary_);
   }
   if (descriptor_ < 0) refuse(target_, std::strerror(errno));
   buffer_.reserve(kBuffer + 4096);
@@ -48,7 +83,9 @@ OutputFile::OutputFile(fs::path target) : target_(std::move(target)) {
 OutputFile::~OutputFile() {
   if (descriptor_ < 0) return;
   close(descriptor_);
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  unlink(temporary_.c_str());
+  forget(temporary_);
 }
 
 void OutputFile::write(std::string_view text) {
@@ -86,8 +123,10 @@ void OutputFile::commit() {
   if (closed != 0 || std::rename(temporary_.c_str(), fs::weakly_canonical(target_).c_str()) != 0) {
     const int error = errno;
     unlink(temporary_.c_str());
+    forget(temporary_);
     refuse(target_, std::strerror(error));
   }
+  forget(temporary_);
 }
 
 std::string csv_field(std::string_view text) {

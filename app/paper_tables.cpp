@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <tuple>
 
 #include "core/model.h"
 #include "formulations/registry.h"
@@ -57,6 +59,20 @@ double speed_up(std::span<const Cell> cells, const Cell& cell) {
   const Cell* baseline = find(cells, cell.settings.analysis, *cell.mechanism, kBaseline, cell.settings.jacobian);
   if (!baseline || baseline->runs.empty() || cell.runs.empty()) return 0;
   return us_per_step(*baseline, total).median / us_per_step(cell, total).median;
+}
+
+// Which linear solver needs the least time, for how many of the systems (mechanism, formulation, jacobian); returns the
+// number of systems.
+int count_fastest(std::span<const Cell> cells, std::map<std::string, int>& wins) {
+  using System = std::tuple<std::string_view, std::string, std::string>;
+  std::map<System, const Cell*> fastest;
+  for (const Cell& cell : cells) {
+    if (cell.runs.empty()) continue;
+    const Cell*& best = fastest[{cell.mechanism->file, cell.settings.formulation, cell.settings.jacobian}];
+    if (!best || us_per_step(cell, total).median < us_per_step(*best, total).median) best = &cell;
+  }
+  for (const auto& [system, cell] : fastest) ++wins[cell->settings.linear_solver];
+  return static_cast<int>(fastest.size());
 }
 
 // One row for every mechanism and formulation that has cells; `fill` adds the columns after the first two.
@@ -298,6 +314,11 @@ Table linear_solvers_table(std::span<const Cell> cells) {
     for (const Phase phase : {assembly, factor, solve, rest}) row.push_back(figure(us_per_step(cell, phase).median, 3));
     table.rows.push_back(std::move(row));
   }
+  std::map<std::string, int> wins;
+  const int systems = count_fastest(cells, wins);
+  std::vector<std::string> said;
+  for (const auto& [solver, count] : wins) said.push_back(fmt::format("{} in {}", solver, count));
+  table.text += fmt::format(" The fastest of the {} comparisons: {}.", systems, fmt::join(said, ", "));
   return table;
 }
 

@@ -166,6 +166,17 @@ TEST_F(Run, WhatWasComputedBeforeANumericalFailureIsKept) {
   }
 }
 
+TEST_F(Run, AnInterruptedRunLeavesNothing) {
+  const pid_t child = start({"run", "pendulum.json", "--end", "1e6", "--every", "1", "--out", "a.csv"});
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (files().size() < 3 && std::chrono::steady_clock::now() < deadline) usleep(1000);  // a.csv and a.json begin
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+  EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
+}
+
 // Reads what the program writes to a terminal until `part` comes up, or for a minute.
 std::string watch_terminal(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
                            const char* part) {
