@@ -56,6 +56,55 @@ void expect_same(const BodyState& x, const BodyState& y, double tolerance) {
   EXPECT_LT((x.wd - y.wd).norm(), tolerance * (1 + y.wd.norm()));
 }
 
+// What a row asks, written out: Φ, and Ψ v − f of a velocity row.
+double asked(const Row& row, std::span<const BodyState> states, double t) {
+  const auto state = [&](int body) { return body == kGround ? BodyState() : states[static_cast<std::size_t>(body)]; };
+  const BodyState i = state(row.i), j = state(row.j);
+  const double value = row.f.at(t).f, f = row.squared ? value * value : value;
+  const Vector3 d = j.r + j.A * row.s_j - i.r - i.A * row.s_i;
+  const Vector3 d_dot = j.rd + j.A * j.w.cross(row.s_j) - i.rd - i.A * i.w.cross(row.s_i);
+  switch (row.type) {
+    case RowType::DP1:
+      return (i.A * row.a_i).dot(j.A * row.a_j) - f;
+    case RowType::DP2:
+      return (i.A * row.a_i).dot(d) - f;
+    case RowType::D:
+      return d.squaredNorm() - f;
+    case RowType::CD:
+      return row.c.dot(d) - f;
+    case RowType::angle:
+      return (i.A * (std::cos(f) * row.b_i - std::sin(f) * row.a_i)).dot(j.A * row.a_j);
+    case RowType::pfaffian:
+      return (j.A * row.a_j).dot(d_dot) - f;
+  }
+  return 0;
+}
+
+TEST(Formulations, RowsAreWhatTheSceneSays) {
+  for (int seed = 0; seed < scaled(50); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(static_cast<unsigned>(seed));
+    const Model model = random_model(random, 3);
+    const std::vector<BodyState> states = random_states(random, 3);
+    const double t = random.uniform(-1, 1);
+    for (const FormulationEntry& entry : formulations()) {
+      Standing at(entry.name, model, states, t);
+      VectorX Phi(at.problem->nc()), step(at.problem->nv() + at.problem->nc());
+      at.problem->position_residual(view(Phi));
+      const VectorX a = VectorX::Zero(at.problem->nv()), lambda = VectorX::Zero(at.problem->nc());
+      at.problem->step_residual({1, 0.1, 0.01}, view(a), view(lambda), view(step));
+      for (std::size_t k = 0; k < model.rows.size(); ++k) {
+        const bool velocity = model.rows[k].type == RowType::pfaffian;
+        const double expected = asked(model.rows[k], states, t), scale = 1e-13 * (1 + std::abs(expected));
+        const auto row = static_cast<Eigen::Index>(k);
+        EXPECT_NEAR(Phi[row], velocity ? 0 : expected, scale) << entry.name << ", " << model.groups[k].name;
+        EXPECT_NEAR(step[at.problem->nv() + row], expected / (velocity ? 0.1 : 0.01), 100 * scale)
+            << entry.name << ", " << model.groups[k].name;
+      }
+    }
+  }
+}
+
 // One row of each kind between the ground and a free body or two free bodies, and every force. Constraints are
 // violated, velocities too: the linear system does not mind.
 Model solvable_model(Random& random) {
