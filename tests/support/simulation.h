@@ -34,7 +34,7 @@ struct Snapshot {
   std::vector<double> lambda;
 };
 
-struct Run {
+struct Recorded {
   Outcome outcome;
   std::vector<Snapshot> samples;
 };
@@ -46,15 +46,15 @@ inline Snapshot snapshot(const Sample& sample) {
   return s;
 }
 
-inline Run run(const Scene& scene, const Settings& settings) {
-  Run r;
+inline Recorded run(const Scene& scene, const Settings& settings) {
+  Recorded r;
   r.outcome = simulate(scene, settings, [&](const Sample& sample) { r.samples.push_back(snapshot(sample)); });
   return r;
 }
 
 // A run that has to come to its end.
 inline std::vector<Snapshot> motion(const Scene& scene, const Settings& settings) {
-  Run r = run(scene, settings);
+  Recorded r = run(scene, settings);
   EXPECT_TRUE(r.outcome.status.ok()) << settings.formulation << ' ' << settings.jacobian << ": "
                                      << r.outcome.status.message;
   return std::move(r.samples);
