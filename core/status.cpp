@@ -16,6 +16,8 @@ std::string_view name(Failure failure) {
       return "not_finite";
     case Failure::inconsistent_state:
       return "inconsistent_state";
+    case Failure::step_size_too_small:
+      return "step_size_too_small";
   }
   return "unknown";
 }

@@ -18,7 +18,8 @@ namespace poinsot {
 
 // The contract's run statistics. Seconds: total is the time-stepping loop without reading and writing.
 struct Statistics {
-  std::int64_t steps = 0, newton_iterations = 0, jacobian_evaluations = 0, factorizations = 0, solves = 0;
+  std::int64_t steps = 0, rejected_steps = 0;  // rejected: by error control, done again with a smaller step
+  std::int64_t newton_iterations = 0, jacobian_evaluations = 0, factorizations = 0, solves = 0;
   struct {
     double total = 0, assembly = 0, factor = 0, solve = 0, other = 0;
   } seconds;

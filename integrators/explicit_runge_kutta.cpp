@@ -1,0 +1,97 @@
+#include "integrators/explicit_runge_kutta.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "integrators/explicit_stepper.h"
+#include "integrators/observe.h"
+#include "integrators/sample_times.h"
+
+namespace poinsot {
+namespace {
+
+class ExplicitRungeKutta final : public Integrator {
+ public:
+  explicit ExplicitRungeKutta(const RungeKuttaPair& pair) : pair_(pair) {}
+
+  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+             Statistics& statistics) override {
+    PhaseClock clock;
+    ExplicitStepper stepper(pair_, problem, solver, settings.rtol, settings.atol, statistics, clock);
+    if (Status status = stepper.prepare(); !status.ok()) return status;
+    const auto give_out = [&](const ExplicitStepper::Point& at) {
+      clock.lap(Phase::other);
+      sample(observe, problem, at.t, stepper.span(at.q), stepper.span(at.v), stepper.a(at), stepper.lambda(at),
+             statistics);
+      clock.skip();
+    };
+    stepper.start(0, state);
+    clock.start();
+    give_out(stepper.state());
+    Status status = integrate(stepper, settings, give_out, statistics);
+    finish(clock, statistics);
+
+    const ExplicitStepper::Point& at = stepper.state();
+    state.q.assign(at.q.begin(), at.q.end());
+    state.v.assign(at.v.begin(), at.v.end());
+    std::ranges::copy(stepper.a(at), state.a.begin());
+    std::ranges::copy(stepper.lambda(at), state.lambda.begin());
+    return status;
+  }
+
+ private:
+  template <class GiveOut>
+  Status integrate(ExplicitStepper& stepper, const Settings& settings, const GiveOut& give_out,
+                   Statistics& statistics) const {
+    const double end = settings.end, smallest = 16 * std::numeric_limits<double>::epsilon() * end;
+    SampleTimes times(settings.every, end);
+    StepController controller(pair_.rule);
+    double h = 0;
+    if (Status status = stepper.first_step(end, h); !status.ok()) h = 1e-6 * end;  // the steps will tell why
+    while (stepper.state().t < end) {
+      const double t = stepper.state().t;
+      const double to = t + 1.01 * h >= end ? end : t + h;
+      h = to - t;
+      double error = 0;
+      Status status = stepper.attempt(to, error);
+      if (status.ok() && error <= 1) status = stepper.complete();
+      if (status.ok() && error <= 1) {
+        ++statistics.steps;
+        h = controller.accepted(h, error);
+        for (; settings.every > 0 && times.next() < to; times.pass()) {
+          if (status = stepper.interpolate(times.next()); !status.ok()) return status;
+          give_out(stepper.interpolated());
+        }
+        stepper.settle();
+        if (settings.every == 0 || times.next() == to) {
+          times.pass();
+          give_out(stepper.state());
+        }
+      } else {
+        ++statistics.rejected_steps;
+        h = status.ok() && std::isfinite(error) ? controller.rejected(h, error) : controller.failed(h);
+        if (h < smallest) return too_small(t, h, status);
+      }
+    }
+    return {};
+  }
+
+  static Status too_small(double t, double h, const Status& cause) {
+    return {Failure::step_size_too_small, t,
+            fmt::format("at t = {:.9g} s the step had to become {:.3g} s, too small to advance the time: the motion "
+                        "jumps or grows without bound here, or the tolerances ask for more than the arithmetic has{}",
+                        t, h, cause.ok() ? "" : "; the last attempt: " + cause.message)};
+  }
+
+  const RungeKuttaPair& pair_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_explicit_runge_kutta(const RungeKuttaPair& pair) {
+  return std::make_unique<ExplicitRungeKutta>(pair);
+}
+
+}  // namespace poinsot

@@ -1,0 +1,89 @@
+// One step of an explicit Runge–Kutta pair after the other, on the acceleration level, with projection.
+//
+// State of a step: y = (δq, v), position q = q_n ⊞ δq (Runge–Kutta–Munthe-Kaas: in rA δq holds rotation vectors in the
+// body frame, in rp and reps ⊞ is an addition), with
+//
+//   δq' = T(δq)⁻¹ v,   v' = a,   [M Gᵀ; G 0] [a; λ] = [Q; γ]:   one assembly, factorization and solve a stage
+//
+// f(y_{n+1}) is the first stage of the next step. Its factorization serves the projection onto Φ = 0 and G v = ν as
+// well (mass-orthogonal, simplified Newton: the violation has the size e of the local error, so one correction leaves
+// e²), and one step of iterative refinement makes a and λ belong to the projected state, again up to e². Neither costs
+// a stage or the order.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "integrators/integrator.h"
+#include "integrators/runge_kutta_pair.h"
+#include "integrators/step_system.h"
+
+namespace poinsot {
+
+class ExplicitStepper {
+ public:
+  using Vector = Eigen::VectorXd;
+  struct Point {
+    double t = 0;
+    Vector q, v, z;  // z = (a, λ)
+  };
+
+  ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, LinearSolver& solver, double rtol, double atol,
+                  Statistics& statistics, PhaseClock& clock);
+
+  Status prepare() { return system_.prepare(); }
+  // The state is consistent at t. The problem stands there afterwards.
+  void start(double t, const State& state);
+
+  // Hairer's automatic choice; one evaluation.
+  Status first_step(double end, double& h);
+  // Stages and y_{n+1} of a step to time `to`; its error, 1 being the tolerance. The state stays what it is.
+  Status attempt(double to, double& error);
+  // Makes the attempted step the state: f(y_{n+1}), projection. Fails where the result cannot be projected; then the
+  // state is still the old one.
+  Status complete();
+  // The motion within the completed step at time t, consistent, in interpolated(). The problem stands there.
+  Status interpolate(double t);
+  // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
+  void settle();
+
+  const Point& state() const { return state_; }
+  const Point& interpolated() const { return sample_; }
+  std::span<const double> a(const Point& at) const { return span(at.z).first(nv_); }
+  std::span<const double> lambda(const Point& at) const { return span(at.z).subspan(nv_); }
+  static std::span<const double> span(const Vector& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
+
+ private:
+  static std::span<double> span(Vector& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
+  std::span<double> rates() { return span(rhs_).first(nv_); }
+  std::span<double> rows() { return span(rhs_).subspan(nv_); }
+
+  // y_n + h Σ weight k
+  void advance(double h, Terms terms, Vector& y) const;
+  double norm(Terms terms);
+  void stand(double t, const Vector& q, const Vector& v);
+  Status evaluate(Point& at, const Vector& y, Eigen::Index k);
+  Status accelerations(Point& at);
+  Status project(Point& at, bool& moved);
+  Status refine(Point& at);
+  Status prepare_dense();
+
+  const RungeKuttaPair& pair_;
+  Problem& problem_;
+  StepSystem system_;
+  const double rtol_, atol_;
+  const std::size_t nv_, nc_;
+  const Eigen::Index last_;  // index of k_{s+1}
+  bool error_needs_last_;
+
+  Point state_, next_, sample_;
+  Vector q_n_;      // where the step began; y_n_ = (0, v_n)
+  Vector y_n_, y_;  // 2 nv
+  Eigen::MatrixXd k_, r_;
+  double h_ = 0, t_n_ = 0;
+  bool dense_ready_ = false, elsewhere_ = false;
+  Vector sizes_, sizes_next_, scale_, combined_, rhs_, zeros_, rows_, q_moved_;
+};
+
+}  // namespace poinsot

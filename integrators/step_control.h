@@ -1,0 +1,53 @@
+// Error control of one-step methods: sizes, norms, the first step, the next step.
+//
+//   |x| = sqrt(mean (x_k / s_k)²),   s_k = atol + rtol size_k
+//
+// size_k is, body by body, that of the vector k belongs to: |r| for a position, 1 for an orientation (whose variation
+// is an angle, or of its size), |ṙ| and |ẋ| for velocities. Vectors rather than components: steps do not depend on how
+// the global axes lie, and a component that passes through zero does not make the tolerance absolute.
+//
+// Next step (Hairer, Nørsett, Wanner, "Solving Ordinary Differential Equations I", sec. II.4, and IV.2 for the PI
+// part):
+//   h_new = h · safety · err^(−α) · err_before^β, within [shrink, grow] h; after a rejection no growth.
+#pragma once
+
+#include <span>
+
+#include "formulations/problem.h"
+
+namespace poinsot {
+
+// Sizes of a state's 2 nv components, position variations first.
+void component_sizes(const Problem& problem, std::span<const double> q, std::span<const double> v,
+                     std::span<double> sizes);
+
+// sqrt(mean (x/s)²)
+double error_norm(std::span<const double> x, std::span<const double> scale);
+
+struct StepRule {
+  double safety;
+  double alpha, beta;  // exponents of this error and of the one before
+  double shrink, grow;
+};
+
+class StepController {
+ public:
+  explicit StepController(const StepRule& rule) : rule_(rule) {}
+
+  // The step to try after one of length h with this error (1 is the tolerance): accepted() or rejected().
+  double accepted(double h, double error);
+  double rejected(double h, double error);
+  // The step could not be evaluated at all.
+  double failed(double h);
+
+ private:
+  StepRule rule_;
+  double before_ = 1e-4;
+  bool after_rejection_ = false;
+};
+
+// First step, from |y|, |f| and |f(after an Euler step h0) − f|/h0, the second derivative; h0 by first_trial().
+double first_trial(double y, double f, double end);
+double first_step(double h0, double f, double second, int order, double end);
+
+}  // namespace poinsot
