@@ -14,8 +14,8 @@ import subprocess
 import sys
 import tempfile
 
-source = pathlib.Path(sys.argv[1])
-environment = dict(os.environ, PATH=sys.argv[2] + os.pathsep + os.environ["PATH"])
+source = pathlib.Path(sys.argv[1]).resolve()
+environment = dict(os.environ, PATH=os.path.abspath(sys.argv[2]) + os.pathsep + os.environ["PATH"])
 text = (source / "README.md").read_text(encoding="utf-8")
 blocks = re.findall(r"^```(\w+)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 presets = {preset["name"] for preset in json.loads((source / "CMakePresets.json").read_text())["configurePresets"]}
