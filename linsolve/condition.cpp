@@ -9,8 +9,9 @@ void Condition::resize(int n) {
   for (auto* v : {&d_, &w_, &x_, &next_}) v->assign(static_cast<std::size_t>(n), 0.0);
 }
 
-void Condition::start() {
+void Condition::start(std::span<const double> scale) {
   std::ranges::fill(d_, 1.0);
+  std::ranges::copy(scale, d_.begin());
   random_ = 1;  // the same matrix gets the same estimate every time
 }
 

@@ -28,10 +28,12 @@ class Condition {
   void resize(int n);
 
   // The estimate for the matrix `values`; `solve` replaces its argument, a span of n numbers, by A⁻¹ times it. Infinite
-  // where the solves overflow. Takes 2 · kRounds solves.
+  // where the solves overflow. Takes 2 · kRounds solves. Starts from unknowns of the sizes in `scale`, 1 where empty:
+  // the column factors of an equilibration.
   template <class Solve>
-  double estimate(const CscLayout& layout, std::span<const double> values, Solve&& solve) {
-    start();
+  double estimate(const CscLayout& layout, std::span<const double> values, Solve&& solve,
+                  std::span<const double> scale = {}) {
+    start(scale);
     for (int round = 0; round < kRounds; ++round) {
       multiply(layout, values);
       for (int vector = 0; vector < 2; ++vector) {
@@ -53,7 +55,7 @@ class Condition {
  private:
   static constexpr int kRounds = 2;  // the first finds the scale, the second measures
 
-  void start();
+  void start(std::span<const double> scale);
   void multiply(const CscLayout& layout, std::span<const double> values);  // w ← |A| d
   void randomize();                                                        // x ← ±w, also in size
   void collect(bool first);                                                // next ← |x|, the larger of two

@@ -32,7 +32,8 @@ struct [[nodiscard]] LinearStatus {
 
 struct LinearStatistics {
   std::int64_t analyses = 0, factorizations = 0, refactorizations = 0,
-               solves = 0;  // refactorizations: with kept pivots
+               solves = 0;       // refactorizations: with kept pivots
+  std::int64_t handed_over = 0;  // factorizations left to klu, counted here only
   std::int64_t nonzeros = 0, factor_nonzeros = 0;
   double reciprocal_condition = 0;  // whatever the scaling (linsolve/condition.h), when last examined; 0 where unknown
 };

@@ -8,6 +8,10 @@ namespace {
 constexpr LinearSolverEntry kEntries[] = {
     {"klu", "sparse LU that keeps its pivots while they stay good (SuiteSparse KLU); for systems of every size",
      make_klu},
+    {"block",
+     "elimination over the graph of bodies and constraints, order chosen once; for saddle points of every size, leaves "
+     "kinematics matrices, and what it cannot solve well, to klu",
+     make_block},
     {"dense", "LU with partial pivoting of the full matrix; for a handful of bodies, refuses more than 2000 unknowns",
      make_dense},
     {"eigen_sparselu", "supernodal sparse LU of Eigen with fresh pivots every time; a reference without SuiteSparse",

@@ -1,0 +1,119 @@
+#include "linsolve/block_factor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace poinsot {
+namespace {
+
+std::size_t at(std::int64_t k) {
+  return static_cast<std::size_t>(k);
+}
+
+// Calls work(std::integral_constant<int, P>) with P the front's number of pivots where a kernel is compiled for it.
+template <class Work>
+void with_size(int pivots, Work&& work) {
+  switch (pivots) {
+    case 1:
+      return work(std::integral_constant<int, 1>());
+    case 2:
+      return work(std::integral_constant<int, 2>());
+    case 3:
+      return work(std::integral_constant<int, 3>());
+    case 4:
+      return work(std::integral_constant<int, 4>());
+    case 5:
+      return work(std::integral_constant<int, 5>());
+    case 6:
+      return work(std::integral_constant<int, 6>());
+    case 7:
+      return work(std::integral_constant<int, 7>());
+    case 8:
+      return work(std::integral_constant<int, 8>());
+    default:
+      return work(std::integral_constant<int, 0>());
+  }
+}
+
+// Adds a child's update matrix to the parent's D, L, U and W.
+void extend_add(const Front& child, const double* from, const int* target, const Front& parent, double* D, double* W) {
+  const int p = parent.pivots;
+  double *L = D + p * p, *U = L + p * parent.rows;
+  for (int j = 0; j < child.others; ++j, from += child.rows) {
+    const bool pivot = j < child.inner;
+    double* top = pivot ? D + target[j] * p : U + target[j] * p;
+    double* bottom = pivot ? L + target[j] * parent.rows : W + target[j] * parent.rows;
+    for (int i = 0; i < child.inner; ++i) top[target[i]] += from[i];
+    for (int i = child.inner; i < child.others; ++i) bottom[target[i]] += from[i];
+  }
+}
+
+}  // namespace
+
+void BlockFactor::resize(const Schedule& s) {
+  store_.assign(at(s.store_size), 0);
+  stack_.assign(at(s.stack_size), 0);
+  update_.assign(at(s.largest_update), 0);
+  x_.assign(at(s.n), 0);
+  t_.assign(at(std::max(s.largest_rows, s.largest_pivots)), 0);
+  then_.assign(at(s.n), 1);
+  weight_.assign(at(s.n), 1);
+  order_.assign(at(s.n), 0);
+}
+
+block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> values) {
+  block::Drift drift;
+  const Run* run = s.runs.data();
+  const int* child = s.children.data();
+  for (std::size_t k = 0; k < s.fronts.size(); ++k) {
+    const Front& f = s.fronts[k];
+    double* D = store_.data() + f.store;
+    std::fill_n(D, f.pivots * (f.pivots + f.rows + f.others), 0.0);
+    for (const Run* end = s.runs.data() + f.runs; run != end; ++run) {
+      const double* from = values.data() + run->source;
+      double* to = D + run->target;
+      for (unsigned i = 0; i < run->length; ++i) to[i] = from[i];
+    }
+    double* W = update_.data();
+    std::fill_n(W, f.rows * f.others, 0.0);
+    for (const int* end = s.children.data() + f.children; child != end; ++child) {
+      const Front& c = s.fronts[at(*child)];
+      extend_add(c, stack_.data() + c.update, s.target.data() + c.list, f, D, W);
+    }
+    std::copy_n(weight_.data() + f.first, f.pivots, t_.data());
+    with_size(f.pivots, [&](auto P) {
+      block::eliminate<P.value>(D, f, W, stack_.data() + f.update, order_.data() + f.first, t_.data(),
+                                then_.data() + f.first, drift);
+    });
+  }
+  return drift;
+}
+
+void BlockFactor::solve(const Schedule& s, std::span<double> b) {
+  for (std::size_t k = 0; k < b.size(); ++k) x_[k] = b[at(s.unknown[k])];
+  for (const Front& f : s.fronts)
+    with_size(f.pivots, [&](auto P) {
+      block::forward<P.value>(store_.data() + f.store, f, s.position.data() + f.list, order_.data() + f.first,
+                              x_.data(), t_.data());
+    });
+  for (std::size_t k = s.fronts.size(); k-- > 0;) {
+    const Front& f = s.fronts[k];
+    with_size(f.pivots, [&](auto P) {
+      block::backward<P.value>(store_.data() + f.store, f, s.position.data() + f.list, x_.data());
+    });
+  }
+  for (std::size_t k = 0; k < b.size(); ++k) b[at(s.unknown[k])] = x_[k];
+}
+
+void BlockFactor::weigh_rows(const Schedule& s, std::span<const double> weight) {
+  for (std::size_t k = 0; k < weight.size(); ++k)
+    weight_[k] = static_cast<float>(std::clamp(weight[at(s.unknown[k])], 1e-37, 1e37));
+}
+
+void BlockFactor::keep_pivots(const Schedule& s) {
+  for (const Front& f : s.fronts)
+    for (int k = 0; k < f.pivots; ++k)
+      then_[at(f.first + k)] = std::abs(store_[at(f.store + std::int64_t{k} * (f.pivots + 1))]);
+}
+
+}  // namespace poinsot

@@ -1,0 +1,34 @@
+// The numbers of a block elimination: values in, factors, solutions out, along a Schedule.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "linsolve/block_kernels.h"
+#include "linsolve/block_schedule.h"
+
+namespace poinsot {
+
+class BlockFactor {
+ public:
+  void resize(const Schedule& schedule);
+
+  // Factors for the rows that make their entries comparable; pivots are chosen by them, values stay as they are.
+  void weigh_rows(const Schedule& schedule, std::span<const double> weight);
+  // Factorizes; nothing stops at a bad pivot, the drift tells.
+  block::Drift factor(const Schedule& schedule, std::span<const double> values);
+  // b ← A⁻¹ b
+  void solve(const Schedule& schedule, std::span<double> b);
+  // Later factorizations are compared with the last one.
+  void keep_pivots(const Schedule& schedule);
+
+ private:
+  std::vector<double> store_, stack_, update_, x_, t_;
+  std::vector<double> then_;   // 1/|pivot| of an examined factorization, by position
+  std::vector<float> weight_;  // by position
+  std::vector<std::uint16_t> order_;
+};
+
+}  // namespace poinsot

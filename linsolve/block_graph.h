@@ -1,0 +1,40 @@
+// The graph on which the block solver orders its elimination: atoms, small sets of unknowns that are eliminated
+// together.
+//
+// A body's unknowns fall apart into atoms where its own matrix does: r and x in rA (M is block diagonal), r and p with
+// its normalization row in rp. The rows of a group of constraints fall apart by the unknowns they act on (DP1 rows do
+// not see r). An atom of a body is regular by itself; an atom of constraints has a zero block on the diagonal and can
+// be a pivot only after bodies it acts on. Where a body is not regular by itself (a point mass with a free orientation,
+// a rod without inertia about its axis) it is fused with a group of its constraints to one atom.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "linsolve/csc_layout.h"
+
+namespace poinsot {
+
+struct Atom {
+  std::vector<int> unknowns;
+  std::vector<int> neighbours;  // atoms, sorted
+  bool constraint = false;
+  int node = 0;
+};
+
+struct BlockGraph {
+  std::vector<Atom> atoms;
+  std::vector<int> atom_of;              // by unknown
+  std::vector<std::vector<int>> bodies;  // by node of constraints: the nodes of bodies it acts on
+  std::vector<std::vector<int>> groups;  // by node of a body: the nodes of constraints on it, those fused with it last
+  std::vector<int> body_atoms;           // by node: how many atoms of bodies it has
+  std::vector<int> fused_with;           // by node of constraints: the body it is fused with, or −1
+
+  // `fused[g]` is the body node that takes in node g, or −1.
+  void build(const CscLayout& layout, std::span<const int> node, std::span<const int> fused);
+};
+
+// Share of the entries (i, j) of a pattern that have a mirror entry (j, i).
+double symmetry(const CscLayout& layout);
+
+}  // namespace poinsot

@@ -1,0 +1,247 @@
+// The block solver: Gaussian elimination over the graph of bodies and groups of constraints.
+//
+// analyze() chooses the order by structure (block_order.h) and lays out a straight list of dense operations
+// (block_schedule.h); factor() runs it. What the order takes for granted is checked by numbers:
+//
+//   fresh      the first factorization, and later ones whose pivots left three decades around those of the last fresh
+//              one. Bodies and groups with a pivot block that is not regular are fused and the order is chosen again;
+//              then Bauer's condition (condition.h) and the residual of a solve decide;
+//   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
+//
+// Where this does not lead to a trustworthy answer the same values go to klu, whose word counts, singular included.
+// Matrices without a saddle point's symmetric structure (kinematics) go to klu from the start.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/check.h"
+#include "linsolve/back_ends.h"
+#include "linsolve/block_cancellation.h"
+#include "linsolve/block_factor.h"
+#include "linsolve/block_graph.h"
+#include "linsolve/block_order.h"
+#include "linsolve/block_schedule.h"
+#include "linsolve/condition.h"
+#include "linsolve/csc_layout.h"
+#include "linsolve/equilibration.h"
+
+namespace poinsot {
+namespace {
+
+constexpr double kSymmetric = 0.9;        // share of mirrored entries that makes a saddle point
+constexpr double kNear = 10, kFar = 1e3;  // drift of pivots that is trusted unseen, and with a look at residuals
+constexpr double kSmallResidual = 3e-14;  // above, a solution is refined
+constexpr double kLargeResidual = 1e-11;  // above after that, it is not accepted
+constexpr double kCancelled = 1e-6;       // part of its size that is left of a pivot: worth another order
+constexpr double kRounding = 1e-12;       // the same: nothing but rounding
+constexpr int kRefinements = 3;
+constexpr int kRepairs = 8;
+constexpr int kPatience = 3;  // times in a row that klu has to help before it takes over
+
+std::size_t at(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+class BlockSolver final : public LinearSolver {
+ private:
+  LinearStatus do_analyze(const Pattern& pattern) override {
+    if (LinearStatus status = layout_.build(pattern); !status.ok()) return status;
+    if (LinearStatus status = layout_.matching(); !status.ok()) return status;
+    slots_ = layout_.slots;
+    std::vector<int>().swap(layout_.slots);
+    node_ = pattern.node;
+    values_.assign(at(layout_.nonzeros()), 0);
+    statistics_.nonzeros = layout_.nonzeros();
+    klu_.reset();
+    examined_ = false;
+    helped_ = 0;
+    fused_.assign(at(1 + *std::ranges::max_element(node_)), -1);
+    by_klu_ = only_klu_ = symmetry(layout_) < kSymmetric || !order();
+    return {};
+  }
+
+  bool order() {
+    BlockGraph graph;
+    graph.build(layout_, node_, fused_);
+    if (!schedule_.build(layout_, graph, elimination_order(graph))) return false;
+    factor_.resize(schedule_);
+    statistics_.factor_nonzeros = schedule_.factor_nonzeros;
+    return true;
+  }
+
+  LinearStatus do_factor() override {
+    by_klu_ = only_klu_;
+    if (by_klu_) return factor_by_klu();
+    const block::Drift drift = factor_.factor(schedule_, values_);
+    if (!examined_ || !within(drift, kFar)) return factor_fresh();
+    ++statistics_.refactorizations;
+    look_at_residual_ = refined_ || !within(drift, kNear);
+    return {};
+  }
+
+  static bool within(const block::Drift& drift, double range) {
+    return drift.poison == 0 && drift.least * range >= 1 && drift.largest <= range;
+  }
+
+  LinearStatus factor_fresh() {
+    if (!std::ranges::all_of(values_, [](double x) { return std::isfinite(x); }))
+      return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
+    ++statistics_.factorizations;
+    Equilibration equilibration;
+    equilibration.resize(layout_.n);
+    (void)equilibration.find(layout_, values_);
+    examined_ = false;
+    for (int repairs = 0; !trustworthy(equilibration); ++repairs) {
+      const auto bad = cancelled_pivots(schedule_, values_, equilibration.row(), kCancelled);
+      if (repairs == kRepairs || !fuse(bad) || !order()) return factor_by_klu();
+    }
+    // A pivot that is rounding may still pass for one in a system of very different masses; klu sees it at its own
+    // size.
+    if (!cancelled_pivots(schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
+    refined_ = refined_ || !cancelled_pivots(schedule_, values_, weight_, kCancelled).empty();
+    examined_ = true;
+    factor_.keep_pivots(schedule_);
+    look_at_residual_ = refined_;
+    helped_ = 0;
+    return {};
+  }
+
+  // Factorizes with pivots by the given scales, then by those the condition estimate found; these also measure
+  // residuals from now on. Finds out whether solutions need refinement.
+  bool trustworthy(const Equilibration& equilibration) {
+    Condition condition;
+    condition.resize(layout_.n);
+    const auto solve = [&](std::span<double> x) { factor_.solve(schedule_, x); };
+    std::vector<double> rows(equilibration.row().begin(), equilibration.row().end());
+    std::vector<double> columns(equilibration.col().begin(), equilibration.col().end());
+    for (int pass = 0; pass < 2; ++pass) {
+      factor_.weigh_rows(schedule_, rows);
+      (void)factor_.factor(schedule_, values_);
+      const double estimate = condition.estimate(layout_, values_, solve, columns);
+      statistics_.reciprocal_condition = 1 / estimate;
+      if (!std::isfinite(estimate)) return false;
+      std::ranges::transform(condition.rows(), rows.begin(), [](double w) { return 1 / w; });
+      columns.assign(condition.columns().begin(), condition.columns().end());
+    }
+    if (!(1 < kSingularCondition * statistics_.reciprocal_condition)) return false;
+    weight_.swap(rows);
+    rows_.assign(equilibration.row().begin(), equilibration.row().end());
+    columns_.assign(equilibration.col().begin(), equilibration.col().end());
+    b_.resize(rows_.size());
+    std::ranges::transform(rows_, b_.begin(), [](double scale) { return 1 / scale; });
+    std::vector<double> x = b_;
+    solve(x);
+    refined_ = residual(b_, x) > kSmallResidual;
+    return !refined_ || refine(x) <= kSmallResidual;
+  }
+
+  // A body that is not regular by itself takes in a group of its constraints; a group that was a pivot too early goes
+  // to the last of its bodies. False where nothing is left to fuse.
+  bool fuse(const std::vector<int>& bad) {
+    BlockGraph graph;
+    graph.build(layout_, node_, fused_);
+    std::vector<int> place(fused_.size(), 0);  // in the order of elimination, by node
+    for (int k = 0; k < schedule_.n; ++k) place[at(node_[at(schedule_.unknown[at(k)])])] = k;
+    bool any = false;
+    for (const int k : bad) {
+      const Front& f = schedule_.fronts[at(k)];
+      for (int i = f.first; i < f.first + f.pivots; ++i) {
+        const int node = node_[at(schedule_.unknown[at(i)])];
+        if (graph.body_atoms[at(node)] == 0 && fused_[at(node)] < 0) {
+          const auto& bodies = graph.bodies[at(node)];
+          if (bodies.empty()) continue;
+          fused_[at(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[at(b)]; });
+          any = true;
+        } else if (fused_[at(node)] < 0) {
+          for (const int g : graph.groups[at(node)])
+            if (fused_[at(g)] < 0) {
+              fused_[at(g)] = node;
+              any = true;
+              break;
+            }
+        }
+      }
+    }
+    return any;
+  }
+
+  LinearStatus do_solve(std::span<double> b) override {
+    if (by_klu_) return klu_->solve(b);
+    if (!look_at_residual_) {
+      factor_.solve(schedule_, b);
+      return {};
+    }
+    b_.assign(b.begin(), b.end());
+    factor_.solve(schedule_, b);
+    if (residual(b_, b) <= kSmallResidual || refine(b) <= kLargeResidual) return {};
+    std::ranges::copy(b_, b.begin());
+    if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
+    return klu_->solve(b);
+  }
+
+  // x ← x + A⁻¹ (b_ − A x) until the residual is small, a few times at most; the residual.
+  double refine(std::span<double> x) {
+    double size = HUGE_VAL;
+    for (int step = 0; step < kRefinements && !(size <= kSmallResidual); ++step) {
+      factor_.solve(schedule_, r_);
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] += r_[i];
+      size = residual(b_, x);
+    }
+    return size;
+  }
+
+  // r_ ← b − A x; the largest |r| against the largest of |A||x| and |b|, of the equilibrated system.
+  double residual(std::span<const double> b, std::span<const double> x) {
+    r_.assign(b.begin(), b.end());
+    double size_x = 0, size_b = 0, size_r = 0;
+    for (std::size_t j = 0; j < r_.size(); ++j) {
+      for (int k = layout_.start[j]; k < layout_.start[j + 1]; ++k) r_[at(layout_.row[at(k)])] -= values_[at(k)] * x[j];
+      size_x = std::max(size_x, std::abs(x[j]) / columns_[j]);
+    }
+    for (std::size_t i = 0; i < r_.size(); ++i) {
+      size_b = std::max(size_b, std::abs(b[i]) * rows_[i]);
+      size_r = std::max(size_r, std::abs(r_[i]) * rows_[i]);
+    }
+    return size_r == 0 ? 0 : size_r / (size_x + size_b);
+  }
+
+  LinearStatus factor_by_klu() {
+    if (!klu_) {
+      klu_ = make_klu();
+      Pattern columns{layout_.n, {}, node_};
+      for (int j = 0; j < layout_.n; ++j)
+        for (int k = layout_.start[at(j)]; k < layout_.start[at(j) + 1]; ++k)
+          columns.blocks.push_back({layout_.row[at(k)], j, 1, 1});
+      if (LinearStatus status = klu_->analyze(columns); !status.ok()) return status;
+    }
+    ++statistics_.handed_over;
+    if (++helped_ >= kPatience) only_klu_ = true;
+    std::ranges::copy(values_, klu_->values().begin());
+    LinearStatus status = klu_->factor();
+    statistics_.reciprocal_condition = klu_->statistics().reciprocal_condition;
+    statistics_.factor_nonzeros = klu_->statistics().factor_nonzeros;
+    by_klu_ = status.ok();
+    return status;
+  }
+
+  CscLayout layout_;
+  std::vector<int> node_, fused_;
+  Schedule schedule_;
+  BlockFactor factor_;
+  std::unique_ptr<LinearSolver> klu_;
+  std::vector<double> b_, r_;
+  std::vector<double> weight_;          // of rows in the choice of pivots
+  std::vector<double> rows_, columns_;  // in which residuals are measured: factors for rows, sizes of unknowns
+  bool examined_ = false, look_at_residual_ = false;
+  bool refined_ = false;  // the last fresh factorization solved well only with refinement
+  bool by_klu_ = false, only_klu_ = false;
+  int helped_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_block() {
+  return std::make_unique<BlockSolver>();
+}
+
+}  // namespace poinsot
