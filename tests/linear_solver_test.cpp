@@ -94,14 +94,15 @@ void expect_solved(const LinearSystem& s, std::span<const double> x, std::span<c
   const Scaled scaled(s);
   EXPECT_LE(backward_error(s, scaled, x, b), 1e-13) << s.name;
 
+  // ‖D_c⁻¹ A⁻¹ D_r⁻¹‖ from below: what it makes of a few right-hand sides of size one.
   const Reference reference(s);
+  std::mt19937_64 random(1);
   long double inverse_norm = 0;
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    long double sum = 0;
-    for (std::size_t j = 0; j < b.size(); ++j)
-      sum += std::abs(reference.inverse(i, j)) /
-             static_cast<long double>(scaled.factors.col()[i] * scaled.factors.row()[j]);
-    inverse_norm = std::max(inverse_norm, sum);
+  for (int k = 0; k < 4; ++k) {
+    std::vector<double> sign(b.size());
+    for (std::size_t i = 0; i < sign.size(); ++i) sign[i] = (random() & 1 ? 1 : -1) / scaled.factors.row()[i];
+    inverse_norm = std::max(
+        inverse_norm, scaled.of_solution(std::span<const long double>(reference.solve(std::span<const double>(sign)))));
   }
   const std::vector<long double> exact = reference.solve(b);
   std::vector<long double> error(exact.size());
@@ -128,7 +129,7 @@ void expect_solves(LinearSolver& solver, const LinearSystem& s, std::mt19937_64&
 }
 
 TEST_P(LinearSolvers, SolvesSaddlePoints) {
-  for (unsigned seed = 1; seed <= 5; ++seed) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
     for (const LinearSystem& s : systems(random)) {
@@ -353,7 +354,8 @@ TEST_P(LinearSolvers, NeverPassesARedundantConstraint) {
       EXPECT_FALSE(status.message.empty());
       if (status.unknown >= 0 && !scaled) {
         const int node = r.singular.pattern.node[static_cast<std::size_t>(status.unknown)];
-        EXPECT_TRUE(std::ranges::find(r.nodes, node) != r.nodes.end()) << "node " << node << " is blamed, not " << testing::PrintToString(r.nodes) << status.message;
+        EXPECT_TRUE(std::ranges::find(r.nodes, node) != r.nodes.end())
+            << "node " << node << " is blamed, not " << testing::PrintToString(r.nodes) << status.message;
       }
       EXPECT_EQ(solver->state(), LinearSolver::State::analyzed);
     }
@@ -436,14 +438,14 @@ LinearSystem straight_chain(int bodies) {
 }
 
 TEST_P(LinearSolvers, PassesALongChain) {
-  const LinearSystem s = straight_chain(20000);
+  const LinearSystem s = straight_chain(10000);
   const auto solver = make();
   const LinearStatus status = prepare(*solver, s);
   if (status.failure == LinearFailure::refused) GTEST_SKIP() << status.message;
   ASSERT_TRUE(status.ok()) << status.message;
   // The chain let go from rest: gravity along z.
   std::vector<double> b(static_cast<std::size_t>(s.pattern.n), 0.0);
-  for (std::size_t k = 0; k < 20000; ++k) b[6 * k + 2] = -9.81;
+  for (std::size_t k = 0; k < 10000; ++k) b[6 * k + 2] = -9.81;
   std::vector<double> x = b;
   ASSERT_TRUE(solver->solve(x).ok());
   EXPECT_LE(backward_error(s, Scaled(s), x, b), 1e-13);

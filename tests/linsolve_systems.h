@@ -166,52 +166,55 @@ inline LinearSystem saddle_point(const Mechanism& mechanism, BodyKind kind, std:
   return s;
 }
 
-// The dense inverse in long double: Gauss–Jordan with full row equilibration and partial pivoting.
+// LU in long double of the row-equilibrated dense matrix, with partial pivoting.
 class Reference {
  public:
-  explicit Reference(const LinearSystem& s) : n_(static_cast<std::size_t>(s.pattern.n)) {
-    std::vector<long double> a(n_ * n_, 0.0L), scale(n_, 0.0L);
+  explicit Reference(const LinearSystem& s)
+      : n_(static_cast<std::size_t>(s.pattern.n)), a_(n_ * n_, 0.0L), scale_(n_, 0.0L), order_(n_) {
     std::size_t v = 0;
     for (const Block& b : s.pattern.blocks)
       for (int j = b.col; j < b.col + b.cols; ++j)
         for (int i = b.row; i < b.row + b.rows; ++i)
-          a[static_cast<std::size_t>(i) * n_ + static_cast<std::size_t>(j)] += static_cast<long double>(s.values[v++]);
-    inverse_.assign(n_ * n_, 0.0L);
+          a(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) += static_cast<long double>(s.values[v++]);
     for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t j = 0; j < n_; ++j) scale[i] = std::max(scale[i], std::abs(a[i * n_ + j]));
-      for (std::size_t j = 0; j < n_; ++j) a[i * n_ + j] /= scale[i];
-      inverse_[i * n_ + i] = 1 / scale[i];
+      for (std::size_t j = 0; j < n_; ++j) scale_[i] = std::max(scale_[i], std::abs(a(i, j)));
+      for (std::size_t j = 0; j < n_; ++j) a(i, j) /= scale_[i];
     }
     for (std::size_t k = 0; k < n_; ++k) {
       std::size_t p = k;
       for (std::size_t i = k + 1; i < n_; ++i)
-        if (std::abs(a[i * n_ + k]) > std::abs(a[p * n_ + k])) p = i;
-      for (std::size_t j = 0; j < n_ && p != k; ++j) {
-        std::swap(a[k * n_ + j], a[p * n_ + j]);
-        std::swap(inverse_[k * n_ + j], inverse_[p * n_ + j]);
-      }
-      const long double pivot = a[k * n_ + k];
-      for (std::size_t j = 0; j < n_; ++j) a[k * n_ + j] /= pivot, inverse_[k * n_ + j] /= pivot;
-      for (std::size_t i = 0; i < n_; ++i) {
-        const long double f = a[i * n_ + k];
-        if (i == k || f == 0) continue;
-        for (std::size_t j = 0; j < n_; ++j)
-          a[i * n_ + j] -= f * a[k * n_ + j], inverse_[i * n_ + j] -= f * inverse_[k * n_ + j];
+        if (std::abs(a(i, k)) > std::abs(a(p, k))) p = i;
+      order_[k] = p;
+      for (std::size_t j = 0; j < n_ && p != k; ++j) std::swap(a(k, j), a(p, j));
+      for (std::size_t i = k + 1; i < n_; ++i) {
+        const long double l = a(i, k) /= a(k, k);
+        if (l == 0) continue;
+        for (std::size_t j = k + 1; j < n_; ++j) a(i, j) -= l * a(k, j);
       }
     }
   }
 
-  std::vector<long double> solve(std::span<const double> b) const {
-    std::vector<long double> x(n_, 0.0L);
+  template <class T>
+  std::vector<long double> solve(std::span<const T> b) const {
+    std::vector<long double> x(b.begin(), b.end());
+    for (std::size_t i = 0; i < n_; ++i) x[i] /= scale_[i];
+    for (std::size_t k = 0; k < n_; ++k) std::swap(x[k], x[order_[k]]);
     for (std::size_t i = 0; i < n_; ++i)
-      for (std::size_t j = 0; j < n_; ++j) x[i] += inverse_[i * n_ + j] * static_cast<long double>(b[j]);
+      for (std::size_t j = 0; j < i; ++j) x[i] -= a(i, j) * x[j];
+    for (std::size_t i = n_; i-- > 0;) {
+      for (std::size_t j = i + 1; j < n_; ++j) x[i] -= a(i, j) * x[j];
+      x[i] /= a(i, i);
+    }
     return x;
   }
-  long double inverse(std::size_t i, std::size_t j) const { return inverse_[i * n_ + j]; }
 
  private:
+  long double& a(std::size_t i, std::size_t j) { return a_[i * n_ + j]; }
+  const long double& a(std::size_t i, std::size_t j) const { return a_[i * n_ + j]; }
+
   std::size_t n_;
-  std::vector<long double> inverse_;
+  std::vector<long double> a_, scale_;
+  std::vector<std::size_t> order_;
 };
 
 }  // namespace poinsot::test
