@@ -1,0 +1,222 @@
+// Degrees of freedom, dependent rows with what they depend on, singular positions.
+#include "integrators/rank.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "integrators/initial_state.h"
+#include "tests/support/scene_transform.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+RankAnalysis analyze(const Scene& scene) {
+  const auto model = std::make_shared<const Model>(compile(scene));
+  return analyze_rank(model, given_state(*model));
+}
+
+Scene free_bodies(int count) {
+  Scene scene;
+  for (int b = 0; b < count; ++b) {
+    Body& body = scene.bodies.emplace_back();
+    body.name = fmt::format("body {}", b);
+    body.mass = 1 + b;
+    body.inertia = Vector3(0.1, 0.2, 0.25).asDiagonal();
+    body.position = {0.3 * b, 1, -0.2 * b};
+  }
+  return scene;
+}
+
+Joint joint(JointType type, int i, int j, const Vector3& point, const Vector3& axis = Vector3::UnitZ()) {
+  Joint x;
+  x.name = "joint";
+  x.type = type;
+  x.i = i, x.j = j;
+  x.point = point;
+  x.axis = axis;
+  x.axis_i = Vector3::UnitX(), x.axis_j = Vector3::UnitY();
+  return x;
+}
+
+TEST(Rank, OfEveryModel) {
+  const struct {
+    const char* model;
+    int freedoms, dependent;
+  } expected[] = {
+      {"single_pendulum", 0, 0},
+      {"single_pendulum_joints", 0, 0},
+      {"single_pendulum_free", 1, 0},
+      {"double_pendulum", 2, 0},
+      {"double_pendulum_joints", 2, 0},
+      {"four_link", 0, 0},
+      {"four_link_haug", 0, 0},
+      {"four_link_joints", 0, 0},
+      {"slider_crank", 0, 0},
+      {"slider_crank_haug", 0, 0},
+      {"slider_crank_joints", 0, 0},
+      {"simple_pendulum", 1, 0},
+      {"heavy_top", 3, 0},
+      {"double_four_bar", 1, 6},
+      {"andrews", 1, 9},
+      {"free_body", 6, 0},
+      {"knife_edge", 2, 0},
+  };
+  for (const auto& e : expected) {
+    const RankAnalysis analysis = analyze(scene_of(e.model));
+    EXPECT_EQ(analysis.degrees_of_freedom(), e.freedoms) << e.model;
+    EXPECT_EQ(analysis.dependent.size(), static_cast<std::size_t>(e.dependent)) << e.model;
+    EXPECT_FALSE(analysis.singular_position()) << e.model;
+  }
+}
+
+TEST(Rank, OfEveryJointBetweenBodiesAndToGround) {
+  constexpr std::pair<JointType, int> kRows[] = {{JointType::revolute, 5},      {JointType::spherical, 3},
+                                                 {JointType::universal, 4},     {JointType::cylindrical, 4},
+                                                 {JointType::translational, 5}, {JointType::fixed, 6}};
+  for (const auto& [type, rows] : kRows) {
+    for (int i : {kGround, 0}) {
+      Scene scene = free_bodies(2);
+      scene.joints = {joint(type, i, 1, {0.2, 0.1, 0.7})};
+      const RankAnalysis analysis = analyze(scene);
+      EXPECT_EQ(analysis.rank, rows) << static_cast<int>(type);
+      EXPECT_EQ(analysis.degrees_of_freedom(), 12 - rows) << static_cast<int>(type);
+    }
+  }
+}
+
+TEST(Rank, WithoutRows) {
+  const RankAnalysis analysis = analyze(free_bodies(3));
+  EXPECT_EQ(analysis.variables, 18);
+  EXPECT_EQ(analysis.rank, 0);
+  EXPECT_EQ(analysis.degrees_of_freedom(), 18);
+  EXPECT_THAT(analysis.dependent_rows(), IsEmpty());
+}
+
+TEST(Rank, VelocityRowsCount) {
+  Scene scene = free_bodies(1);
+  Constraint blade;
+  blade.name = "blade";
+  blade.type = ConstraintType::pfaffian;
+  blade.j = 0;
+  blade.a_j = Vector3::UnitX();
+  scene.constraints = {blade, blade};
+  const RankAnalysis analysis = analyze(scene);
+  EXPECT_EQ(analysis.degrees_of_freedom(), 5);
+  EXPECT_THAT(analysis.dependent_rows(), ElementsAre(1));
+}
+
+Constraint coordinate(const Vector3& c) {
+  Constraint row;
+  row.name = "row";
+  row.type = ConstraintType::CD;
+  row.j = 0;
+  row.c = c;
+  row.f = Expression(c.y());
+  return row;
+}
+
+TEST(Rank, DependentRowsNameWhatTheyDependOn) {
+  Scene scene = free_bodies(1);
+  scene.constraints = {coordinate({1, 0, 0}), coordinate({0, 0, 1}), coordinate({0, 1, 0}), coordinate({2, -1, 0}),
+                       coordinate({0, 0, -3})};
+  const RankAnalysis analysis = analyze(scene);
+  EXPECT_EQ(analysis.rank, 3);
+  ASSERT_THAT(analysis.dependent_rows(), ElementsAre(3, 4));
+  EXPECT_THAT(analysis.dependent[0].others, ElementsAre(0, 2));
+  EXPECT_THAT(analysis.dependent[1].others, ElementsAre(1));
+}
+
+// A body on two hinges of one axis: the second adds nothing.
+TEST(Rank, SecondHingeDependsOnTheFirst) {
+  Scene scene = free_bodies(1);
+  scene.joints = {joint(JointType::revolute, kGround, 0, {0, 0, 1}),
+                  joint(JointType::revolute, kGround, 0, {0, 0, -1})};
+  const RankAnalysis analysis = analyze(scene);
+  EXPECT_EQ(analysis.degrees_of_freedom(), 1);
+  EXPECT_THAT(analysis.dependent_rows(), ElementsAre(5, 6, 7, 8, 9));
+  for (const Dependency& dependency : analysis.dependent) {
+    EXPECT_THAT(dependency.others, Not(IsEmpty()));
+    for (int other : dependency.others) EXPECT_LT(other, 5);
+  }
+}
+
+// Two welded bodies: everything about the second weld is known from the first.
+TEST(Rank, Grounded) {
+  Scene scene = free_bodies(1);
+  scene.joints = {joint(JointType::fixed, kGround, 0, {0, 0, 0}), joint(JointType::fixed, 0, kGround, {1, 2, 3})};
+  const RankAnalysis analysis = analyze(scene);
+  EXPECT_EQ(analysis.degrees_of_freedom(), 0);
+  EXPECT_EQ(analysis.dependent.size(), 6u);
+  EXPECT_FALSE(analysis.singular_position());
+}
+
+// Planar parallelogram: ground pivots (0, 0) and (2, 0), links of 1 m at the angle, coupler of 2 m. In space the plane
+// is given thrice too often by four revolutes.
+Scene parallelogram(double angle) {
+  Scene scene = free_bodies(3);
+  const Vector3 link(std::cos(angle), std::sin(angle), 0), along(2, 0, 0), z = Vector3::UnitZ();
+  scene.bodies[0].position = link / 2;
+  scene.bodies[1].position = along + link / 2;
+  scene.bodies[2].position = link + along / 2;
+  scene.joints = {joint(JointType::revolute, kGround, 0, {0, 0, 0}, z),
+                  joint(JointType::revolute, kGround, 1, along, z), joint(JointType::revolute, 0, 2, link, z),
+                  joint(JointType::revolute, 1, 2, link + along, z)};
+  return scene;
+}
+
+TEST(Rank, ParallelogramLyingFlatIsASingularPosition) {
+  const RankAnalysis regular = analyze(parallelogram(1));
+  EXPECT_EQ(regular.degrees_of_freedom(), 1);
+  EXPECT_EQ(regular.dependent.size(), 3u);
+  EXPECT_FALSE(regular.singular_position());
+
+  const RankAnalysis flat = analyze(parallelogram(0));
+  EXPECT_EQ(flat.rank_here, 16);
+  EXPECT_EQ(flat.rank, 17);
+  EXPECT_EQ(flat.degrees_of_freedom(), 1);
+  EXPECT_EQ(flat.dependent.size(), 3u);
+  EXPECT_TRUE(flat.singular_position());
+}
+
+// The bare DP1 driver where its directions are parallel: f = cos(angle) is stationary, its row vanishes.
+TEST(Rank, ADriverWhoseRowVanishes) {
+  Scene scene = scene_of("single_pendulum_joints");
+  scene.drivers.clear();
+  Constraint driver;
+  driver.name = "driver";
+  driver.i = 0;
+  driver.a_i = Vector3::UnitX();
+  driver.a_j = scene.bodies[0].orientation.col(0);
+  driver.f = Expression(1);
+  scene.constraints = {driver};
+  const RankAnalysis analysis = analyze(scene);
+  EXPECT_EQ(analysis.rank_here, 5);
+  EXPECT_EQ(analysis.degrees_of_freedom(), 1);
+  ASSERT_THAT(analysis.dependent_rows(), ElementsAre(0));
+  EXPECT_THAT(analysis.dependent[0].others, IsEmpty());
+}
+
+// Rank does not depend on units, frames or place.
+TEST(Rank, IsInvariant) {
+  const Scene scene = scene_of("double_four_bar");
+  Transform transform;
+  transform.R = Eigen::AngleAxisd(1.2, Vector3(1, 2, -1).normalized()).toRotationMatrix();
+  transform.t = {10, -20, 30};
+  transform.shuffle = 7;
+  for (double scale : {1e-3, 1.0, 1e3}) {
+    Scene scaled = transform.apply(scene);
+    for (Body& body : scaled.bodies) body.position *= scale;
+    for (Joint& j : scaled.joints) j.point *= scale;
+    const RankAnalysis analysis = analyze(scaled);
+    EXPECT_EQ(analysis.rank, 29) << scale;
+    EXPECT_EQ(analysis.degrees_of_freedom(), 1) << scale;
+  }
+}
+
+}  // namespace
+}  // namespace poinsot::test
