@@ -121,14 +121,14 @@ class Forces {
     }
     for (const LinearDrag& k : e.drags) {
       const auto& at = c.at[index(k.body)];
-      const Eigen::Matrix<T, 3, F::m> W = at.W().template topRows<3>();
       const T drag = T(k.rotational);
+      const Eigen::Matrix<T, 3, F::m> W = at.W().template topRows<3>(), dragged = drag * W;
       Block K = Block::Zero(), D = Block::Zero();
       D.template topLeftCorner<3, 3>().diagonal().array() = T(k.translational);
-      D.template bottomRightCorner<F::m, F::m>() = drag * W.transpose() * W;
+      D.template bottomRightCorner<F::m, F::m>() = W.transpose() * dragged;
       K.template bottomRightCorner<F::m, F::m>() =
           F::torque_variation(at, Vec3<T>(drag * c.rate[index(k.body)].wg)) +
-          drag * W.transpose() * F::angular_velocity_variation(at, c.rate[index(k.body)], c.xd(c.v, k.body));
+          dragged.transpose() * F::angular_velocity_variation(at, c.rate[index(k.body)], c.xd(c.v, k.body));
       sink.body_block(k.body, k.body, Block(cq * K + cv * lowered(D, k.body)));
     }
   }
