@@ -8,6 +8,8 @@
 #include "app/scene_check.h"
 #include "app/terminal.h"
 #include "core/scene_reader.h"
+#include "formulations/derivative_check.h"
+#include "formulations/registry.h"
 #include "integrators/initial_state.h"
 #include "integrators/rank.h"
 
@@ -63,7 +65,8 @@ bool print_constraints(const Model& model, const RankAnalysis& analysis, std::sp
   return conflicts.empty();
 }
 
-void print_state(const Model& model, const Violation& v) {
+// Returns whether the state is off the constraints.
+bool print_state(const Model& model, const Violation& v) {
   const auto line = [&](const char* what, double largest, int row) {
     if (largest <= kSatisfied)
       fmt::print("{}: consistent, largest violation {:.2g}\n", what, largest);
@@ -72,6 +75,30 @@ void print_state(const Model& model, const Violation& v) {
   };
   line("initial pose", v.position, v.position_row);
   line("initial velocities", v.velocity, v.velocity_row);
+  return v.position > kSatisfied || v.velocity > kSatisfied;
+}
+
+// Returns whether every derivative is right.
+bool print_derivatives(const Model& model, std::span<const BodyState> states) {
+  double largest = 0;
+  std::size_t checked = 0;
+  std::vector<std::string> wrong, names;
+  for (const FormulationEntry& formulation : formulations()) {
+    names.emplace_back(formulation.name);
+    for (const DerivativeCheck& derivative : check_derivatives(model, formulation.name, states)) {
+      ++checked;
+      if (derivative.ok)
+        largest = std::max(largest, derivative.error);
+      else
+        wrong.push_back(fmt::format("  {}: {}: {} is off by {:.3g}", formulation.name, derivative.name, derivative.what,
+                                    derivative.error));
+    }
+  }
+  fmt::print("derivatives: {} compared ({}), {}\n", checked, fmt::join(names, ", "),
+             wrong.empty() ? fmt::format("all right, largest relative difference {:.2g}", largest)
+                           : fmt::format("{} wrong", wrong.size()));
+  for (const std::string& line : wrong) fmt::print("{}\n", line);
+  return wrong.empty();
 }
 
 int check_scene(const std::string& file) {
@@ -82,18 +109,23 @@ int check_scene(const std::string& file) {
   const RankAnalysis analysis = analyze_rank(model, given);
   const std::vector<Conflict> conflicts = find_conflicts(model, given, analysis);
   const bool no_conflict = print_constraints(*model, analysis, conflicts);
-  print_state(*model, violation(model, given));
+  const bool off = print_state(*model, violation(model, given));
   if (!no_conflict) {
     print_error(fmt::format("{}: the constraints conflict; remove or correct one of those named", file));
     return kWrongInput;
   }
   const InitialState start = find_initial_state(model, Settings{});
-  for (const std::string& notice : start.notices) fmt::print("  {}\n", notice);
-  if (!start.status.ok()) {
-    print_error(start.status.message);
-    return kNumericsFailed;
-  }
-  return kDone;
+  if (off)
+    for (const std::string& notice : start.notices) fmt::print("  {}\n", notice);
+  // Derivatives that are not finite are why the start fails where they are: they are named first.
+  const bool right = print_derivatives(*model, start.status.ok() ? start.bodies : given);
+  if (right && start.status.ok()) return kDone;
+  print_error(right
+                  ? start.status.message
+                  : fmt::format("{}: derivatives are wrong or not finite at t = 0; try functions of time that have two "
+                                "derivatives there",
+                                file));
+  return kNumericsFailed;
 }
 
 }  // namespace

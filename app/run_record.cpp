@@ -20,6 +20,7 @@ std::string to_json(const RunRecord& record) {
   json["notices"] = record.outcome.notices;
   json["reactions_undetermined"] = record.outcome.reactions_undetermined;
   json["statistics"] = {{"steps", s.steps},
+                        {"rejected_steps", s.rejected_steps},
                         {"newton_iterations", s.newton_iterations},
                         {"jacobian_evaluations", s.jacobian_evaluations},
                         {"factorizations", s.factorizations},

@@ -1,0 +1,106 @@
+// `poinsot check`: what it says of sound scenes, of redundant and of contradicting ones.
+#include <fmt/format.h>
+
+#include "command_line.h"
+
+namespace poinsot::test {
+namespace {
+
+class Check : public CommandLine {
+ protected:
+  Result check_model(const char* name) const {
+    return poinsot({"check", fmt::format("{}/models/{}.json", POINSOT_SOURCE_DIR, name)});
+  }
+  // A rod between two points 2 m apart, held by more than it needs.
+  std::string rod(const char* constraints) const {
+    return fmt::format(R"({{"scene": 1, "name": "rod",
+      "bodies": [{{"name": "rod", "mass": 1, "inertia": [1, 1, 1], "position": [1, 0, 0]}}],
+      "constraints": [{}]}})",
+                       constraints);
+  }
+  static void expect_says(const Result& result, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts)
+      EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
+  }
+};
+
+TEST_F(Check, SoundScenes) {
+  const std::pair<const char*, int> degrees_of_freedom[] = {{"single_pendulum_joints", 0},
+                                                            {"double_pendulum", 2},
+                                                            {"four_link_haug", 0},
+                                                            {"slider_crank_joints", 0},
+                                                            {"heavy_top", 3},
+                                                            {"free_body", 6},
+                                                            {"knife_edge", 2}};
+  for (const auto& [name, count] : degrees_of_freedom) {
+    SCOPED_TRACE(name);
+    const Result result = check_model(name);
+    EXPECT_EQ(result.status, 0);
+    EXPECT_EQ(result.err, "");
+    expect_says(result,
+                {fmt::format("degrees of freedom: {}\n", count), "redundant constraints: none\n",
+                 "conflicting constraints: none\n", "initial pose: consistent", "initial velocities: consistent"});
+    const std::size_t at = result.out.find("derivatives: ");
+    ASSERT_NE(at, std::string::npos);
+    // A body without constraints and forces has nothing to compare.
+    EXPECT_EQ(std::stoi(result.out.substr(at + 13)) > 0, std::string(name) != "free_body") << result.out;
+    expect_says(result, {" compared (rA, rp, reps), all right, largest relative difference "});
+    EXPECT_TRUE(files().empty());
+  }
+}
+
+TEST_F(Check, ADerivativeThatIsNotFinite) {
+  write("root.json", rod(R"({"type": "DP1", "name": "root", "bodies": ["ground", "rod"], "a_i": [1,0,0], "a_j": [0,1,0],
+                             "f": "t^1.5"})"));
+  const Result result = poinsot({"check", "root.json"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_EQ(result.err,
+            "poinsot: root.json: derivatives are wrong or not finite at t = 0; try functions of time that have two "
+            "derivatives "
+            "there\n");
+  expect_says(result, {"  rA: constraint 'root': gamma is off by "});
+}
+
+TEST_F(Check, AStateOffTheConstraints) {
+  const Result result = check_model("four_link");
+  EXPECT_EQ(result.status, 0);
+  expect_says(result, {"degrees of freedom: 0\n", "initial pose: violates constraint 'revD-CD-i' by 0.0087",
+                       "initial velocities: violates constraint 'univ-CD-j' by 6.28", "'link 3' most"});
+}
+
+TEST_F(Check, RedundantConstraintsByName) {
+  const Result planar = check_model("double_four_bar");
+  EXPECT_EQ(planar.status, 0);
+  expect_says(planar, {"degrees of freedom: 1\n", "redundant constraints: 6 rows\n",
+                       "joint 'revolute7' (its row 3 of 5) follows from", "conflicting constraints: none\n"});
+
+  write("twice.json",
+        rod(R"({"type": "D", "name": "first", "bodies": ["ground", "rod"], "s_i": [-1,0,0], "s_j": [0,0,0], "f": 4},
+                             {"type": "D", "name": "again", "bodies": ["ground", "rod"], "s_i": [-1,0,0], "s_j": [0,0,0], "f": 4})"));
+  const Result twice = poinsot({"check", "twice.json"});
+  EXPECT_EQ(twice.status, 0) << twice.err;
+  expect_says(twice, {"degrees of freedom: 5\n", "redundant constraints: 1 row\n",
+                      "constraint 'again' follows from constraint 'first'\n"});
+}
+
+TEST_F(Check, ConflictingConstraintsByName) {
+  write("torn.json",
+        rod(R"({"type": "D", "name": "first", "bodies": ["ground", "rod"], "s_i": [-1,0,0], "s_j": [0,0,0], "f": 4},
+                            {"type": "D", "name": "other", "bodies": ["ground", "rod"], "s_i": [-1,0,0], "s_j": [0,0,0], "f": 9})"));
+  const Result torn = poinsot({"check", "torn.json"});
+  EXPECT_EQ(torn.status, 2);
+  EXPECT_EQ(torn.err, "poinsot: torn.json: the constraints conflict; remove or correct one of those named\n");
+  expect_says(torn, {"redundant constraints: none\n", "conflicting constraints: 1 row\n",
+                     "constraint 'other' contradicts constraint 'first': off by 5 (position) where those hold\n"});
+
+  write(
+      "pulled.json",
+      rod(R"({"type": "CD", "name": "still", "bodies": ["ground", "rod"], "c": [1,0,0], "s_i": [1,0,0], "s_j": [0,0,0]},
+                              {"type": "CD", "name": "pull", "bodies": ["ground", "rod"], "c": [1,0,0], "s_i": [1,0,0], "s_j": [0,0,0], "f": "t"})"));
+  const Result pulled = poinsot({"check", "pulled.json"});
+  EXPECT_EQ(pulled.status, 2);
+  expect_says(pulled, {"constraint 'pull' contradicts constraint 'still': off by 1 (velocity) where those hold\n"});
+}
+
+}  // namespace
+}  // namespace poinsot::test
