@@ -17,7 +17,14 @@ void print_table(const char* title, const Table& table) {
   std::size_t width = 0;
   for (const auto& entry : table) width = std::max(width, entry.name.size());
   fmt::print("{}\n", title);
-  for (const auto& entry : table) fmt::print("  {:<{}}  {}\n", entry.name, width, entry.about);
+  for (const auto& entry : table) {
+    fmt::print("  {:<{}}  {}\n", entry.name, width, entry.about);
+    if constexpr (requires { entry.refuses; }) {
+      for (const auto& refusal : entry.refuses) {
+        fmt::print("  {:<{}}  refuses {}: {}\n", "", width, refusal.formulation, refusal.why);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -91,6 +91,16 @@ class Mechanism {
     }
   }
 
+  // M v
+  void momentum(const T* v_in, T* out) const {
+    for (int b = 0; b < nb(); ++b) {
+      const Body& body = c.elements->model->bodies[index(b)];
+      Eigen::Map<Vec3<T>>(out + b * kV) = T(body.mass) * Eigen::Map<const Vec3<T>>(v_in + b * kV);
+      Eigen::Map<X>(out + b * kV + 3) =
+          F::mass(c.at[index(b)], Mat3<T>(body.inertia.template cast<T>())) * coordinates(v_in + b * kV + 3);
+    }
+  }
+
   // M a + Gᵀλ − Q, and in the same pass over the rows the step's constraint residual into `rows` (may be null).
   void residual(const T* a, const T* lambda, T* out, const StepScale* scale, T* rows) {
     for (auto& w : wrench_) w = Wrench<F, T>();

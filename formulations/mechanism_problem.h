@@ -96,6 +96,10 @@ class MechanismProblem final : public Problem {
     expect(out, nc_);
     mechanism_.gamma(out.data());
   }
+  void momentum(std::span<const double> v_in, std::span<double> out) const override {
+    expect(v_in, nv_), expect(out, nv_);
+    mechanism_.momentum(v_in.data(), out.data());
+  }
   void equations_of_motion(std::span<const double> a, std::span<const double> lambda, std::span<double> out) override {
     expect(a, nv_), expect(lambda, nc_), expect(out, nv_);
     mechanism_.residual(a.data(), lambda.data(), out.data(), nullptr, nullptr);

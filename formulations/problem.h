@@ -73,6 +73,8 @@ class Problem {
   virtual void velocity_residual(std::span<double> r) const = 0;
   virtual void nu(std::span<double> out) const = 0;
   virtual void gamma(std::span<double> out) = 0;
+  // M v at the position set: the momentum of any v, in the dual of the formulation's velocities.
+  virtual void momentum(std::span<const double> v_in, std::span<double> out) const = 0;
   // M a + Gᵀλ − Q.
   virtual void equations_of_motion(std::span<const double> a, std::span<const double> lambda,
                                    std::span<double> out) = 0;

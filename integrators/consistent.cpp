@@ -49,6 +49,12 @@ Status Consistent::accelerations(Problem& problem, double t, std::span<double> a
   return {};
 }
 
+Status Consistent::solve(Problem& problem, double t, std::span<double> b) {
+  if (Status status = factor(problem, t); !status.ok()) return status;
+  const LinearStatus status = solver_->solve(b);
+  return status.ok() ? Status{} : explain(problem, t, status);
+}
+
 Status Consistent::project_position(Problem& problem, double t, std::vector<double>& q) {
   const std::size_t nv = static_cast<std::size_t>(problem.nv());
   const std::span<double> rhs(rhs_);

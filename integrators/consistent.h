@@ -20,6 +20,8 @@ class Consistent {
 
   // The problem stands at (t, q, v); a and lambda are written.
   Status accelerations(Problem& problem, double t, std::span<double> a, std::span<double> lambda);
+  // b ← [M Gᵀ; G 0]⁻¹ b at the problem's point.
+  Status solve(Problem& problem, double t, std::span<double> b);
   // Moves q onto Φ = 0 to rounding; the problem stands at the result. Fails with inconsistent_state where it cannot.
   Status project_position(Problem& problem, double t, std::vector<double>& q);
   // The problem stands at (t, q) and (·, v); v and the problem are moved onto G v = ν.

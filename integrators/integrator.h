@@ -49,11 +49,18 @@ class Integrator {
                      const Observer& observe, Statistics& statistics) = 0;
 };
 
+// A formulation an integrator cannot be used with, and why.
+struct Refusal {
+  std::string_view formulation;
+  std::string_view why;  // a clause: "it needs a vector space of coordinates"
+};
+
 struct IntegratorEntry {
   std::string_view name;
   std::string_view about;  // one line: order, what it needs, what it refuses
   Analysis analysis;
   std::unique_ptr<Integrator> (*make)();
+  std::span<const Refusal> refuses = {};
 };
 
 std::span<const IntegratorEntry> integrators();

@@ -3,9 +3,12 @@
 
 #include "integrators/dop853.h"
 #include "integrators/dopri5.h"
+#include "integrators/generalized_alpha.h"
+#include "integrators/half_implicit.h"
 #include "integrators/implicit_euler.h"
 #include "integrators/integrator.h"
 #include "integrators/kinematics.h"
+#include "integrators/rattle.h"
 
 namespace poinsot {
 namespace {
@@ -18,6 +21,17 @@ constexpr IntegratorEntry kIntegrators[] = {
     {"dop853",
      "explicit Runge-Kutta pair of order 8(5,3) with error control and projection; non-stiff; any formulation",
      Analysis::dynamics, make_dop853},
+    {"half_implicit", "symplectic Euler with the constraints at the new position: first order, fixed step",
+     Analysis::dynamics, make_half_implicit},
+    {"rattle",
+     "second order, fixed step, constraints kept in positions and velocities; symplectic in rA and rp: for long runs",
+     Analysis::dynamics, make_rattle},
+    {"generalized_alpha",
+     "on the Lie group, index 3: second order, fixed step, damping by spectral_radius; any formulation",
+     Analysis::dynamics, make_generalized_alpha},
+    {"generalized_alpha_i2",
+     "the same in stabilized index 2: velocities are kept on the constraints, too; any formulation", Analysis::dynamics,
+     make_generalized_alpha_i2},
     {"kinematics", "of a mechanism without degrees of freedom: Newton for the position, linear solves for the rates",
      Analysis::kinematics, make_kinematics},
 };

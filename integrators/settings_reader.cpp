@@ -51,6 +51,8 @@ const std::array kEntries{
     SettingEntry{"step", "step size h, s", &Settings::step, nullptr, false},
     SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false},
     SettingEntry{"tolerance", "Newton: 2-norm of the correction", &Settings::tolerance, nullptr, false},
+    SettingEntry{"spectral_radius", "generalized_alpha: spectral radius at infinity, at most 1",
+                 &Settings::spectral_radius, nullptr, true},
     SettingEntry{"rtol", "relative tolerance of integrators with error control", &Settings::rtol, nullptr, false},
     SettingEntry{"atol", "absolute tolerance of integrators with error control", &Settings::atol, nullptr, false},
     SettingEntry{"max_iterations", "Newton: iterations allowed in a step", &Settings::max_iterations, nullptr, false},

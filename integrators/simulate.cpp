@@ -32,6 +32,8 @@ void check_numbers(const Settings& s) {
   positive("step", s.step);
   positive("end", s.end);
   positive("tolerance", s.tolerance);
+  if (!(s.spectral_radius >= 0 && s.spectral_radius <= 1))
+    throw InputError(fmt::format("spectral_radius is {}; it must be between 0 and 1", s.spectral_radius));
   if (s.max_iterations < 1)
     throw InputError(fmt::format("max_iterations is {}; it must be at least 1", s.max_iterations));
 }
@@ -42,6 +44,12 @@ const IntegratorEntry& integrator_of(const Settings& settings) {
       find(find_integrator(settings.integrator), "integrator", settings.integrator, integrators());
   if (entry.analysis != Analysis::dynamics) {
     throw InputError(fmt::format("integrator '{}' is not one of dynamics", entry.name));
+  }
+  for (const Refusal& refusal : entry.refuses) {
+    if (refusal.formulation == settings.formulation) {
+      throw InputError(
+          fmt::format("integrator '{}' refuses formulation '{}': {}", entry.name, refusal.formulation, refusal.why));
+    }
   }
   return entry;
 }
