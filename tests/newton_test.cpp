@@ -1,0 +1,231 @@
+// What a run does where it cannot go on: which status, at which time, saying what, and keeping what came before; and
+// that a step which does go on allocates nothing.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "integrators/initial_state.h"
+#include "tests/support/allocations.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+using ::testing::MatchesRegex;
+
+class Newton : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {
+ protected:
+  Settings dynamics_with(double step, double end) const {
+    Settings settings = dynamics(formulation(), step, end);
+    settings.jacobian = std::get<1>(GetParam());
+    return settings;
+  }
+  Settings kinematics_with(double step, double end) const {
+    Settings settings = kinematics(formulation(), step, end);
+    settings.jacobian = std::get<1>(GetParam());
+    return settings;
+  }
+  const std::string& formulation() const { return std::get<0>(GetParam()); }
+};
+
+INSTANTIATE_TEST_SUITE_P(All, Newton,
+                         ::testing::Combine(::testing::ValuesIn(formulation_names()),
+                                            ::testing::ValuesIn(jacobian_names())),
+                         [](const auto& test) { return std::get<0>(test.param) + "_" + std::get<1>(test.param); });
+
+// What was given out ends one step before the failure, and satisfies the constraints.
+void expect_kept(const Recorded& run, double failed, double step) {
+  EXPECT_NEAR(run.outcome.status.time, failed, 1e-9);
+  ASSERT_FALSE(run.samples.empty());
+  EXPECT_NEAR(run.samples.back().t, failed - step, 1e-9);
+  EXPECT_EQ(static_cast<double>(run.outcome.statistics.steps), std::round(failed / step) - 1);
+  EXPECT_LT(run.outcome.statistics.violation.position, 1e-8);
+  for (const Snapshot& sample : run.samples) {
+    for (const BodyState& body : sample.bodies) {
+      EXPECT_TRUE(body.r.allFinite() && body.A.allFinite() && body.rd.allFinite() && body.w.allFinite());
+    }
+  }
+}
+
+TEST_P(Newton, SpendsItsIterations) {
+  Settings settings = dynamics_with(1e-2, 1);
+  settings.tolerance = 1e-12;
+  settings.max_iterations = 1;
+  const Recorded r = run(scene_of("double_pendulum_joints"), settings);
+  EXPECT_EQ(r.outcome.status.failure, Failure::not_converged);
+  EXPECT_THAT(r.outcome.status.message,
+              MatchesRegex("at t = 0.01 s Newton's method did not converge: after 1 iterations the correction is .*, "
+                           "the tolerance 1e-12; the largest correction is that of (body 'body_.'|joint 'revolute.' "
+                           "\\(its row . of 5\\)|body 'body_.' \\(its normalization\\)); try a smaller step, the exact "
+                           "jacobian or a larger tolerance"));
+  expect_kept(r, 1e-2, 1e-2);
+}
+
+TEST_P(Newton, SpendsItsIterationsInKinematics) {
+  Settings settings = kinematics_with(1e-2, 1);
+  settings.max_iterations = 1;
+  settings.assembly = Assembly::always;
+  const Recorded r = run(scene_of("four_link_joints"), settings);
+  EXPECT_EQ(r.outcome.status.failure, Failure::not_converged);
+  EXPECT_THAT(r.outcome.status.message,
+              MatchesRegex("at t = 0.01 s the position did not converge: after 1 iterations the correction is .*, the "
+                           "tolerance 1e-12; body '.*' moves most; the mechanism may be locked here or the driver ask "
+                           "for more than it can reach; try a smaller step"));
+  expect_kept(r, 1e-2, 1e-2);
+}
+
+// A pendulum of 2 m drawn away from a point 3 m above its pivot: at 5 m it can follow no longer.
+Scene drawn_too_far() {
+  Scene scene = scene_of("single_pendulum_joints");
+  Driver pull;
+  pull.name = "pull";
+  pull.type = DriverType::distance;
+  pull.j = 0;
+  pull.s_i = {0, 0, 3};
+  const double start = (scene.bodies[0].position - pull.s_i).norm();
+  pull.value = Expression::parse(fmt::format("{:.17g} + (5 - {:.17g})*t/0.5", start, start));
+  scene.drivers = {pull};
+  return scene;
+}
+
+TEST_P(Newton, StopsWhereTheMechanismLocks) {
+  for (const Settings& settings : {kinematics_with(4e-3, 1), dynamics_with(4e-3, 1)}) {
+    const Recorded r = run(drawn_too_far(), settings);
+    EXPECT_THAT(r.outcome.status.failure, AnyOf(Failure::not_converged, Failure::singular_matrix));
+    EXPECT_THAT(r.outcome.status.message,
+                AnyOf(HasSubstr("the driver ask for more than it can reach"), HasSubstr("did not converge"),
+                      HasSubstr("singular position of the mechanism")));
+    EXPECT_GT(r.outcome.status.time, 0.47);  // the pendulum speeds up without bound, so steps fail a little before
+    EXPECT_LT(r.outcome.status.time, 0.505);
+    expect_kept(r, r.outcome.status.time, 4e-3);
+  }
+}
+
+// A parallelogram driven so that a step ends exactly where its links lie flat and the rocker may go either way. The
+// positions there can still be found by a matrix from before; then the next step fails.
+Scene flattened() {
+  Scene scene;
+  const Vector3 link(std::cos(1.0), std::sin(1.0), 0), along(2, 0, 0);
+  const std::pair<const char*, Vector3> bars[] = {
+      {"crank", link / 2}, {"rocker", along + link / 2}, {"coupler", link + along / 2}};
+  for (const auto& [name, position] : bars) {
+    Body& body = scene.bodies.emplace_back();
+    body.name = name;
+    body.mass = 1;
+    body.inertia = Vector3(0.1, 0.2, 0.25).asDiagonal();
+    body.position = position;
+    body.orientation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  }
+  const auto hinge = [&](const char* name, int i, int j, const Vector3& point) {
+    Joint& joint = scene.joints.emplace_back();
+    joint.name = name;
+    joint.i = i, joint.j = j;
+    joint.point = point;
+    joint.axis = Vector3::UnitZ();
+  };
+  hinge("A", kGround, 0, {0, 0, 0});
+  hinge("B", kGround, 1, along);
+  hinge("C", 0, 2, link);
+  hinge("D", 1, 2, link + along);
+  Driver& motor = scene.drivers.emplace_back();
+  motor.name = "motor";
+  motor.j = 0;
+  motor.axis = Vector3::UnitZ();
+  motor.value = Expression::parse("-t");
+  return scene;
+}
+
+TEST_P(Newton, StopsAtABifurcation) {
+  const Recorded r = run(flattened(), kinematics_with(0.05, 2));
+  EXPECT_THAT(r.outcome.status.failure, AnyOf(Failure::not_converged, Failure::singular_matrix));
+  EXPECT_GT(r.outcome.status.time, 0.999);
+  EXPECT_LT(r.outcome.status.time, 1.051);
+  expect_kept(r, r.outcome.status.time, 0.05);
+}
+
+TEST_P(Newton, NamesABodyWithoutInertia) {
+  Scene scene = scene_of("free_body");
+  scene.bodies[0].inertia.setZero();
+  const Recorded r = run(scene, dynamics_with(1e-2, 1));
+  EXPECT_EQ(r.outcome.status.failure, Failure::singular_matrix);
+  EXPECT_THAT(r.outcome.status.message, HasSubstr("at t = 0 s the linear system is singular"));
+  EXPECT_THAT(r.outcome.status.message, HasSubstr("a body without inertia"));
+  EXPECT_TRUE(r.samples.empty());
+}
+
+TEST_P(Newton, StopsWhereAForceIsNotFinite) {
+  Scene scene = scene_of("double_pendulum_joints");
+  PointForce force;
+  force.name = "wild";
+  force.body = 1;
+  force.force[1] = Expression::parse("1/(t - 0.5)");
+  scene.forces = {force};
+  const Recorded r = run(scene, dynamics_with(0.01, 1));
+  EXPECT_EQ(r.outcome.status.failure, Failure::not_finite);
+  EXPECT_THAT(r.outcome.status.message, MatchesRegex("at t = 0.5 s .* not finite; try a smaller step"));
+  expect_kept(r, 0.5, 0.01);
+}
+
+TEST_P(Newton, StopsWhereADriverIsNotFinite) {
+  Scene scene = scene_of("single_pendulum_joints");
+  scene.drivers[0].value = Expression::parse("sqrt(0.505 - t) - sqrt(0.505)");
+  for (const Settings& settings : {kinematics_with(0.01, 1), dynamics_with(0.01, 1)}) {
+    const Recorded r = run(scene, settings);
+    EXPECT_EQ(r.outcome.status.failure, Failure::not_finite) << r.outcome.status.message;
+    EXPECT_THAT(r.outcome.status.message, MatchesRegex("at t = 0.51 s .* not finite.*"));
+    expect_kept(r, 0.51, 0.01);
+  }
+}
+
+// A step allocates nothing, but for klu's fresh pivots where the old ones have turned bad, which is seldom.
+TEST_P(Newton, StepsAllocateNothing) {
+  for (const char* name : {"klu", "dense"}) {
+    for (const char* model : {"four_link", "slider_crank", "slider_crank_joints", "double_pendulum", "andrews"}) {
+      for (Settings settings : {dynamics_with(1e-2, 0.4), kinematics_with(1e-2, 0.4)}) {
+        const Scene scene = scene_of(model);
+        const auto compiled = std::make_shared<const Model>(compile(scene));
+        settings.linear_solver = name;
+        if (compiled->name.find("Andrews") == 0) settings.step = 1e-5, settings.end = 4e-4, settings.tolerance = 0.1;
+        const InitialState start = find_initial_state(compiled, settings);
+        const auto problem = find_formulation(formulation())->make(compiled, start.dropped);
+        if (settings.analysis == Analysis::kinematics && problem->nv() != problem->nc()) continue;
+        const auto size = [](int n) { return static_cast<std::size_t>(n); };
+        State state{std::vector<double>(size(problem->nq())), std::vector<double>(size(problem->nv())),
+                    std::vector<double>(size(problem->nv())), std::vector<double>(size(problem->nc()))};
+        ASSERT_TRUE(problem->from_bodies(start.bodies, state.q, state.v).ok());
+        const auto solver = find_linear_solver(name)->make();
+        long steps = 0, fresh = 0, pivots = 0, allocated = 0;
+        const Observer observe = [&](const Sample&) {
+          const bool kept = std::string_view(name) == "dense" || solver->statistics().factorizations == pivots;
+          if (++steps > 2) {  // the start, and the first step
+            EXPECT_TRUE(!kept || allocations() == allocated)
+                << allocations() - allocated << " in " << model << ' ' << name << ", step " << steps - 1;
+            fresh += !kept;
+          }
+          pivots = solver->statistics().factorizations;
+          allocated = allocations();
+        };
+        Statistics statistics;
+        const IntegratorEntry* integrator =
+            find_integrator(settings.analysis == Analysis::kinematics ? "kinematics" : "implicit_euler");
+        const Status status = integrator->make()->run(*problem, *solver, settings, state, observe, statistics);
+        EXPECT_TRUE(status.ok()) << status.message;
+        EXPECT_EQ(steps, 41);
+        EXPECT_LE(fresh, 4) << model << ' ' << name;
+      }
+    }
+  }
+}
+
+TEST(Allocations, AreCounted) {
+  const long before = allocations();
+  const Eigen::VectorXd x = Eigen::VectorXd::Zero(10);
+  const std::vector<double> y(static_cast<std::size_t>(x.size()));
+  EXPECT_GE(allocations() - before, 2);
+}
+
+}  // namespace
+}  // namespace poinsot::test
