@@ -7,96 +7,21 @@
 
 #include <gtest/gtest.h>
 
-#include "formulations/mechanism.h"
 #include "tests/scale.h"
-#include "tests/support/dense_problem.h"
-#include "tests/support/random_model.h"
+#include "tests/support/dual_fixture.h"
 
 namespace poinsot::test {
 
 // Rounding only: sums of a few dozen products of numbers of order one.
 inline constexpr double kRounding = 1e-12;
 
-struct Point {
-  double t;
-  VectorX q, v, a, lambda;
-};
-
 template <class F>
-class Derivatives : public ::testing::Test {
+class Derivatives : public DualFixture<F> {
  protected:
-  using D = Dual<double>;
-  using DualVector = Eigen::Matrix<D, Eigen::Dynamic, 1>;
-  static constexpr int kQ = 3 + F::stored, kV = 3 + F::m;
-
-  static DualVector dual(const VectorX& value, const VectorX& direction) {
-    DualVector x(value.size());
-    for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = D(value[k], direction[k]);
-    return x;
-  }
-  static DualVector constant(const VectorX& value) { return dual(value, VectorX::Zero(value.size())); }
-  static VectorX derivative(const DualVector& x) {
-    return VectorX::NullaryExpr(x.size(), [&](Eigen::Index k) { return x[k].d; });
-  }
-
-  struct Duals {
-    explicit Duals(const Model& model)
-        : mechanism(std::make_shared<const Elements>(std::make_shared<const Model>(model), std::span<const int>())) {}
-
-    // Stands at (t, from ⊞ dq, v); the arrays live here because a mechanism only refers to them.
-    void stand(const D& t, const VectorX& from, const DualVector& dq, const DualVector& v_in) {
-      const DualVector start = constant(from);
-      q.resize(from.size());
-      v = v_in;
-      mechanism.retract(start.data(), dq.data(), q.data(), mechanism.nb());
-      mechanism.set_position(t, q.data());
-      mechanism.set_velocity(v.data());
-    }
-    VectorX position_rate() const {
-      DualVector out(mechanism.nc());
-      mechanism.constraint_residual(D(1.0), D(0.0), out.data());
-      return derivative(out);
-    }
-    VectorX velocity_rate() {
-      DualVector out(mechanism.nc());
-      mechanism.velocity_residual(out.data());
-      return derivative(out);
-    }
-    VectorX step_rate(const StepScale& scale, const DualVector& a, const DualVector& lambda) {
-      DualVector out(mechanism.nv() + mechanism.nc());
-      mechanism.residual(a.data(), lambda.data(), out.data(), &scale, out.data() + mechanism.nv());
-      return derivative(out);
-    }
-
-    Mechanism<F, D> mechanism;
-    DualVector q, v;
-  };
-
-  // Coordinates drawn as they are, so that rp leaves the unit sphere and reps sees every chart and its singularities.
-  static VectorX random_q(Random& random, int bodies) {
-    VectorX q(bodies * kQ);
-    for (int b = 0; b < bodies; ++b) {
-      double* x = q.data() + b * kQ + 3;
-      q.segment<3>(b * kQ) = random.vector();
-      F::from_rotation(random.rotation(), x);
-      if constexpr (F::normalized) q.segment<F::stored>(b * kQ + 3) *= random.uniform(0.7, 1.4);
-      if constexpr (requires { F::rechart; }) {
-        if (random.integer(0, 1)) {
-          for (int k = 0; k < 3; ++k) x[k] = 2 * random.normal();
-          x[3] = random.integer(0, 2);
-        }
-      }
-    }
-    return q;
-  }
-  static Point random_point(Random& random, const Problem& problem) {
-    return {random.uniform(-2, 2), random_q(random, problem.bodies()), random.vector(problem.nv()),
-            random.vector(problem.nv()), random.vector(problem.nc())};
-  }
-  static void stand(Problem& problem, const Point& at) {
-    problem.set_position(at.t, view(at.q));
-    problem.set_velocity(view(at.v));
-  }
+  using Base = DualFixture<F>;
+  using Base::constant, Base::dual, Base::kV, Base::random_point, Base::stand;
+  using typename Base::D;
+  using typename Base::Duals;
 
   // G = ∂Φ/∂q, ν = −∂Φ/∂t, γ from d/dt (G v − ν) = G a − γ.
   static void check_rows(const Model& model, Random& random) {
@@ -246,7 +171,7 @@ class Derivatives : public ::testing::Test {
   static void for_each_row(Visit&& visit) {
     for (RowType type : kRowTypes) {
       for (const auto& [i, j] : kPairs) {
-        for (int seed = 0; seed < scaled(10); ++seed) {
+        for (int seed = 0; seed < scaled(40); ++seed) {
           SCOPED_TRACE(kRowNames[static_cast<int>(type)] + pair_name(i, j) + ", seed " + std::to_string(seed));
           Random random(static_cast<unsigned>(seed));
           Model model = random_bodies(random, 2);
@@ -262,7 +187,7 @@ class Derivatives : public ::testing::Test {
       const auto type = static_cast<ForceType>(k);
       for (const auto& [i, j] : kPairs) {
         if (j == kGround && !acts_between_two(type)) continue;
-        for (int seed = 0; seed < scaled(10); ++seed) {
+        for (int seed = 0; seed < scaled(40); ++seed) {
           SCOPED_TRACE(kForceNames[k] + pair_name(i, j) + ", seed " + std::to_string(seed));
           Random random(static_cast<unsigned>(seed));
           Model model = random_bodies(random, 2);
@@ -274,7 +199,7 @@ class Derivatives : public ::testing::Test {
   }
   template <class Visit>
   static void for_each_model(Visit&& visit) {
-    for (int seed = 0; seed < scaled(20); ++seed) {
+    for (int seed = 0; seed < scaled(40); ++seed) {
       SCOPED_TRACE("seed " + std::to_string(seed));
       Random random(static_cast<unsigned>(seed));
       const Model model = random_model(random, 4);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/support/derivative_suite.h"
+#include "tests/support/power_of_loads.h"
 
 namespace poinsot::test {
 
@@ -135,6 +136,36 @@ TYPED_TEST_P(Derivatives, OfTheConsistentSystem) {
     EXPECT_LT((matrix - matrix.transpose()).norm(), kRounding * matrix.norm());
     EXPECT_EQ((matrix.bottomLeftCorner(nc, nv) - gradient(*problem)).norm(), 0);
     EXPECT_EQ(matrix.bottomRightCorner(nc, nc).norm(), 0);
+    VectorX momentum(nv);
+    problem->momentum(view(at.a), view(momentum));
+    EXPECT_LT(difference(momentum, matrix.topLeftCorner(nv, nv) * at.a, 1), kRounding);
+  });
+}
+
+// The kernels on long double are the same ones.
+TYPED_TEST_P(Derivatives, OnLongDoubleAreTheSame) {
+  this->for_each_model([](const Model& model, Random& random) {
+    using L = long double;
+    using LongVector = Eigen::Matrix<L, Eigen::Dynamic, 1>;
+    const auto problem = make_problem(TypeParam::name, model);
+    const Point at = TestFixture::random_point(random, *problem);
+    TestFixture::stand(*problem, at);
+    const StepScale scale{1, 0.5, 0.25};
+    const int nv = problem->nv(), nc = problem->nc();
+    VectorX plain_residual(nv + nc), plain_gamma(nc);
+    problem->step_residual(scale, view(at.a), view(at.lambda), view(plain_residual));
+    problem->gamma(view(plain_gamma));
+
+    Mechanism<TypeParam, L> mechanism(
+        std::make_shared<const Elements>(std::make_shared<const Model>(model), std::span<const int>()));
+    const LongVector q = at.q.cast<L>(), v = at.v.cast<L>(), a = at.a.cast<L>(), lambda = at.lambda.cast<L>();
+    mechanism.set_position(at.t, q.data());
+    mechanism.set_velocity(v.data());
+    LongVector residual(nv + nc), gamma(nc);
+    mechanism.residual(a.data(), lambda.data(), residual.data(), &scale, residual.data() + nv);
+    mechanism.gamma(gamma.data());
+    EXPECT_LT(difference(plain_residual, residual.cast<double>(), 1), kRounding);
+    EXPECT_LT(difference(plain_gamma, gamma.cast<double>(), 1), kRounding);
   });
 }
 
@@ -196,30 +227,7 @@ TYPED_TEST_P(Derivatives, OfTheEnergyAreThePowerOfTheForces) {
     const VectorX a = random.vector(problem->nv()), no_lambda = VectorX::Zero(problem->nc());
     problem->equations_of_motion(view(a), view(no_lambda), view(out));
 
-    const auto at = [](const Expression(&w)[3], double time) {
-      return Vector3(w[0].at(time).f, w[1].at(time).f, w[2].at(time).f);
-    };
-    const auto state = [&](int body) { return body == kGround ? BodyState() : states[static_cast<std::size_t>(body)]; };
-    double power = 0;
-    for (const PointForce& load : model.point_forces) {
-      const BodyState s = state(load.body);
-      const Vector3 force = (load.frame == Frame::body ? s.A : Matrix3::Identity()) * at(load.force, t);
-      power += force.dot(s.rd + s.A * s.w.cross(load.point));
-    }
-    for (const Torque& load : model.torques) {
-      const BodyState s = state(load.body);
-      power += ((load.frame == Frame::body ? s.A : Matrix3::Identity()) * at(load.torque, t)).dot(s.A * s.w);
-    }
-    for (const Spring& spring : model.springs) {
-      const BodyState i = state(spring.i), j = state(spring.j);
-      const Vector3 d = j.r + j.A * spring.s_j - i.r - i.A * spring.s_i;
-      const Vector3 d_dot = j.rd + j.A * j.w.cross(spring.s_j) - i.rd - i.A * i.w.cross(spring.s_i);
-      power -= spring.damping * std::pow(d.normalized().dot(d_dot), 2);
-    }
-    for (const LinearDrag& drag : model.drags) {
-      const BodyState s = state(drag.body);
-      power -= drag.translational * s.rd.squaredNorm() + drag.rotational * s.w.squaredNorm();
-    }
+    double power = power_of_loads(model, states, t);
     typename TestFixture::Duals duals(model);
     duals.stand(Dual<double>(t, 1.0), q, TestFixture::dual(VectorX::Zero(problem->nv()), v), TestFixture::dual(v, a));
     const auto& torsions = duals.mechanism.c.elements->torsions;
@@ -234,7 +242,7 @@ TYPED_TEST_P(Derivatives, OfTheEnergyAreThePowerOfTheForces) {
 
 REGISTER_TYPED_TEST_SUITE_P(Derivatives, OfSingleRows, OfStepsWithASingleRow, OfStepsWithTwoRowsOnOnePair,
                             OfStepsWithASingleForce, OfMechanismsWithEverything, LeaveRemaindersOfSecondOrder,
-                            OfAlternateRows, OfReactions, OfTheConsistentSystem, SimplifiedMatrixLacksOnlyWhatItSays,
-                            OfBodyStates, OfTheEnergyAreThePowerOfTheForces);
+                            OfAlternateRows, OfReactions, OnLongDoubleAreTheSame, OfTheConsistentSystem,
+                            SimplifiedMatrixLacksOnlyWhatItSays, OfBodyStates, OfTheEnergyAreThePowerOfTheForces);
 
 }  // namespace poinsot::test
