@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "linsolve/block_kernels.h"
+
 namespace poinsot {
 namespace {
 
@@ -35,7 +37,7 @@ bool eliminate(Square& a, int p, int n, std::vector<double> weight, double part)
     const auto candidate = [&](int i) { return std::abs(a(i, k).value) * weight[at(i)]; };
     for (int i = k + 1; i < p; ++i)
       if (candidate(i) > candidate(best)) best = i;
-    if (candidate(best) > 10 * candidate(k)) {
+    if (candidate(best) > block::kReluctance * candidate(k)) {
       for (int j = 0; j < n; ++j) std::swap(a(k, j), a(best, j));
       std::swap(weight[at(k)], weight[at(best)]);
     }

@@ -35,17 +35,44 @@ void with_size(int pivots, Work&& work) {
   }
 }
 
+// to[0 … n) += from[0 … n)
+inline void add(double* to, const double* from, int n) {
+  for (; n >= block::kPair; n -= block::kPair, to += block::kPair, from += block::kPair)
+    block::store_pair(to, block::load_pair(to) + block::load_pair(from));
+  if (n > 0) *to += *from;
+}
+
 // Adds a child's update matrix to the parent's D, L, U and W.
-void extend_add(const Front& child, const double* from, const int* target, const Front& parent, double* D, double* W) {
-  const int p = parent.pivots;
-  double *L = D + p * p, *U = L + p * parent.rows;
-  for (int j = 0; j < child.others; ++j, from += child.rows) {
-    const bool pivot = j < child.inner;
-    double* top = pivot ? D + target[j] * p : U + target[j] * p;
-    double* bottom = pivot ? L + target[j] * parent.rows : W + target[j] * parent.rows;
-    for (int i = 0; i < child.inner; ++i) top[target[i]] += from[i];
-    for (int i = child.inner; i < child.others; ++i) bottom[target[i]] += from[i];
+inline void extend_add(const Front& child, const double* from, const int* target, const Front& parent, double* D,
+                       double* W) {
+  const int p = parent.pivots, rows = parent.rows, inner = child.inner, rest = child.others - inner;
+  double *L = D + p * p, *U = L + p * rows;
+  if (child.in_a_row) {
+    D += target[0], L += rest > 0 ? target[inner] : 0;
+    for (int j = 0; j < inner; ++j, from += child.rows) {
+      add(D + target[j] * p, from, inner);
+      add(L + target[j] * rows, from + inner, rest);
+    }
+    U += target[0], W += rest > 0 ? target[inner] : 0;
+    for (int j = inner; j < child.others; ++j, from += child.rows) {
+      add(U + target[j] * p, from, inner);
+      add(W + target[j] * rows, from + inner, rest);
+    }
+    return;
   }
+  for (int j = 0; j < child.others; ++j, from += child.rows) {
+    const bool pivot = j < inner;
+    double* top = pivot ? D + target[j] * p : U + target[j] * p;
+    double* bottom = pivot ? L + target[j] * rows : W + target[j] * rows;
+    for (int i = 0; i < inner; ++i) top[target[i]] += from[i];
+    for (int i = inner; i < child.others; ++i) bottom[target[i]] += from[i];
+  }
+}
+
+template <int Length>
+inline const Run* copy_runs(const Run* run, const Run* end, const double* values, double* store) {
+  for (; run != end; ++run) std::memcpy(store + run->target, values + run->source, Length * sizeof(double));
+  return run;
 }
 
 }  // namespace
@@ -59,6 +86,7 @@ void BlockFactor::resize(const Schedule& s) {
   then_.assign(at(s.n), 1);
   weight_.assign(at(s.n), 1);
   order_.assign(at(s.n), 0);
+  exchanged_.assign(s.fronts.size(), 0);
 }
 
 block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> values) {
@@ -69,11 +97,10 @@ block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> valu
     const Front& f = s.fronts[k];
     double* D = store_.data() + f.store;
     std::fill_n(D, f.pivots * (f.pivots + f.rows + f.others), 0.0);
-    for (const Run* end = s.runs.data() + f.runs; run != end; ++run) {
-      const double* from = values.data() + run->source;
-      double* to = D + run->target;
-      for (unsigned i = 0; i < run->length; ++i) to[i] = from[i];
-    }
+    run = copy_runs<3>(run, s.runs.data() + f.threes, values.data(), D);
+    run = copy_runs<4>(run, s.runs.data() + f.fours, values.data(), D);
+    for (const Run* end = s.runs.data() + f.runs; run != end; ++run)
+      std::copy_n(values.data() + run->source, run->length, D + run->target);
     double* W = update_.data();
     std::fill_n(W, f.rows * f.others, 0.0);
     for (const int* end = s.children.data() + f.children; child != end; ++child) {
@@ -82,8 +109,8 @@ block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> valu
     }
     std::copy_n(weight_.data() + f.first, f.pivots, t_.data());
     with_size(f.pivots, [&](auto P) {
-      block::eliminate<P.value>(D, f, W, stack_.data() + f.update, order_.data() + f.first, t_.data(),
-                                then_.data() + f.first, drift);
+      exchanged_[k] = block::eliminate<P.value>(D, f, W, stack_.data() + f.update, order_.data() + f.first, t_.data(),
+                                                then_.data() + f.first, drift);
     });
   }
   return drift;
@@ -91,11 +118,13 @@ block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> valu
 
 void BlockFactor::solve(const Schedule& s, std::span<double> b) {
   for (std::size_t k = 0; k < b.size(); ++k) x_[k] = b[at(s.unknown[k])];
-  for (const Front& f : s.fronts)
+  for (std::size_t k = 0; k < s.fronts.size(); ++k) {
+    const Front& f = s.fronts[k];
     with_size(f.pivots, [&](auto P) {
-      block::forward<P.value>(store_.data() + f.store, f, s.position.data() + f.list, order_.data() + f.first,
-                              x_.data(), t_.data());
+      block::forward<P.value>(store_.data() + f.store, f, s.position.data() + f.list,
+                              exchanged_[k] ? order_.data() + f.first : nullptr, x_.data(), t_.data());
     });
+  }
   for (std::size_t k = s.fronts.size(); k-- > 0;) {
     const Front& f = s.fronts[k];
     with_size(f.pivots, [&](auto P) {

@@ -29,6 +29,7 @@ class BlockFactor {
   std::vector<double> then_;   // 1/|pivot| of an examined factorization, by position
   std::vector<float> weight_;  // by position
   std::vector<std::uint16_t> order_;
+  std::vector<char> exchanged_;  // by front: rows were exchanged, order_ says how
 };
 
 }  // namespace poinsot

@@ -29,6 +29,22 @@ inline void store(double* x, Vec v) {
   std::memcpy(x, &v, sizeof v);
 }
 
+// Two numbers at a time, for short runs.
+inline constexpr int kPair = 2;
+typedef double Pair __attribute__((vector_size(kPair * sizeof(double))));
+inline Pair load_pair(const double* x) {
+  Pair v;
+  std::memcpy(&v, x, sizeof v);
+  return v;
+}
+inline void store_pair(double* x, Pair v) {
+  std::memcpy(x, &v, sizeof v);
+}
+
+// Rows are exchanged where a candidate is this much larger than the diagonal. M below G, in the column of a body with
+// small inertia, is no reason to: pivots on M are those of the definite Schur complement.
+inline constexpr double kReluctance = 1e3;
+
 // How far pivots are from those of a factorization that was examined: the least and the largest |u| / |u then|.
 struct Drift {
   double least = 1, largest = 1, poison = 0;  // poison is 0 while all pivots are numbers
@@ -40,8 +56,50 @@ struct Drift {
   }
 };
 
+// Calls f(std::integral_constant<int, k>()) for k = 0 … N − 1, each written out.
+template <int N, class F>
+inline void unrolled(F&& f) {
+  [&]<int... k>(std::integer_sequence<int, k...>) {
+    (f(std::integral_constant<int, k>()), ...);
+  }
+  (std::make_integer_sequence<int, N>());
+}
+
+// As factor_pivots, for the common case that the diagonal serves: straight-line code. False, and D as it was, where a
+// row has to be exchanged.
+template <int P>
+inline bool factor_diagonal(double* D, const double* weight, const double* then, Drift& drift) {
+  double a[P * P];
+  std::copy_n(D, P * P, a);
+  double excess = 0;
+  Drift seen = drift;
+  unrolled<P>([&](auto k) {
+    double largest = 0;
+    unrolled<P>([&](auto i) {
+      if constexpr (i > k) largest = std::max(largest, std::abs(a[k * P + i]) * weight[i]);
+    });
+    excess = std::max(excess, largest - kReluctance * std::abs(a[k * P + k]) * weight[k]);
+    seen.add(std::abs(a[k * P + k]) * then[k]);
+    const double inverse = 1 / a[k * P + k];
+    a[k * P + k] = inverse;
+    unrolled<P>([&](auto i) {
+      if constexpr (i > k) a[k * P + i] *= inverse;
+    });
+    unrolled<P>([&](auto j) {
+      if constexpr (j > k)
+        unrolled<P>([&](auto i) {
+          if constexpr (i > k) a[j * P + i] -= a[k * P + i] * a[j * P + k];
+        });
+    });
+  });
+  if (!(excess <= 0)) return false;
+  drift = seen;
+  std::copy_n(a, P * P, D);
+  return true;
+}
+
 // D ← its factors, p × p. Candidates are compared in units of their rows, given by `weight` (permuted along). The
-// diagonal is preferred while it is within a tenth of the largest: an order of rows that stays the same keeps the
+// diagonal is preferred: an order of rows that stays the same keeps the
 // pivots comparable. True where rows were exchanged. `then` holds 1/|pivot| for Drift.
 template <int P>
 inline bool factor_pivots(double* D, int p_run, std::uint16_t* order, double* weight, const double* then,
@@ -51,18 +109,14 @@ inline bool factor_pivots(double* D, int p_run, std::uint16_t* order, double* we
   for (int k = 0; k < p; ++k) {
     double* column = D + k * p;
     int best = k;
-    double largest = std::abs(column[k]) * weight[k];
-    const double diagonal = 10 * largest;
-    for (int i = k + 1; i < p; ++i) {
-      const double candidate = std::abs(column[i]) * weight[i];
-      if (candidate > largest) largest = candidate, best = i;
-    }
+    const double diagonal = kReluctance * std::abs(column[k]) * weight[k];
+    double largest = 0;
+    for (int i = k + 1; i < p; ++i) largest = std::max(largest, std::abs(column[i]) * weight[i]);
     if (largest > diagonal) {
+      while (std::abs(column[best]) * weight[best] != largest) ++best;
       for (int j = 0; j < p; ++j) std::swap(D[j * p + k], D[j * p + best]);
       std::swap(weight[k], weight[best]);
       exchanged = true;
-    } else {
-      best = k;
     }
     order[k] = static_cast<std::uint16_t>(best);
     drift.add(std::abs(column[k]) * then[k]);
@@ -89,33 +143,39 @@ template <int P, int C>
 inline void eliminate_rows(const double* D, double* L, const double* U, const double* W, double* out, int m, int rows,
                            int row) {
   Vec x[P][C];
-  for (int k = 0; k < P; ++k)
-    for (int c = 0; c < C; ++c) x[k][c] = load(L + k * rows + row + c * kLanes);
-  for (int k = 0; k < P; ++k) {
-    for (int j = 0; j < k; ++j)
-      for (int c = 0; c < C; ++c) x[k][c] -= x[j][c] * D[k * P + j];
-    for (int c = 0; c < C; ++c) x[k][c] *= D[k * P + k];
-  }
-  for (int k = P - 1; k >= 0; --k)
-    for (int j = k + 1; j < P; ++j)
-      for (int c = 0; c < C; ++c) x[k][c] -= x[j][c] * D[k * P + j];
-  for (int k = 0; k < P; ++k)
-    for (int c = 0; c < C; ++c) store(L + k * rows + row + c * kLanes, x[k][c]);
-  for (int j = 0; j < m; ++j) {
+  L += row, W += row, out += row;
+  unrolled<P>([&](auto k) {
+    unrolled<C>([&](auto c) { x[k][c] = load(L + k * rows + c * kLanes); });
+    unrolled<P>([&](auto j) {
+      if constexpr (j < k) unrolled<C>([&](auto c) { x[k][c] -= x[j][c] * D[k * P + j]; });
+    });
+    unrolled<C>([&](auto c) { x[k][c] *= D[k * P + k]; });
+  });
+  unrolled<P>([&](auto back) {
+    constexpr int k = P - 1 - back;
+    unrolled<P>([&](auto j) {
+      if constexpr (j > k) unrolled<C>([&](auto c) { x[k][c] -= x[j][c] * D[k * P + j]; });
+    });
+    unrolled<C>([&](auto c) { store(L + k * rows + c * kLanes, x[k][c]); });
+  });
+  for (int j = 0; j < m; ++j, W += rows, out += rows, U += P) {
     Vec w[C];
-    for (int c = 0; c < C; ++c) w[c] = load(W + j * rows + row + c * kLanes);
-    for (int k = 0; k < P; ++k)
-      for (int c = 0; c < C; ++c) w[c] -= x[k][c] * U[j * P + k];
-    for (int c = 0; c < C; ++c) store(out + j * rows + row + c * kLanes, w[c]);
+    unrolled<C>([&](auto c) { w[c] = load(W + c * kLanes); });
+    unrolled<P>([&](auto k) { unrolled<C>([&](auto c) { w[c] -= x[k][c] * U[k]; }); });
+    unrolled<C>([&](auto c) { store(out + c * kLanes, w[c]); });
   }
 }
 
+// True where rows were exchanged; then `order` says how.
 template <int P>
-void eliminate(double* D, const Front& f, const double* W, double* out, std::uint16_t* order, double* weight,
+bool eliminate(double* D, const Front& f, const double* W, double* out, std::uint16_t* order, double* weight,
                const double* then, Drift& drift) {
   const int p = P ? P : f.pivots, m = f.others, rows = f.rows;
   double *L = D + p * p, *U = L + p * rows;
-  if (factor_pivots<P>(D, p, order, weight, then, drift))
+  bool exchanged = true;
+  if constexpr (P > 0) exchanged = !factor_diagonal<P>(D, weight, then, drift);
+  if (exchanged) exchanged = factor_pivots<P>(D, p, order, weight, then, drift);
+  if (exchanged)
     for (int j = 0; j < m; ++j) exchange<P>(order, p, U + j * p);
   if constexpr (P > 0) {
     // As many rows at once as leave room in the registers.
@@ -150,20 +210,25 @@ void eliminate(double* D, const Front& f, const double* W, double* out, std::uin
         for (int i = 0; i < rows; ++i) out[j * rows + i] -= y[i] * u;
       }
   }
+  return exchanged;
 }
 
-// x: the permuted right-hand side; t: room for `rows` numbers.
+// x: the permuted right-hand side; t: room for `rows` numbers; `order` is null where no rows were exchanged.
 template <int P>
 inline void forward(const double* D, const Front& f, const int* position, const std::uint16_t* order, double* x,
                     double* t) {
-  const int p = P ? P : f.pivots, rows = f.rows;
+  const int p = P ? P : f.pivots, m = f.others, rows = f.rows;
   double* b = x + f.first;
-  exchange<P>(order, p, b);
+  if (order) exchange<P>(order, p, b);
   const double* L = D + p * p;
   if constexpr (P > 0) {
+    double own[P];
+    std::copy_n(b, P, own);
     for (int row = 0; row < rows; row += kLanes) {
-      Vec sum = load(L + row) * b[0];
-      for (int k = 1; k < P; ++k) sum += load(L + k * rows + row) * b[k];
+      Vec sum = load(L + row) * own[0];
+      unrolled<P>([&](auto k) {
+        if constexpr (k > 0) sum += load(L + k * rows + row) * own[k];
+      });
       store(t + row, sum);
     }
   } else {
@@ -171,23 +236,45 @@ inline void forward(const double* D, const Front& f, const int* position, const 
     for (int k = 0; k < p; ++k)
       for (int i = 0; i < rows; ++i) t[i] += L[k * rows + i] * b[k];
   }
-  for (int i = 0; i < f.others; ++i) x[position[i]] -= t[i];
+  for (int i = 0; i < m; ++i) x[position[i]] -= t[i];
 }
 
 template <int P>
 inline void backward(const double* D, const Front& f, const int* position, double* x) {
-  const int p = P ? P : f.pivots;
-  double* b = x + f.first;
+  const int p = P ? P : f.pivots, m = f.others;
   const double* U = D + p * (p + f.rows);
-  for (int j = 0; j < f.others; ++j) {
-    const double xj = x[position[j]];
-    for (int k = 0; k < p; ++k) b[k] -= U[j * p + k] * xj;
-  }
-  for (int k = 0; k < p; ++k)
-    for (int i = k + 1; i < p; ++i) b[i] -= D[k * p + i] * b[k];
-  for (int k = p - 1; k >= 0; --k) {
-    b[k] *= D[k * p + k];
-    for (int i = 0; i < k; ++i) b[i] -= D[k * p + i] * b[k];
+  double* b = x + f.first;
+  if constexpr (P > 0) {
+    double own[P];
+    std::copy_n(b, P, own);
+    for (int j = 0; j < m; ++j, U += P) {
+      const double xj = x[position[j]];
+      unrolled<P>([&](auto k) { own[k] -= U[k] * xj; });
+    }
+    unrolled<P>([&](auto k) {
+      unrolled<P>([&](auto i) {
+        if constexpr (i > k) own[i] -= D[k * P + i] * own[k];
+      });
+    });
+    unrolled<P>([&](auto back) {
+      constexpr int k = P - 1 - back;
+      own[k] *= D[k * P + k];
+      unrolled<P>([&](auto i) {
+        if constexpr (i < k) own[i] -= D[k * P + i] * own[k];
+      });
+    });
+    std::copy_n(own, P, b);
+  } else {
+    for (int j = 0; j < m; ++j) {
+      const double xj = x[position[j]];
+      for (int k = 0; k < p; ++k) b[k] -= U[j * p + k] * xj;
+    }
+    for (int k = 0; k < p; ++k)
+      for (int i = k + 1; i < p; ++i) b[i] -= D[k * p + i] * b[k];
+    for (int k = p - 1; k >= 0; --k) {
+      b[k] *= D[k * p + k];
+      for (int i = 0; i < k; ++i) b[i] -= D[k * p + i] * b[k];
+    }
   }
 }
 

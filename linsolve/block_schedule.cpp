@@ -170,6 +170,9 @@ class Builder {
         if (place < pivots) f.inner = i + 1;
         s.target[at(f.list + i)] = place < pivots ? place : place - pivots;
       }
+      f.in_a_row = true;
+      for (int i = 1; i < f.others; ++i)
+        if (i != f.inner && s.target[at(f.list + i)] != s.target[at(f.list + i - 1)] + 1) f.in_a_row = false;
     }
     s.position.shrink_to_fit(), s.target.shrink_to_fit(), s.fronts.shrink_to_fit();
     return true;
@@ -215,14 +218,18 @@ class Builder {
         placed.push_back({front, {k, static_cast<std::uint32_t>(target) & 0xffffffu, 1}});
       }
     }
-    std::vector<int> next(s.fronts.size() + 1, 0);
-    for (const Placed& p : placed) ++next[at(p.front) + 1];
+    // By front; runs of 3 and 4, nearly all there are, first: they are copied without a loop.
+    const auto kind = [](const Run& run) { return run.length == 3 ? 0 : run.length == 4 ? 1 : 2; };
+    std::vector<int> next(3 * s.fronts.size() + 1, 0);
+    for (const Placed& p : placed) ++next[at(3 * p.front + kind(p.run)) + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
     for (std::size_t f = 0; f < s.fronts.size(); ++f) {
-      next[f + 1] += next[f];
-      s.fronts[f].runs = next[f + 1];
+      s.fronts[f].threes = next[3 * f + 1];
+      s.fronts[f].fours = next[3 * f + 2];
+      s.fronts[f].runs = next[3 * f + 3];
     }
     s.runs.assign(placed.size(), Run{});
-    for (const Placed& p : placed) s.runs[at(next[at(p.front)]++)] = p.run;
+    for (const Placed& p : placed) s.runs[at(next[at(3 * p.front + kind(p.run))]++)] = p.run;
   }
 
   const CscLayout& layout_;

@@ -36,9 +36,12 @@ struct Front {
   int first;                 // position of the first pivot in the order of elimination
   int list;                  // where its m entries of `position` and `target` start
   int inner;                 // how many of the m unknowns are pivots of the parent: they come first
-  int runs, children;        // ends of its runs and children; they start where those of the front before end
-  std::int64_t store;        // of D, in doubles
-  std::int64_t update;       // of W on the stack
+  int threes, fours,
+      runs;             // ends of its runs of length 3, 4 and others; they start where those of the front before end
+  int children;         // end of its children, likewise
+  bool in_a_row;        // targets of the `inner` follow one after the other, and so do those of the rest
+  std::int64_t store;   // of D, in doubles
+  std::int64_t update;  // of W on the stack
 };
 
 // `length` values from `source` on go to `target` in the store of the front.
@@ -46,6 +49,7 @@ struct Run {
   int source;
   std::uint32_t target : 24, length : 8;
 };
+static_assert(sizeof(Run) == 8);
 
 struct Schedule {
   int n = 0;

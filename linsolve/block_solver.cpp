@@ -106,33 +106,32 @@ class BlockSolver final : public LinearSolver {
     return {};
   }
 
-  // Factorizes with pivots by the given scales, then by those the condition estimate found; these also measure
-  // residuals from now on. Finds out whether solutions need refinement.
+  // Factorizes with pivots chosen in the units of the equilibrated matrix and, where that does not serve, in those the
+  // condition estimate finds. Finds out whether solutions need refinement.
   bool trustworthy(const Equilibration& equilibration) {
-    Condition condition;
-    condition.resize(layout_.n);
-    const auto solve = [&](std::span<double> x) { factor_.solve(schedule_, x); };
-    std::vector<double> rows(equilibration.row().begin(), equilibration.row().end());
-    std::vector<double> columns(equilibration.col().begin(), equilibration.col().end());
-    for (int pass = 0; pass < 2; ++pass) {
-      factor_.weigh_rows(schedule_, rows);
-      (void)factor_.factor(schedule_, values_);
-      const double estimate = condition.estimate(layout_, values_, solve, columns);
-      statistics_.reciprocal_condition = 1 / estimate;
-      if (!std::isfinite(estimate)) return false;
-      std::ranges::transform(condition.rows(), rows.begin(), [](double w) { return 1 / w; });
-      columns.assign(condition.columns().begin(), condition.columns().end());
-    }
-    if (!(1 < kSingularCondition * statistics_.reciprocal_condition)) return false;
-    weight_.swap(rows);
     rows_.assign(equilibration.row().begin(), equilibration.row().end());
     columns_.assign(equilibration.col().begin(), equilibration.col().end());
-    b_.resize(rows_.size());
-    std::ranges::transform(rows_, b_.begin(), [](double scale) { return 1 / scale; });
-    std::vector<double> x = b_;
-    solve(x);
-    refined_ = residual(b_, x) > kSmallResidual;
-    return !refined_ || refine(x) <= kSmallResidual;
+    weight_ = rows_;
+    Condition condition;
+    condition.resize(layout_.n);
+    std::vector<double> scale = columns_, x;
+    const auto solve = [&](std::span<double> b) { factor_.solve(schedule_, b); };
+    for (const bool last : {false, true}) {
+      factor_.weigh_rows(schedule_, weight_);
+      (void)factor_.factor(schedule_, values_);
+      const double estimate = condition.estimate(layout_, values_, solve, scale);
+      statistics_.reciprocal_condition = 1 / estimate;
+      if (!std::isfinite(estimate)) return false;
+      b_.resize(rows_.size());
+      std::ranges::transform(rows_, b_.begin(), [](double row) { return 1 / row; });
+      x = b_;
+      solve(x);
+      refined_ = residual(b_, x) > kSmallResidual;
+      if (estimate < kSingularCondition && (!refined_ || (last && refine(x) <= kSmallResidual))) return true;
+      std::ranges::transform(condition.rows(), weight_.begin(), [](double w) { return 1 / w; });
+      scale.assign(condition.columns().begin(), condition.columns().end());
+    }
+    return false;
   }
 
   // A body that is not regular by itself takes in a group of its constraints; a group that was a pivot too early goes
