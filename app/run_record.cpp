@@ -22,6 +22,7 @@ std::string to_json(const RunRecord& record) {
   json["statistics"] = {{"steps", s.steps},
                         {"rejected_steps", s.rejected_steps},
                         {"newton_iterations", s.newton_iterations},
+                        {"convergence_rate", s.convergence.rate()},
                         {"jacobian_evaluations", s.jacobian_evaluations},
                         {"factorizations", s.factorizations},
                         {"solves", s.solves},

@@ -23,6 +23,12 @@ struct Statistics {
   struct {
     double total = 0, assembly = 0, factor = 0, solve = 0, other = 0;
   } seconds;
+  // Of Newton's method: ratios of successive corrections within a step.
+  struct {
+    double sum = 0;
+    std::int64_t count = 0;
+    double rate() const { return count > 0 ? sum / static_cast<double>(count) : 0; }
+  } convergence;
   struct {
     double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
   } violation;
@@ -61,6 +67,7 @@ struct IntegratorEntry {
   Analysis analysis;
   std::unique_ptr<Integrator> (*make)();
   std::span<const Refusal> refuses = {};
+  bool controls_error = false;  // chooses its steps by rtol and atol; `step` and `tolerance` mean nothing to it
 };
 
 std::span<const IntegratorEntry> integrators();

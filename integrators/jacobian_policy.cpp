@@ -11,6 +11,8 @@ constexpr JacobianEntry kJacobians[] = {
     {"simplified",
      "the original study's: without the reactions' variations, factored once a step; no predictor in kinematics",
      MatrixKind::simplified, Refresh::every_step},
+    {"kept", "the full Newton matrix, kept over iterations and steps until convergence slows down", MatrixKind::exact,
+     Refresh::when_slow},
 };
 
 }  // namespace

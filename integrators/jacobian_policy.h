@@ -11,6 +11,7 @@ namespace poinsot {
 enum class Refresh {
   every_iteration,
   every_step,  // once, at the first iterate of the step
+  when_slow,   // kept over iterations and steps until corrections shrink too slowly
 };
 
 struct JacobianEntry {

@@ -25,7 +25,7 @@ class Kinematics final : public Integrator {
   Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
     const JacobianEntry& policy = *find_jacobian(settings.jacobian);
-    const bool newton = policy.refresh == Refresh::every_iteration;
+    const bool predict = policy.refresh != Refresh::every_step;  // the original study's codes do not
     const TimeGrid grid(settings);
     PhaseClock clock;
     StepSystem system(problem, solver, MatrixKind::kinematic, statistics, clock);
@@ -41,12 +41,12 @@ class Kinematics final : public Integrator {
     clock.start();
     for (std::int64_t n = 0; n <= grid.steps && status.ok(); ++n) {
       const double t = grid.time(n);
-      if (n > 0 && newton) {
+      if (n > 0 && predict) {
         dq.noalias() = grid.step() * v;
         problem.retract(span(q), span(dq), span(q_next));
         q.swap(q_next);
       }
-      status = position(problem, system, settings, newton, t, q, q_next, delta, statistics);
+      status = position(problem, system, settings, policy.refresh, t, q, q_next, delta, statistics);
       if (!status.ok()) break;
       status = rates(problem, system, t, q, v, a, delta);
       if (!status.ok()) break;
@@ -73,13 +73,15 @@ class Kinematics final : public Integrator {
   }
 
  private:
-  static Status position(Problem& problem, StepSystem& system, const Settings& settings, bool newton, double t,
+  static Status position(Problem& problem, StepSystem& system, const Settings& settings, Refresh refresh, double t,
                          Vector& q, Vector& q_next, Vector& delta, Statistics& statistics) {
-    double correction = 0;
+    constexpr double kSlow = 0.25;  // as in NewtonLoop
+    double correction = 0, before = INFINITY;
+    bool slow = !system.ready();
     for (int k = 0; k < settings.max_iterations; ++k) {
       problem.set_position(t, span(q));
       problem.position_residual(span(delta));
-      if (newton || k == 0) {
+      if (refresh == Refresh::every_iteration || (refresh == Refresh::every_step && k == 0) || slow) {
         if (Status status = system.refresh(t, {}, {}, {}, {}); !status.ok()) return status;
       }
       delta = -delta;
@@ -92,6 +94,8 @@ class Kinematics final : public Integrator {
         return {Failure::not_finite, t, fmt::format("at t = {:.9g} s the position's correction is not finite", t)};
       }
       if (correction < settings.tolerance) return {};
+      slow = refresh == Refresh::when_slow && !(correction < kSlow * before);
+      before = correction;
     }
     Eigen::Index largest = 0;
     delta.cwiseAbs().maxCoeff(&largest);

@@ -46,14 +46,20 @@ class NewtonLoop {
     double correction = 0, before = INFINITY;
     for (int k = 0; k < settings_.max_iterations; ++k) {
       residual(delta_);
-      if (refresh_ == Refresh::every_iteration || (refresh_ == Refresh::every_step && k == 0)) {
+      if (due(k)) {
         if (Status status = matrix(); !status.ok()) return status;
+        slow_ = false;
       }
       delta_ = -delta_;
       if (Status status = system_.solve(t, span(delta_)); !status.ok()) return status;
       if (Status status = correct(delta_); !status.ok()) return status;
       correction = delta_.norm();
       ++statistics_.newton_iterations;
+      if (k > 0) {
+        statistics_.convergence.sum += correction / before;
+        ++statistics_.convergence.count;
+        slow_ = !(correction < kSlow * before);
+      }
       if (correction < settings_.tolerance || (correction > 0.5 * before && is_rounding(position, q))) return {};
       before = correction;
       if (!std::isfinite(correction)) break;
@@ -62,6 +68,21 @@ class NewtonLoop {
   }
 
  private:
+  // A kept matrix is made anew where corrections shrink by less than this: four more iterations would cost more.
+  static constexpr double kSlow = 0.25;
+
+  bool due(int k) const {
+    switch (refresh_) {
+      case Refresh::every_iteration:
+        return true;
+      case Refresh::every_step:
+        return k == 0;
+      case Refresh::when_slow:
+        return slow_ || !system_.ready();
+    }
+    return true;
+  }
+
   // A correction that has stopped to shrink and moves positions by no more than their rounding: Newton's method cannot
   // do better in this arithmetic, whatever the tolerance asks (with small steps Φ/h² magnifies the rounding of Φ).
   bool is_rounding(double position, const Vector& q) const {
@@ -77,6 +98,7 @@ class NewtonLoop {
   Refresh refresh_;
   Statistics& statistics_;
   Vector delta_;
+  bool slow_ = false;  // the last corrections did not shrink as they should
 };
 
 }  // namespace poinsot

@@ -14,11 +14,11 @@ struct Settings {
   std::string integrator = "implicit_euler";  // of dynamics
   std::string linear_solver = "klu";
   std::string jacobian = "exact";
-  double step = 1e-3;       // s
-  double end = 1;           // s; the last step lands on it exactly
-  double tolerance = 1e-3;  // Newton: 2-norm of the correction of (a, λ), or of the position in kinematics
+  double step = 1e-3;            // s
+  double end = 1;                // s; the last step lands on it exactly
+  double tolerance = 1e-3;       // Newton: 2-norm of the correction of (a, λ), or of the position in kinematics
   double spectral_radius = 0.8;  // of generalized-α at infinity, 0 to 1
-  double rtol = 1e-8;       // integrators with error control
+  double rtol = 1e-8;            // integrators with error control
   double atol = 1e-10;
   int max_iterations = 20;
   double every = 0;  // s between outputs; 0: every step

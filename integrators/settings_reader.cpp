@@ -197,8 +197,10 @@ std::string to_json(const Settings& settings) {
 }
 
 void fit_time_grid(Settings& settings, std::vector<std::string>& notices) {
-  constexpr double rounding =
-      1e-9;  // of the ratio, relative: far above the error of decimal fractions, far below a step
+  const IntegratorEntry* integrator = find_integrator(settings.integrator);
+  if (settings.analysis == Analysis::dynamics && integrator && integrator->controls_error) return;
+  // of the ratio, relative: far above the error of decimal fractions, far below a step
+  constexpr double rounding = 1e-9;
   const double ratio = settings.end / settings.step;
   if (!(ratio < 1e15))
     throw InputError(

@@ -42,7 +42,7 @@ std::string to_json(const Settings& settings);
 
 // Makes t_n = n step, n = 0..N, land on `end` exactly: where `end` is no multiple of `step`, the step is shortened to
 // end/N with the next larger N, and a sentence that says so is added to `notices`. Throws InputError where `every` is
-// no multiple of the step.
+// no multiple of the step. Integrators that control their error choose their own steps and are left alone.
 void fit_time_grid(Settings& settings, std::vector<std::string>& notices);
 
 }  // namespace poinsot

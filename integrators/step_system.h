@@ -20,6 +20,7 @@ class StepSystem {
                  std::span<const double> lambda);
   // b ← A⁻¹ b.
   Status solve(double t, std::span<double> b);
+  bool ready() const { return solver_.state() == LinearSolver::State::factored; }
 
  private:
   Problem& problem_;

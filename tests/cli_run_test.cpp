@@ -115,6 +115,15 @@ TEST_F(Run, TheSameInputGivesTheSameBytesWhateverRunsBesideIt) {
   }
 }
 
+TEST_F(Run, AnIntegratorThatControlsItsErrorGivesRowsAtAnyMultiples) {
+  const Result result = poinsot(
+      {"run", "pendulum.json", "--integrator", "dopri5", "--every", "0.0015", "--end", "0.1", "--out", "a.csv"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  const std::string rows = read("a.csv");
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 67 + 1);  // header, 0 to 66 times 0.0015 s, the end
+}
+
 TEST_F(Run, AStepThatDoesNotDivideTheEndIsShortenedWithANotice) {
   const Result result = poinsot({"run", "pendulum.json", "--step", "0.03", "--end", "0.1", "--out", "a.csv"});
   ASSERT_EQ(result.status, 0) << result.err;
