@@ -17,7 +17,9 @@ inline long allocations() {
 
 #if defined(__SANITIZE_ADDRESS__)
 
-#include <sanitizer/allocator_interface.h>
+// of <sanitizer/allocator_interface.h>, which not every compiler brings along
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*, std::size_t),
+                                                         void (*)(const volatile void*));
 
 namespace poinsot::test {
 inline const int kAllocationHook = __sanitizer_install_malloc_and_free_hooks(
