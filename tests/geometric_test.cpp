@@ -152,9 +152,9 @@ TEST_P(Geometric, OrderIsTheTheoreticalOneInEveryQuantity) {
   EXPECT_GE(seen, 80);
 }
 
-// The first steps are as good as all others: errors there are at most a few times those later, which are of order two,
-// whatever the step. A start that loses an order stands out by 1/h, a hundredfold. (Half-implicit Euler has an error of
-// order one in the first step, as its header says.)
+// The first steps are as good as all others: errors there are at most a few times those of the second half, which are
+// of order two, whatever the step. A start that loses an order stands out by 1/h, a hundredfold. (Half-implicit Euler
+// has an error of order one in the first step, as its header says.)
 TEST_P(Geometric, NoOrderReductionInTheFirstSteps) {
   for (const Case& c : cases(GetParam())) {
     for (const double h : {c.step / 2, c.step / 8}) {
@@ -163,9 +163,10 @@ TEST_P(Geometric, NoOrderReductionInTheFirstSteps) {
         const std::vector<Snapshot> found = motion(c.scene, settings_of(method.name, GetParam(), h, c.end, 0));
         Errors early{}, later{};
         for (std::size_t n = 0; n < found.size(); ++n) {
+          if (n > 10 && n < found.size() / 2) continue;  // where what the start left behind dies out
           const Errors e = absolute_errors(found[n], exact[n]);
-          for (std::size_t k = 0; k < e.size(); ++k)
-            (n <= 10 ? early : later)[k] = std::max((n <= 10 ? early : later)[k], e[k]);
+          Errors& most = n <= 10 ? early : later;
+          for (std::size_t k = 0; k < e.size(); ++k) most[k] = std::max(most[k], e[k]);
         }
         for (std::size_t k = 0; k < kQuantities.size(); ++k) {
           EXPECT_LE(early[k], 4 * later[k] + 1e-12)
@@ -367,6 +368,21 @@ TEST(GeometricSettings, SpectralRadiusDamps) {
     Settings s;
     s.spectral_radius = radius;
     EXPECT_THROW((void)simulate(scene, s, {}), InputError) << radius;
+  }
+}
+
+// A spring far too stiff for the step, out of rest: the start must not take its v̈ for the motion's.
+TEST(GeometricStart, UnresolvedSpringStaysBounded) {
+  Scene scene = parse_scene(R"json({"scene": 1, "name": "stiff",
+    "bodies": [{"name": "ball", "mass": 1, "inertia": [1, 1, 1], "position": ["1 + 1e-7", 0, 0]}],
+    "forces": [{"type": "spring", "bodies": ["ground", "ball"], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "stiffness": 1e10, "damping": 1, "length": 1}]})json",
+                            "stiff");
+  for (const std::string integrator : {"generalized_alpha", "generalized_alpha_i2"}) {
+    Settings settings = settings_of(integrator, "rA", 0.01, 1, 0);  // h ω = 1000
+    settings.tolerance = 1e-6;                                      // accelerations are of order 1e3
+    const std::vector<Snapshot> found = motion(scene, settings);
+    for (const Snapshot& s : found) ASSERT_LT(std::abs(s.bodies[0].r.x() - 1), 2e-7) << integrator << ' ' << s.t;
+    EXPECT_LT(std::abs(found.back().bodies[0].r.x() - 1), 1e-9) << integrator;
   }
 }
 
