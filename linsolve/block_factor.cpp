@@ -37,9 +37,7 @@ void with_size(int pivots, Work&& work) {
 
 // to[0 … n) += from[0 … n)
 inline void add(double* to, const double* from, int n) {
-  for (; n >= block::kPair; n -= block::kPair, to += block::kPair, from += block::kPair)
-    block::store_pair(to, block::load_pair(to) + block::load_pair(from));
-  if (n > 0) *to += *from;
+  for (int i = 0; i < n; ++i) to[i] += from[i];
 }
 
 // Adds a child's update matrix to the parent's D, L, U and W.
@@ -86,10 +84,10 @@ void BlockFactor::resize(const Schedule& s) {
   then_.assign(at(s.n), 1);
   weight_.assign(at(s.n), 1);
   order_.assign(at(s.n), 0);
-  exchanged_.assign(s.fronts.size(), 0);
+  moved_.assign(s.fronts.size(), 0);
 }
 
-block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> values) {
+block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> values, bool keep_order) {
   block::Drift drift;
   const Run* run = s.runs.data();
   const int* child = s.children.data();
@@ -100,18 +98,18 @@ block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> valu
     run = copy_runs<3>(run, s.runs.data() + f.threes, values.data(), D);
     run = copy_runs<4>(run, s.runs.data() + f.fours, values.data(), D);
     for (const Run* end = s.runs.data() + f.runs; run != end; ++run)
-      std::copy_n(values.data() + run->source, run->length, D + run->target);
+      for (unsigned i = 0; i < run->length; ++i) D[run->target + i] = values[at(run->source) + i];
     double* W = update_.data();
     std::fill_n(W, f.rows * f.others, 0.0);
     for (const int* end = s.children.data() + f.children; child != end; ++child) {
       const Front& c = s.fronts[at(*child)];
       extend_add(c, stack_.data() + c.update, s.target.data() + c.list, f, D, W);
     }
-    std::copy_n(weight_.data() + f.first, f.pivots, t_.data());
-    with_size(f.pivots, [&](auto P) {
-      exchanged_[k] = block::eliminate<P.value>(D, f, W, stack_.data() + f.update, order_.data() + f.first, t_.data(),
-                                                then_.data() + f.first, drift);
-    });
+    block::Choice choice{order_.data() + f.first, weight_.data() + f.first, then_.data() + f.first, moved_[k] != 0,
+                         keep_order};
+    with_size(f.pivots,
+              [&](auto P) { block::eliminate<P.value>(D, f, W, stack_.data() + f.update, choice, t_.data(), drift); });
+    moved_[k] = choice.moved;
   }
   return drift;
 }
@@ -122,7 +120,7 @@ void BlockFactor::solve(const Schedule& s, std::span<double> b) {
     const Front& f = s.fronts[k];
     with_size(f.pivots, [&](auto P) {
       block::forward<P.value>(store_.data() + f.store, f, s.position.data() + f.list,
-                              exchanged_[k] ? order_.data() + f.first : nullptr, x_.data(), t_.data());
+                              moved_[k] ? order_.data() + f.first : nullptr, x_.data(), t_.data());
     });
   }
   for (std::size_t k = s.fronts.size(); k-- > 0;) {

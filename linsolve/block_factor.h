@@ -17,8 +17,9 @@ class BlockFactor {
 
   // Factors for the rows that make their entries comparable; pivots are chosen by them, values stay as they are.
   void weigh_rows(const Schedule& schedule, std::span<const double> weight);
-  // Factorizes; nothing stops at a bad pivot, the drift tells.
-  block::Drift factor(const Schedule& schedule, std::span<const double> values);
+  // Factorizes, in the order of rows of the last factorization as far as that serves, or choosing it afresh. Nothing
+  // stops at a bad pivot; the drift tells.
+  block::Drift factor(const Schedule& schedule, std::span<const double> values, bool keep_order);
   // b ← A⁻¹ b
   void solve(const Schedule& schedule, std::span<double> b);
   // Later factorizations are compared with the last one.
@@ -29,7 +30,7 @@ class BlockFactor {
   std::vector<double> then_;   // 1/|pivot| of an examined factorization, by position
   std::vector<float> weight_;  // by position
   std::vector<std::uint16_t> order_;
-  std::vector<char> exchanged_;  // by front: rows were exchanged, order_ says how
+  std::vector<char> moved_;  // by front: its rows are not in the order 0, 1, 2, … but in that of order_
 };
 
 }  // namespace poinsot

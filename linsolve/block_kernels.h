@@ -1,6 +1,6 @@
 // Dense operations on one front (linsolve/block_schedule.h), for a number of pivots P fixed at compile time.
 //
-//   eliminate:  P_r D = L_D U_D with partial pivoting inside the block,  U ← P_r U,  L ← L (L_D U_D)⁻¹,  W ← W − L U
+//   eliminate:  P_r D = L_D U_D with pivoting inside the block,  U ← P_r U,  L ← L (L_D U_D)⁻¹,  W ← W − L U
 //   forward:    b₁ ← P_r b₁,  b₂ ← b₂ − L b₁
 //   backward:   b₁ ← (L_D U_D)⁻¹ (b₁ − U b₂)
 //
@@ -29,6 +29,14 @@ inline void store(double* x, Vec v) {
   std::memcpy(x, &v, sizeof v);
 }
 
+// As load, of numbers that were just written one by one or in other groups: a processor hands a store on to a later
+// load only where the store holds all of it.
+inline Vec gather(const double* x) {
+  Vec v;
+  for (int i = 0; i < kLanes; ++i) v[i] = x[i];
+  return v;
+}
+
 // Two numbers at a time, for short runs.
 inline constexpr int kPair = 2;
 typedef double Pair __attribute__((vector_size(kPair * sizeof(double))));
@@ -41,9 +49,9 @@ inline void store_pair(double* x, Pair v) {
   std::memcpy(x, &v, sizeof v);
 }
 
-// Rows are exchanged where a candidate is this much larger than the diagonal. M below G, in the column of a body with
-// small inertia, is no reason to: pivots on M are those of the definite Schur complement.
-inline constexpr double kReluctance = 1e3;
+// A candidate this many times larger than the diagonal takes its place where pivots are chosen; where an order chosen
+// before is kept, its pivots may fall behind as much more again.
+inline constexpr double kReluctance = 10;
 
 // How far pivots are from those of a factorization that was examined: the least and the largest |u| / |u then|.
 struct Drift {
@@ -65,20 +73,31 @@ inline void unrolled(F&& f) {
   (std::make_integer_sequence<int, N>());
 }
 
-// As factor_pivots, for the common case that the diagonal serves: straight-line code. False, and D as it was, where a
-// row has to be exchanged.
+// D ← its factors, p × p, with its rows in the given order (null: as they are), in straight-line code. False, and D as
+// it was, where a candidate is more than `reluctance` times a pivot, in the units of rows given by `weight`. `then`
+// holds 1/|pivot| for Drift.
 template <int P>
-inline bool factor_diagonal(double* D, const double* weight, const double* then, Drift& drift) {
-  double a[P * P];
-  std::copy_n(D, P * P, a);
+inline bool factor_in_order(double* D, const std::uint16_t* order, const float* weight, double reluctance,
+                            const double* then, Drift& drift) {
+  double a[P * P], unit[P];
+  if (order) {
+    unrolled<P>([&](auto i) {
+      const int row = order[i];
+      unit[i] = weight[row];
+      unrolled<P>([&](auto k) { a[k * P + i] = D[k * P + row]; });
+    });
+  } else {
+    unrolled<P * P>([&](auto k) { a[k] = D[k]; });
+    unrolled<P>([&](auto i) { unit[i] = weight[i]; });
+  }
   double excess = 0;
   Drift seen = drift;
   unrolled<P>([&](auto k) {
     double largest = 0;
     unrolled<P>([&](auto i) {
-      if constexpr (i > k) largest = std::max(largest, std::abs(a[k * P + i]) * weight[i]);
+      if constexpr (i > k) largest = std::max(largest, std::abs(a[k * P + i]) * unit[i]);
     });
-    excess = std::max(excess, largest - kReluctance * std::abs(a[k * P + k]) * weight[k]);
+    excess = std::max(excess, largest - reluctance * std::abs(a[k * P + k]) * unit[k]);
     seen.add(std::abs(a[k * P + k]) * then[k]);
     const double inverse = 1 / a[k * P + k];
     a[k * P + k] = inverse;
@@ -94,31 +113,28 @@ inline bool factor_diagonal(double* D, const double* weight, const double* then,
   });
   if (!(excess <= 0)) return false;
   drift = seen;
-  std::copy_n(a, P * P, D);
+  unrolled<P * P>([&](auto k) { D[k] = a[k]; });
   return true;
 }
 
-// D ← its factors, p × p. Candidates are compared in units of their rows, given by `weight` (permuted along). The
-// diagonal is preferred: an order of rows that stays the same keeps the
-// pivots comparable. True where rows were exchanged. `then` holds 1/|pivot| for Drift.
-template <int P>
-inline bool factor_pivots(double* D, int p_run, std::uint16_t* order, double* weight, const double* then,
-                          Drift& drift) {
-  const int p = P ? P : p_run;
-  bool exchanged = false;
+// The same with the order chosen here: the diagonal while it serves, so that kept orders and pivots stay comparable.
+// True where rows moved. `unit` has room for p numbers.
+inline bool factor_choosing(double* D, int p, std::uint16_t* order, const float* weight, double* unit,
+                            const double* then, Drift& drift) {
+  bool moved = false;
+  for (int i = 0; i < p; ++i) order[i] = static_cast<std::uint16_t>(i), unit[i] = weight[i];
   for (int k = 0; k < p; ++k) {
     double* column = D + k * p;
     int best = k;
-    const double diagonal = kReluctance * std::abs(column[k]) * weight[k];
     double largest = 0;
-    for (int i = k + 1; i < p; ++i) largest = std::max(largest, std::abs(column[i]) * weight[i]);
-    if (largest > diagonal) {
-      while (std::abs(column[best]) * weight[best] != largest) ++best;
+    for (int i = k + 1; i < p; ++i) largest = std::max(largest, std::abs(column[i]) * unit[i]);
+    if (largest > kReluctance * std::abs(column[k]) * unit[k]) {
+      while (std::abs(column[best]) * unit[best] != largest) ++best;
       for (int j = 0; j < p; ++j) std::swap(D[j * p + k], D[j * p + best]);
-      std::swap(weight[k], weight[best]);
-      exchanged = true;
+      std::swap(unit[k], unit[best]);
+      std::swap(order[k], order[best]);
+      moved = true;
     }
-    order[k] = static_cast<std::uint16_t>(best);
     drift.add(std::abs(column[k]) * then[k]);
     const double inverse = 1 / column[k];
     column[k] = inverse;
@@ -128,14 +144,13 @@ inline bool factor_pivots(double* D, int p_run, std::uint16_t* order, double* we
       for (int i = k + 1; i < p; ++i) D[j * p + i] -= column[i] * u;
     }
   }
-  return exchanged;
+  return moved;
 }
 
-template <int P>
-inline void exchange(const std::uint16_t* order, int p_run, double* x) {
-  const int p = P ? P : p_run;
-  for (int k = 0; k < p; ++k)
-    if (order[k] != k) std::swap(x[k], x[order[k]]);
+// x ← x in the given order; `scratch` has room for p numbers.
+inline void reorder(const std::uint16_t* order, int p, double* x, double* scratch) {
+  for (int k = 0; k < p; ++k) scratch[k] = x[order[k]];
+  std::copy_n(scratch, p, x);
 }
 
 // L ← L (L_D U_D)⁻¹ for C vectors of rows from `row` on, kept in registers, and with them `out` ← W − L U.
@@ -145,7 +160,7 @@ inline void eliminate_rows(const double* D, double* L, const double* U, const do
   Vec x[P][C];
   L += row, W += row, out += row;
   unrolled<P>([&](auto k) {
-    unrolled<C>([&](auto c) { x[k][c] = load(L + k * rows + c * kLanes); });
+    unrolled<C>([&](auto c) { x[k][c] = gather(L + k * rows + c * kLanes); });
     unrolled<P>([&](auto j) {
       if constexpr (j < k) unrolled<C>([&](auto c) { x[k][c] -= x[j][c] * D[k * P + j]; });
     });
@@ -160,23 +175,35 @@ inline void eliminate_rows(const double* D, double* L, const double* U, const do
   });
   for (int j = 0; j < m; ++j, W += rows, out += rows, U += P) {
     Vec w[C];
-    unrolled<C>([&](auto c) { w[c] = load(W + c * kLanes); });
+    unrolled<C>([&](auto c) { w[c] = gather(W + c * kLanes); });
     unrolled<P>([&](auto k) { unrolled<C>([&](auto c) { w[c] -= x[k][c] * U[k]; }); });
     unrolled<C>([&](auto c) { store(out + c * kLanes, w[c]); });
   }
 }
 
-// True where rows were exchanged; then `order` says how.
+// How a front's pivots are chosen: `order` is that of its rows, `moved` tells whether it is another than 0, 1, 2, …
+struct Choice {
+  std::uint16_t* order;
+  const float* weight;
+  const double* then;
+  bool moved;
+  bool keep;  // the order of the last factorization, while it serves
+};
+
+// `scratch` has room for p numbers.
 template <int P>
-bool eliminate(double* D, const Front& f, const double* W, double* out, std::uint16_t* order, double* weight,
-               const double* then, Drift& drift) {
+void eliminate(double* D, const Front& f, const double* W, double* out, Choice& choice, double* scratch, Drift& drift) {
   const int p = P ? P : f.pivots, m = f.others, rows = f.rows;
   double *L = D + p * p, *U = L + p * rows;
-  bool exchanged = true;
-  if constexpr (P > 0) exchanged = !factor_diagonal<P>(D, weight, then, drift);
-  if (exchanged) exchanged = factor_pivots<P>(D, p, order, weight, then, drift);
-  if (exchanged)
-    for (int j = 0; j < m; ++j) exchange<P>(order, p, U + j * p);
+  bool done = false;
+  if constexpr (P > 0) {
+    if (!choice.keep) choice.moved = false;
+    done = factor_in_order<P>(D, choice.moved ? choice.order : nullptr, choice.weight,
+                              choice.keep ? kReluctance * kReluctance : kReluctance, choice.then, drift);
+  }
+  if (!done) choice.moved = factor_choosing(D, p, choice.order, choice.weight, scratch, choice.then, drift);
+  if (choice.moved)
+    for (int j = 0; j < m; ++j) reorder(choice.order, p, U + j * p, scratch);
   if constexpr (P > 0) {
     // As many rows at once as leave room in the registers.
     constexpr int kTogether = P <= 6 ? 2 : 1;
@@ -210,20 +237,19 @@ bool eliminate(double* D, const Front& f, const double* W, double* out, std::uin
         for (int i = 0; i < rows; ++i) out[j * rows + i] -= y[i] * u;
       }
   }
-  return exchanged;
 }
 
-// x: the permuted right-hand side; t: room for `rows` numbers; `order` is null where no rows were exchanged.
+// x: the permuted right-hand side; t: room for `rows` and for p numbers; `order` is null where no rows moved.
 template <int P>
 inline void forward(const double* D, const Front& f, const int* position, const std::uint16_t* order, double* x,
                     double* t) {
   const int p = P ? P : f.pivots, m = f.others, rows = f.rows;
   double* b = x + f.first;
-  if (order) exchange<P>(order, p, b);
+  if (order) reorder(order, p, b, t);
   const double* L = D + p * p;
   if constexpr (P > 0) {
     double own[P];
-    std::copy_n(b, P, own);
+    unrolled<P>([&](auto k) { own[k] = b[k]; });
     for (int row = 0; row < rows; row += kLanes) {
       Vec sum = load(L + row) * own[0];
       unrolled<P>([&](auto k) {
@@ -246,7 +272,7 @@ inline void backward(const double* D, const Front& f, const int* position, doubl
   double* b = x + f.first;
   if constexpr (P > 0) {
     double own[P];
-    std::copy_n(b, P, own);
+    unrolled<P>([&](auto k) { own[k] = b[k]; });
     for (int j = 0; j < m; ++j, U += P) {
       const double xj = x[position[j]];
       unrolled<P>([&](auto k) { own[k] -= U[k] * xj; });

@@ -72,7 +72,7 @@ class BlockSolver final : public LinearSolver {
   LinearStatus do_factor() override {
     by_klu_ = only_klu_;
     if (by_klu_) return factor_by_klu();
-    const block::Drift drift = factor_.factor(schedule_, values_);
+    const block::Drift drift = factor_.factor(schedule_, values_, examined_);
     if (!examined_ || !within(drift, kFar)) return factor_fresh();
     ++statistics_.refactorizations;
     look_at_residual_ = refined_ || !within(drift, kNear);
@@ -118,7 +118,7 @@ class BlockSolver final : public LinearSolver {
     const auto solve = [&](std::span<double> b) { factor_.solve(schedule_, b); };
     for (const bool last : {false, true}) {
       factor_.weigh_rows(schedule_, weight_);
-      (void)factor_.factor(schedule_, values_);
+      (void)factor_.factor(schedule_, values_, false);
       const double estimate = condition.estimate(layout_, values_, solve, scale);
       statistics_.reciprocal_condition = 1 / estimate;
       if (!std::isfinite(estimate)) return false;
