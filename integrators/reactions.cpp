@@ -21,6 +21,8 @@ Reactions::Reactions(const Problem& problem) : lambda_(problem.model().rows.size
   if (problem.model_rows().size() == lambda_.size()) return;
   const auto model = std::make_shared<const Model>(problem.model());
   whole_ = find_formulation("rA")->make(model, {});
+  q_.resize(static_cast<std::size_t>(whole_->nq()));
+  v_.resize(static_cast<std::size_t>(whole_->nv()));
 }
 
 void Reactions::update(const Sample& sample) {
@@ -32,10 +34,9 @@ void Reactions::update(const Sample& sample) {
   }
   std::vector<BodyState> states(static_cast<std::size_t>(problem_->bodies()));
   problem_->to_bodies(sample.a, states);
-  std::vector<double> q(static_cast<std::size_t>(whole_->nq())), v(static_cast<std::size_t>(whole_->nv()));
-  if (!whole_->from_bodies(states, q, v).ok()) return;
-  whole_->set_position(sample.t, q);
-  whole_->set_velocity(v);
+  if (!whole_->from_bodies(states, q_, v_).ok()) return;
+  whole_->set_position(sample.t, q_);
+  whole_->set_velocity(v_);
   const Eigen::MatrixXd Gt = transposed_gradient(*whole_);
   Eigen::VectorXd determined = Eigen::VectorXd::Zero(Gt.cols());
   for (std::size_t k = 0; k < rows.size(); ++k) determined[rows[k]] = sample.lambda[k];

@@ -22,6 +22,7 @@ class Reactions {
 
  private:
   std::unique_ptr<Problem> whole_;  // with the rows that were set aside; null where there are none
+  std::vector<double> q_, v_;       // where it stands
   const Problem* problem_ = nullptr;
   std::vector<double> lambda_;
 };
