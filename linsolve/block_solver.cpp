@@ -30,10 +30,11 @@ namespace {
 
 constexpr double kSymmetric = 0.9;        // share of mirrored entries that makes a saddle point
 constexpr double kNear = 10, kFar = 1e3;  // drift of pivots that is trusted unseen, and with a look at residuals
-constexpr double kSmallResidual = 3e-14;  // above, a solution is refined
-constexpr double kLargeResidual = 1e-11;  // above after that, it is not accepted
+constexpr double kSmallResidual = 2e-15;  // relative; above, a solution is refined once
+constexpr double kFairResidual = 1e-12;   // above, other pivots are tried, and a refined solution is looked at again
+constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not accepted
 constexpr double kCancelled = 1e-6;       // part of its size that is left of a pivot: worth another order
-constexpr double kRounding = 1e-12;       // the same: nothing but rounding
+constexpr double kRounding = 1e-10;       // the same: little but rounding
 constexpr int kRefinements = 3;
 constexpr int kRepairs = 8;
 constexpr int kPatience = 3;  // times in a row that klu has to help before it takes over
@@ -115,19 +116,25 @@ class BlockSolver final : public LinearSolver {
     Condition condition;
     condition.resize(layout_.n);
     std::vector<double> scale = columns_, x;
-    const auto solve = [&](std::span<double> b) { factor_.solve(schedule_, b); };
+    double size = 0;
+    const auto solve = [&](std::span<double> b) {
+      b_.assign(b.begin(), b.end());
+      factor_.solve(schedule_, b);
+      size = std::max(size, residual(b_, b));
+    };
     for (const bool last : {false, true}) {
       factor_.weigh_rows(schedule_, weight_);
       (void)factor_.factor(schedule_, values_, false);
+      size = 0;
       const double estimate = condition.estimate(layout_, values_, solve, scale);
       statistics_.reciprocal_condition = 1 / estimate;
       if (!std::isfinite(estimate)) return false;
-      b_.resize(rows_.size());
-      std::ranges::transform(rows_, b_.begin(), [](double row) { return 1 / row; });
-      x = b_;
+      x.resize(rows_.size());
+      std::ranges::transform(rows_, x.begin(), [](double row) { return 1 / row; });
       solve(x);
-      refined_ = residual(b_, x) > kSmallResidual;
-      if (estimate < kSingularCondition && (!refined_ || (last && refine(x) <= kSmallResidual))) return true;
+      refined_ = size > kSmallResidual;
+      if (estimate < kSingularCondition && (size <= kFairResidual || (last && refine(x) <= kLargeResidual)))
+        return true;
       std::ranges::transform(condition.rows(), weight_.begin(), [](double w) { return 1 / w; });
       scale.assign(condition.columns().begin(), condition.columns().end());
     }
@@ -172,19 +179,21 @@ class BlockSolver final : public LinearSolver {
     }
     b_.assign(b.begin(), b.end());
     factor_.solve(schedule_, b);
-    if (residual(b_, b) <= kSmallResidual || refine(b) <= kLargeResidual) return {};
+    const double size = residual(b_, b);
+    if (size <= kSmallResidual || refine(b, size <= kFairResidual ? 1 : kRefinements) <= kLargeResidual) return {};
     std::ranges::copy(b_, b.begin());
     if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
     return klu_->solve(b);
   }
 
-  // x ← x + A⁻¹ (b_ − A x) until the residual is small, a few times at most; the residual.
-  double refine(std::span<double> x) {
+  // x ← x + A⁻¹ (b_ − A x), r_ being b_ − A x, until the residual is small, a few times at most; the residual. A single
+  // step is trusted without looking.
+  double refine(std::span<double> x, int steps = kRefinements) {
     double size = HUGE_VAL;
-    for (int step = 0; step < kRefinements && !(size <= kSmallResidual); ++step) {
+    for (int step = 0; step < steps && !(size <= kSmallResidual); ++step) {
       factor_.solve(schedule_, r_);
       for (std::size_t i = 0; i < x.size(); ++i) x[i] += r_[i];
-      size = residual(b_, x);
+      size = steps == 1 ? 0 : residual(b_, x);
     }
     return size;
   }
