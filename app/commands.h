@@ -11,5 +11,7 @@ void add_run(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_list(CLI::App& app, int& status);
 void add_tables(CLI::App& app, int& status);
+void add_make(CLI::App& app, int& status);
+void add_scale(CLI::App& app, int& status);
 
 }  // namespace poinsot::app

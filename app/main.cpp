@@ -61,6 +61,8 @@ int main(int argc, char** argv) {
   add_check(app, status);
   add_list(app, status);
   add_tables(app, status);
+  add_make(app, status);
+  add_scale(app, status);
 
   try {
     hold_blas_to_one_thread();

@@ -8,6 +8,7 @@
 #include "app/output_file.h"
 #include "core/check.h"
 #include "core/input_error.h"
+#include "core/provenance.h"
 
 namespace poinsot::app {
 namespace {
@@ -29,6 +30,19 @@ std::string markdown_row(const std::vector<std::string>& cells) {
 }
 
 }  // namespace
+
+std::vector<std::string> origin_lines(int core) {
+  const Provenance& origin = provenance();
+  std::vector<std::string> libraries;
+  for (const Library& library : origin.libraries)
+    libraries.push_back(fmt::format("{} {}", library.name, library.version));
+  return {fmt::format("processor: {}, {}", processor(),
+                      core < 0 ? "not pinned to a core" : "one thread pinned to one core"),
+          fmt::format("program: poinsot {}, commit {}{}", origin.version, origin.commit,
+                      origin.dirty ? ", with changes that are not in the commit" : ""),
+          fmt::format("compiler: {} {} ({})", origin.compiler, origin.flags, origin.build_type),
+          fmt::format("libraries: {}", fmt::join(libraries, ", "))};
+}
 
 std::string markdown(const Report& report) {
   std::string page = fmt::format("# {}\n\n{}\n", report.title, report.text);

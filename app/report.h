@@ -22,6 +22,9 @@ struct Report {
   std::vector<std::string> foot;  // machine, program, settings: a line each
 };
 
+// The first lines of a foot: processor, program, compiler, libraries. `core`: as pin_to_one_core() returns it.
+std::vector<std::string> origin_lines(int core);
+
 std::string markdown(const Report& report);
 std::string csv(const Table& table, const std::vector<std::string>& foot);  // foot lines begin with '#'
 

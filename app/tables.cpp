@@ -9,7 +9,6 @@
 #include "app/paper_tables.h"
 #include "app/terminal.h"
 #include "core/input_error.h"
-#include "core/provenance.h"
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
@@ -56,26 +55,15 @@ std::vector<Cell> make_cells(std::span<const Scene> scenes, Analysis analysis, c
 }
 
 std::vector<std::string> foot(const Options& options, int core) {
-  const Provenance& origin = provenance();
-  std::vector<std::string> libraries;
-  for (const Library& library : origin.libraries)
-    libraries.push_back(fmt::format("{} {}", library.name, library.version));
-  return {
-      fmt::format("processor: {}, {}", processor(),
-                  core < 0 ? "not pinned to a core" : "one thread pinned to one core"),
-      fmt::format("program: poinsot {}, commit {}{}", origin.version, origin.commit,
-                  origin.dirty ? ", with changes that are not in the commit" : ""),
-      fmt::format("compiler: {} {} ({})", origin.compiler, origin.flags, origin.build_type),
-      fmt::format("libraries: {}", fmt::join(libraries, ", ")),
-      fmt::format(
-          "settings: h = {:g} s, {:g} s simulated, tolerance {:g} (kinematics) and {:g} (dynamics), integrator {}, "
-          "linear solver {} where no other is named",
-          kStep, options.end(), kKinematicsTolerance, kDynamicsTolerance, Settings{}.integrator, options.linear_solver),
-      fmt::format(
-          "timing: the time-stepping loop without reading and writing; a warm-up, then {} interleaved repetitions, "
-          "median",
-          options.runs()),
-  };
+  std::vector<std::string> lines = origin_lines(core);
+  lines.push_back(fmt::format(
+      "settings: h = {:g} s, {:g} s simulated, tolerance {:g} (kinematics) and {:g} (dynamics), integrator {}, "
+      "linear solver {} where no other is named",
+      kStep, options.end(), kKinematicsTolerance, kDynamicsTolerance, Settings{}.integrator, options.linear_solver));
+  lines.push_back(fmt::format(
+      "timing: the time-stepping loop without reading and writing; a warm-up, then {} interleaved repetitions, median",
+      options.runs()));
+  return lines;
 }
 
 std::string introduction() {

@@ -23,7 +23,8 @@ class Klu final : public ScaledLu {
     klu_defaults(&common_);
     common_.scale = -1;  // the matrix comes scaled and checked
     common_.halt_if_singular = 0;
-    common_.tol = 0.1;  // with the default of 1e-3 backward errors reach 1e-11 on loops
+    common_.maxwork = 20;  // times the entries, for the search of a block triangular form: enough where there is one
+    common_.tol = 0.1;     // with the default of 1e-3 backward errors reach 1e-11 on loops
   }
   ~Klu() override { release(); }
 
@@ -31,6 +32,10 @@ class Klu final : public ScaledLu {
   LinearStatus do_symbolic() override {
     release();
     fresh_pivots_.assign(static_cast<std::size_t>(layout().n), 0);
+    // The block triangular form helps small kinematic matrices. A saddle point has none, and the search for it takes
+    // time in the square of n there.
+    constexpr int kLargestSearched = 20000;
+    common_.btf = layout().n <= kLargestSearched;
     symbolic_ = klu_analyze(layout().n, start(), row(), &common_);
     return symbolic_ ? LinearStatus{} : library_status();
   }

@@ -1,0 +1,92 @@
+#include "app/isolated_run.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstring>
+
+#include "core/input_error.h"
+#include "integrators/simulate.h"
+
+namespace poinsot::app {
+namespace {
+
+// What comes through the pipe: plain numbers and a short sentence.
+struct Answer {
+  bool ok = false;
+  double numbers[8] = {};
+  int bodies = 0;
+  char failure[400] = {};
+};
+
+double resident_kilobytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss);
+}
+
+Answer answer(const SceneGenerator& generator, int bodies, const Settings& settings) {
+  using Clock = std::chrono::steady_clock;
+  Answer out;
+  const auto fail = [&](const std::string& why) { std::strncpy(out.failure, why.c_str(), sizeof out.failure - 1); };
+  try {
+    const double before = resident_kilobytes();
+    const Scene scene = generator.make(bodies);
+    const auto began = Clock::now();
+    const Outcome outcome = simulate(scene, settings, {});
+    const double all = std::chrono::duration<double>(Clock::now() - began).count();
+    if (!outcome.status.ok()) {
+      fail(outcome.status.message);
+      return out;
+    }
+    const Statistics& s = outcome.statistics;
+    out.bodies = static_cast<int>(scene.bodies.size());
+    const double units = static_cast<double>(s.newton_iterations) * out.bodies * 1e-6;
+    const double numbers[] = {s.seconds.total / units,
+                              s.seconds.assembly / units,
+                              s.seconds.factor / units,
+                              s.seconds.solve / units,
+                              s.seconds.other / units,
+                              all - s.seconds.total,
+                              (resident_kilobytes() - before) / out.bodies,
+                              all};
+    std::copy(std::begin(numbers), std::end(numbers), std::begin(out.numbers));
+    out.ok = true;
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+  return out;
+}
+
+}  // namespace
+
+IsolatedRun run_isolated(const SceneGenerator& generator, int bodies, const Settings& settings) {
+  int ends[2];
+  if (pipe(ends) != 0) return {"no pipe could be made"};
+  const pid_t child = fork();
+  if (child < 0) return {"no process could be made"};
+  if (child == 0) {
+    const Answer out = answer(generator, bodies, settings);
+    const bool written = write(ends[1], &out, sizeof out) == static_cast<ssize_t>(sizeof out);
+    _exit(written ? 0 : 1);
+  }
+  close(ends[1]);
+  Answer got;
+  const bool complete = read(ends[0], &got, sizeof got) == static_cast<ssize_t>(sizeof got);
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  IsolatedRun run;
+  if (!complete) {
+    run.failure = "the run ended without an answer (out of memory?)";
+  } else if (!got.ok) {
+    run.failure = got.failure;
+  } else {
+    const double* n = got.numbers;
+    run = {"", n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], got.bodies};
+  }
+  return run;
+}
+
+}  // namespace poinsot::app

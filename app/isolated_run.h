@@ -1,0 +1,23 @@
+// A run in a process of its own, so that the memory it needs can be told from everything before it.
+#pragma once
+
+#include <string>
+
+#include "core/scene_generator.h"
+#include "integrators/settings.h"
+
+namespace poinsot::app {
+
+struct IsolatedRun {
+  std::string failure;                                   // why there are no figures
+  double us_per_body = 0;                                // and Newton iteration
+  double assembly = 0, factor = 0, solve = 0, rest = 0;  // the same by phase
+  double start = 0;                                      // s from the scene's structs to the first step
+  double kilobytes_per_body = 0;                         // resident, beyond an idle process
+  double seconds = 0;                                    // of the whole run
+  int bodies = 0;
+};
+
+IsolatedRun run_isolated(const SceneGenerator& generator, int bodies, const Settings& settings);
+
+}  // namespace poinsot::app

@@ -1,0 +1,64 @@
+// `poinsot make` and `poinsot scale`: generated scene files, and the files of the scaling study; not how fast anything
+// is.
+#include "command_line.h"
+#include "core/scene_generator.h"
+
+namespace poinsot::test {
+namespace {
+
+using Make = CommandLine;
+using Scale = CommandLine;
+
+TEST_F(Make, WritesScenesThatRun) {
+  for (const SceneGenerator& generator : scene_generators()) {
+    const std::string name(generator.name);
+    ASSERT_EQ(poinsot({"make", name, "--bodies", "6", "--out", name + ".json"}).status, 0);
+    const Result run = poinsot({"run", name + ".json", "--end", "0.01", "--out", name + "_motion.csv"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err, "") << "a generated scene starts on its constraints";
+  }
+}
+
+TEST_F(Make, WritesToTheStandardOutputUnlessToldWhere) {
+  const Result result = poinsot({"make", "chain", "--bodies", "1"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_TRUE(result.out.starts_with("{\n  \"scene\": 1,\n  \"name\": \"chain of 1 bodies\""));
+}
+
+TEST_F(Make, SaysWhatItCannotMake) {
+  const Result structure = poinsot({"make", "web", "--out", "a.json"});
+  EXPECT_EQ(structure.status, 2);
+  EXPECT_EQ(structure.err, "poinsot: STRUCTURE: found \"web\", expected one of chain, tree, ladder, four_bars\n");
+  const Result bodies = poinsot({"make", "chain", "--bodies", "0", "--out", "a.json"});
+  EXPECT_EQ(bodies.status, 2);
+  EXPECT_EQ(bodies.err, "poinsot: --bodies: found 0, expected a whole number from 1 to 10000000\n");
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(Scale, MeasuresEverySizeOfEveryStructure) {
+  const Result result = poinsot({"scale", "--bodies", "100", "--formulations", "rA,rp", "--linear-solvers", "block,klu",
+                                 "--repetitions", "1", "--out", "results"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  std::size_t rows = 0;
+  for (const std::string& line : lines(read("results/scaling.csv"))) {
+    if (line.starts_with("#") || line.starts_with("structure")) continue;
+    ++rows;
+    const auto f = fields(line);
+    ASSERT_EQ(f.size(), 11u) << line;
+    const double phases = std::stod(f[5]) + std::stod(f[6]) + std::stod(f[7]) + std::stod(f[8]);
+    EXPECT_NEAR(phases, std::stod(f[4]), 0.003 + 1e-3 * phases) << line;
+  }
+  EXPECT_EQ(rows, scene_generators().size() * 2 * 2 * 3);
+  EXPECT_NE(read("results/scaling.md").find("processor: "), std::string::npos);
+}
+
+TEST_F(Scale, SaysWhatItDoesNotKnow) {
+  const Result result = poinsot({"scale", "--linear-solvers", "block,magic", "--out", "results"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.err, "poinsot: --linear-solvers: found \"magic\"; `poinsot list` says what there is\n");
+  EXPECT_TRUE(files().empty());
+}
+
+}  // namespace
+}  // namespace poinsot::test
