@@ -10,8 +10,9 @@
 namespace poinsot {
 namespace {
 
+// Adding zero turns −0 into 0: the sign of a zero says nothing in a scene.
 std::string vector(const Vector3& v) {
-  return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
+  return fmt::format("[{}, {}, {}]", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
 }
 
 std::string_view type_name(JointType type) {
