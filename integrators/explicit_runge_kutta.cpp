@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +12,13 @@
 
 namespace poinsot {
 namespace {
+
+// So many rejections in a row are more than error control needs to find a step: a singular position may be near.
+constexpr int kDifficult = 2;
+// So many steps in a row that are so much smaller than the longest one do not pass a jump of the forces, which takes a
+// few dozen: they creep towards a singular position, where less and less of the accelerations is more than rounding.
+constexpr int kCreeping = 100;
+constexpr double kTiny = 1e-6;
 
 class ExplicitRungeKutta final : public Integrator {
  public:
@@ -48,31 +56,41 @@ class ExplicitRungeKutta final : public Integrator {
     const double end = settings.end, smallest = 16 * std::numeric_limits<double>::epsilon() * end;
     SampleTimes times(settings.every, end);
     StepController controller(pair_.rule);
+    // A start where the trial step fails is left to the steps, which will tell why.
     double h = 0;
-    if (Status status = stepper.first_step(end, h); !status.ok()) h = 1e-6 * end;  // the steps will tell why
+    if (!stepper.first_step(end, h).ok()) h = 1e-6 * end;
+    double completed = 0, longest = 0;  // steps so far: the last, the longest
+    int rejections = 0, tiny = 0;       // in a row
     while (stepper.state().t < end) {
       const double t = stepper.state().t;
       const double to = t + 1.01 * h >= end ? end : t + h;
       h = to - t;
+      tiny = h < kTiny * longest ? tiny + 1 : 0;
+      if (tiny > kCreeping) return creeping(t, h);
+      using enum ExplicitStepper::Stages;
       double error = 0;
-      Status status = stepper.attempt(to, error);
+      Status status = stepper.attempt(to, rejections < kDifficult ? as_they_come : projected, error);
       if (status.ok() && error <= 1) status = stepper.complete();
-      if (status.ok() && error <= 1) {
-        ++statistics.steps;
-        h = controller.accepted(h, error);
-        for (; settings.every > 0 && times.next() < to; times.pass()) {
-          if (status = stepper.interpolate(times.next()); !status.ok()) return status;
-          give_out(stepper.interpolated());
-        }
-        stepper.settle();
-        if (settings.every == 0 || times.next() == to) {
-          times.pass();
-          give_out(stepper.state());
-        }
-      } else {
+      if (!status.ok() || !(error <= 1)) {
         ++statistics.rejected_steps;
         h = status.ok() && std::isfinite(error) ? controller.rejected(h, error) : controller.failed(h);
         if (h < smallest) return too_small(t, h, status);
+        if (++rejections == kDifficult) h = std::max(h, completed);
+        continue;
+      }
+      ++statistics.steps;
+      rejections = 0;
+      completed = h;
+      longest = std::max(longest, h);
+      h = controller.accepted(h, error);
+      for (; settings.every > 0 && times.next() < to; times.pass()) {
+        if (status = stepper.interpolate(times.next()); !status.ok()) return status;
+        give_out(stepper.interpolated());
+      }
+      stepper.settle();
+      if (settings.every == 0 || times.next() == to) {
+        times.pass();
+        give_out(stepper.state());
       }
     }
     return {};
@@ -81,8 +99,18 @@ class ExplicitRungeKutta final : public Integrator {
   static Status too_small(double t, double h, const Status& cause) {
     return {Failure::step_size_too_small, t,
             fmt::format("at t = {:.9g} s the step had to become {:.3g} s, too small to advance the time: the motion "
-                        "jumps or grows without bound here, or the tolerances ask for more than the arithmetic has{}",
+                        "jumps or grows without bound here, the mechanism comes to a singular position, or the "
+                        "tolerances ask for more than the arithmetic has{}",
                         t, h, cause.ok() ? "" : "; the last attempt: " + cause.message)};
+  }
+
+  static Status creeping(double t, double h) {
+    return {
+        Failure::step_size_too_small, t,
+        fmt::format("at t = {:.9g} s the steps creep with {:.3g} s: a singular position of the mechanism, near which "
+                    "accelerations are lost to rounding; larger tolerances may step over it, an implicit integrator "
+                    "with a fixed step too",
+                    t, h)};
   }
 
   const RungeKuttaPair& pair_;

@@ -87,12 +87,18 @@ double ExplicitStepper::norm(Terms terms) {
   return error_norm(span(combined_), span(scale_));
 }
 
-// Stands at y, writes its position and velocity and (a, λ) into `at`, f into column k.
+// Stands at y, or at the point of the constraints beside it; writes position, velocity and (a, λ) there into `at`, f
+// into column k.
 Status ExplicitStepper::evaluate(Point& at, const Vector& y, Eigen::Index k) {
   const Eigen::Index nv = problem_.nv();
   at.v = y.tail(nv);
   problem_.retract(span(q_n_), span(y).first(nv_), span(at.q));
   if (Status status = accelerations(at); !status.ok()) return status;
+  if (project_stages_) {
+    bool moved = false;
+    if (Status status = project(at, moved); !status.ok()) return status;
+    if (Status status = accelerations(at); !status.ok()) return status;
+  }
   k_.col(k).head(nv) = at.v;
   problem_.lower(span(y).first(nv_), {k_.col(k).data(), nv_});
   k_.col(k).tail(nv) = at.z.head(nv);
@@ -131,8 +137,9 @@ Status ExplicitStepper::first_step(double end, double& h) {
   return status;
 }
 
-Status ExplicitStepper::attempt(double to, double& error) {
+Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
   const Eigen::Index nv = problem_.nv();
+  project_stages_ = stages == Stages::projected;
   dense_ready_ = false;
   elsewhere_ = true;
   t_n_ = state_.t;

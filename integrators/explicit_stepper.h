@@ -9,6 +9,11 @@
 // well (mass-orthogonal, simplified Newton: the violation has the size e of the local error, so one correction leaves
 // e²), and one step of iterative refinement makes a and λ belong to the projected state, again up to e². Neither costs
 // a stage or the order.
+//
+// Beside a singular position (where G loses rank, at a distance τ in time) a stage that is off the constraints by e has
+// accelerations wrong by e/τ, and error control would creep up to the point and never pass it. Accelerations of points
+// on the constraints stay smooth through it: with Stages::projected every stage is projected before it is evaluated, at
+// twice the cost, and steps go over the singular position at their usual length.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,8 +43,9 @@ class ExplicitStepper {
 
   // Hairer's automatic choice; one evaluation.
   Status first_step(double end, double& h);
+  enum class Stages { as_they_come, projected };
   // Stages and y_{n+1} of a step to time `to`; its error, 1 being the tolerance. The state stays what it is.
-  Status attempt(double to, double& error);
+  Status attempt(double to, Stages stages, double& error);
   // Makes the attempted step the state: f(y_{n+1}), projection. Fails where the result cannot be projected; then the
   // state is still the old one.
   Status complete();
@@ -75,7 +81,8 @@ class ExplicitStepper {
   const double rtol_, atol_;
   const std::size_t nv_, nc_;
   const Eigen::Index last_;  // index of k_{s+1}
-  bool error_needs_last_;
+  const bool error_needs_last_;
+  bool project_stages_ = false;
 
   Point state_, next_, sample_;
   Vector q_n_;      // where the step began; y_n_ = (0, v_n)
