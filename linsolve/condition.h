@@ -43,6 +43,7 @@ class Condition {
       }
       advance(round);
     }
+    multiply(layout, values);
     return growth_;
   }
 

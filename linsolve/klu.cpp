@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/check.h"
 #include "linsolve/back_ends.h"
@@ -23,21 +24,28 @@ class Klu final : public ScaledLu {
     klu_defaults(&common_);
     common_.scale = -1;  // the matrix comes scaled and checked
     common_.halt_if_singular = 0;
-    common_.maxwork = 20;  // times the entries, for the search of a block triangular form: enough where there is one
-    common_.tol = 0.1;     // with the default of 1e-3 backward errors reach 1e-11 on loops
+    common_.tol = 0.1;  // with the default of 1e-3 backward errors reach 1e-11 on loops
   }
   ~Klu() override { release(); }
 
  private:
+  // Two orders compete at the first factorization, and the one with fewer entries in the factors stays: AMD after a
+  // permutation to block triangular form (chains, trees, determined mechanisms) and COLAMD (loops). The search for that
+  // form takes time in the square of n on saddle points.
   LinearStatus do_symbolic() override {
+    constexpr int kLargestSearched = 20000;
     release();
     fresh_pivots_.assign(static_cast<std::size_t>(layout().n), 0);
-    // The block triangular form helps small kinematic matrices. A saddle point has none, and the search for it takes
-    // time in the square of n there.
-    constexpr int kLargestSearched = 20000;
-    common_.btf = layout().n <= kLargestSearched;
-    symbolic_ = klu_analyze(layout().n, start(), row(), &common_);
+    if (layout().n <= kLargestSearched) symbolic_ = analyze(0, true);
+    rival_ = analyze(1, false);
+    if (!symbolic_) std::swap(symbolic_, rival_);
     return symbolic_ ? LinearStatus{} : library_status();
+  }
+
+  klu_symbolic* analyze(int ordering, bool block_triangular) {
+    common_.ordering = ordering;
+    common_.btf = block_triangular;
+    return klu_analyze(layout().n, start(), row(), &common_);
   }
 
   bool do_refactor() override {
@@ -49,7 +57,8 @@ class Klu final : public ScaledLu {
     if (numeric_) klu_free_numeric(&numeric_, &common_);
     numeric_ = klu_factor(start(), row(), scaled().data(), symbolic_, &common_);
     if (!numeric_) return library_status();
-    statistics_.factor_nonzeros = std::int64_t{numeric_->lnz} + numeric_->unz + numeric_->nzoff - layout().n;
+    if (rival_) compare();
+    statistics_.factor_nonzeros = entries(*numeric_);
     std::ranges::copy(pivots(), fresh_pivots_.begin());
     fresh_growth_ = reciprocal_growth();
     return {};
@@ -61,6 +70,18 @@ class Klu final : public ScaledLu {
 
   double pivot(int k) override { return fresh_pivots_[static_cast<std::size_t>(k)]; }
   int pivot_column(int k) override { return symbolic_->Q[k]; }
+
+  void compare() {
+    klu_numeric* other = klu_factor(start(), row(), scaled().data(), rival_, &common_);
+    if (other && entries(*other) < entries(*numeric_)) {
+      std::swap(numeric_, other);
+      std::swap(symbolic_, rival_);
+    }
+    if (other) klu_free_numeric(&other, &common_);
+    klu_free_symbolic(&rival_, &common_);
+  }
+
+  static std::int64_t entries(const klu_numeric& n) { return std::int64_t{n.lnz} + n.unz + n.nzoff - n.n; }
 
   bool pivots_still_good() {
     bool good = true;
@@ -92,12 +113,13 @@ class Klu final : public ScaledLu {
   void release() {
     if (numeric_) klu_free_numeric(&numeric_, &common_);
     if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
+    if (rival_) klu_free_symbolic(&rival_, &common_);
   }
 
   std::vector<double> fresh_pivots_;
   double fresh_growth_ = 0;
   klu_common common_;
-  klu_symbolic* symbolic_ = nullptr;
+  klu_symbolic *symbolic_ = nullptr, *rival_ = nullptr;
   klu_numeric* numeric_ = nullptr;
 };
 
