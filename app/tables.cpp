@@ -68,9 +68,8 @@ std::vector<std::string> foot(const Options& options, int core) {
 
 std::string introduction() {
   std::string text =
-      "Like for like is the `simplified` matrix: that is what the original codes use, factored once a step. In "
-      "dynamics they assemble it where the last step ended, we at the first iterate of the new one, which saves "
-      "iterations. A step is one time step with all its Newton iterations. Newton matrices:\n";
+      "Like for like is the `simplified` matrix: that is what the original codes use, factored once a step. A step is "
+      "one time step with all its Newton iterations. Newton matrices:\n";
   for (const auto& policy : jacobians()) text += fmt::format("\n- `{}`: {}", policy.name, policy.about);
   return text;
 }

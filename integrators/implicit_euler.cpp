@@ -49,7 +49,12 @@ class ImplicitEuler final : public Integrator {
         problem.set_velocity(span(v));
         problem.step_residual(scale, a, lambda, span(r));
       };
-      const auto matrix = [&] { return system.refresh(t, scale, span(dq), a, lambda); };
+      const auto matrix = [&]() -> Status {
+        if (policy.refresh != Refresh::before_step) return system.refresh(t, scale, span(dq), a, lambda);
+        problem.set_position(t, span(q_n));
+        problem.set_velocity(span(v_n));
+        return system.refresh(t, scale, {}, a, lambda);
+      };
       const auto correct = [&](Vector& delta) -> Status {
         problem.lower(span(dq), span(delta, 0, nv));
         z += delta;

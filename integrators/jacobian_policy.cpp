@@ -9,8 +9,8 @@ namespace {
 constexpr JacobianEntry kJacobians[] = {
     {"exact", "the full Newton matrix, made anew in every iteration", MatrixKind::exact, Refresh::every_iteration},
     {"simplified",
-     "the original study's: without the reactions' variations, factored once a step; no predictor in kinematics",
-     MatrixKind::simplified, Refresh::every_step},
+     "the original study's: no variation of reactions, factored once, where the last step ended; no predictor",
+     MatrixKind::simplified, Refresh::before_step},
     {"kept", "the full Newton matrix, kept over iterations and steps until convergence slows down", MatrixKind::exact,
      Refresh::when_slow},
 };

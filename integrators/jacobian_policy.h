@@ -10,8 +10,9 @@ namespace poinsot {
 
 enum class Refresh {
   every_iteration,
-  every_step,  // once, at the first iterate of the step
-  when_slow,   // kept over iterations and steps until corrections shrink too slowly
+  every_step,   // once, at the first iterate of the step
+  before_step,  // once, where the last step ended; integrators that say nothing else do as for every_step
+  when_slow,    // kept over iterations and steps until corrections shrink too slowly
 };
 
 struct JacobianEntry {

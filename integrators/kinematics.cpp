@@ -25,7 +25,7 @@ class Kinematics final : public Integrator {
   Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
     const JacobianEntry& policy = *find_jacobian(settings.jacobian);
-    const bool predict = policy.refresh != Refresh::every_step;  // the original study's codes do not
+    const bool predict = policy.refresh != Refresh::before_step;  // the original study's codes do not
     const TimeGrid grid(settings);
     PhaseClock clock;
     StepSystem system(problem, solver, MatrixKind::kinematic, statistics, clock);
@@ -81,7 +81,7 @@ class Kinematics final : public Integrator {
     for (int k = 0; k < settings.max_iterations; ++k) {
       problem.set_position(t, span(q));
       problem.position_residual(span(delta));
-      if (refresh == Refresh::every_iteration || (refresh == Refresh::every_step && k == 0) || slow) {
+      if (refresh == Refresh::every_iteration || (refresh == Refresh::before_step && k == 0) || slow) {
         if (Status status = system.refresh(t, {}, {}, {}, {}); !status.ok()) return status;
       }
       delta = -delta;

@@ -76,6 +76,7 @@ class NewtonLoop {
       case Refresh::every_iteration:
         return true;
       case Refresh::every_step:
+      case Refresh::before_step:
         return k == 0;
       case Refresh::when_slow:
         return slow_ || !system_.ready();
