@@ -21,7 +21,7 @@ struct Node {
 
 // Estimated cycles of a front: a fixed part, its arithmetic, the traffic of its update matrix.
 double cost(int p, int m) {
-  constexpr double kFixed = 120, kFlop = 0.35, kTraffic = 1.0;
+  constexpr double kFixed = 120, kFlop = 0.5, kTraffic = 1;
   const double pp = p, mm = m;
   return kFixed + kFlop * (0.7 * pp * pp * pp + 2 * pp * pp * mm + 2 * pp * mm * mm) + kTraffic * (pp + mm) * (pp + mm);
 }
@@ -71,7 +71,7 @@ class Builder {
 
   // A child goes into its parent where one larger front is cheaper than two.
   void amalgamate() {
-    constexpr int kMostPivots = 24;
+    constexpr int kMostPivots = 8;  // as far as kernels of fixed size go
     std::vector<std::vector<int>> children(nodes_.size());
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       Node& node = nodes_[k];

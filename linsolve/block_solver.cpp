@@ -8,6 +8,8 @@
 //              then Bauer's condition (condition.h) and the residual of a solve decide;
 //   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
 //
+// A mechanism without degrees of freedom needs less: its square G alone is factorized (determined.h).
+//
 // Where this does not lead to a trustworthy answer the same values go to klu, whose word counts, singular included.
 // Matrices without a saddle point's symmetric structure (kinematics) go to klu from the start.
 #include <algorithm>
@@ -23,12 +25,14 @@
 #include "linsolve/block_schedule.h"
 #include "linsolve/condition.h"
 #include "linsolve/csc_layout.h"
+#include "linsolve/determined.h"
 #include "linsolve/equilibration.h"
 
 namespace poinsot {
 namespace {
 
 constexpr double kSymmetric = 0.9;        // share of mirrored entries that makes a saddle point
+constexpr int kSingleBody = 16;           // unknowns: two dense blocks, nothing gained by taking G out
 constexpr double kNear = 10, kFar = 1e3;  // drift of pivots that is trusted unseen, and with a look at residuals
 constexpr double kSmallResidual = 2e-15;  // relative; above, a solution is refined once
 constexpr double kFairResidual = 1e-12;   // above, other pivots are tried, and a refined solution is looked at again
@@ -57,7 +61,11 @@ class BlockSolver final : public LinearSolver {
     examined_ = false;
     helped_ = 0;
     fused_.assign(at(1 + *std::ranges::max_element(node_)), -1);
-    by_klu_ = only_klu_ = symmetry(layout_) < kSymmetric || !order();
+    by_klu_ = only_klu_ = symmetry(layout_) < kSymmetric;
+    ordered_ = determined_fits_ = false;
+    determined_ = only_klu_ || layout_.n <= kSingleBody ? nullptr : std::make_unique<Determined>();
+    if (determined_ && !determined_->analyze(layout_)) determined_.reset();
+    if (!only_klu_ && !determined_) only_klu_ = !order();
     return {};
   }
 
@@ -67,17 +75,30 @@ class BlockSolver final : public LinearSolver {
     if (!schedule_.build(layout_, graph, elimination_order(graph))) return false;
     factor_.resize(schedule_);
     statistics_.factor_nonzeros = schedule_.factor_nonzeros;
-    return true;
+    return ordered_ = true;
   }
 
   LinearStatus do_factor() override {
-    by_klu_ = only_klu_;
+    determined_fits_ = determined_ && determined_->fits(values_);
+    if (determined_fits_) return factor_determined();
+    by_klu_ = only_klu_ = only_klu_ || (!ordered_ && !order());
     if (by_klu_) return factor_by_klu();
     const block::Drift drift = factor_.factor(schedule_, values_, examined_);
     if (!examined_ || !within(drift, kFar)) return factor_fresh();
     ++statistics_.refactorizations;
-    look_at_residual_ = refined_ || !within(drift, kNear);
+    drifted_ = watched_ || !within(drift, kNear);
     return {};
+  }
+
+  LinearStatus factor_determined() {
+    const LinearStatistics before = determined_->statistics();
+    LinearStatus status = determined_->factor(values_);
+    const LinearStatistics& after = determined_->statistics();
+    statistics_.factorizations += after.factorizations - before.factorizations;
+    statistics_.refactorizations += after.refactorizations - before.refactorizations;
+    statistics_.factor_nonzeros = after.factor_nonzeros;
+    statistics_.reciprocal_condition = after.reciprocal_condition;
+    return status;
   }
 
   static bool within(const block::Drift& drift, double range) {
@@ -99,10 +120,10 @@ class BlockSolver final : public LinearSolver {
     // A pivot that is rounding may still pass for one in a system of very different masses; klu sees it at its own
     // size.
     if (!cancelled_pivots(schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
-    refined_ = refined_ || !cancelled_pivots(schedule_, values_, weight_, kCancelled).empty();
+    watched_ = watched_ || !cancelled_pivots(schedule_, values_, weight_, kCancelled).empty();
     examined_ = true;
     factor_.keep_pivots(schedule_);
-    look_at_residual_ = refined_;
+    drifted_ = watched_;
     helped_ = 0;
     return {};
   }
@@ -133,6 +154,7 @@ class BlockSolver final : public LinearSolver {
       std::ranges::transform(rows_, x.begin(), [](double row) { return 1 / row; });
       solve(x);
       refined_ = size > kSmallResidual;
+      watched_ = size > kFairResidual;
       if (estimate < kSingularCondition && (size <= kFairResidual || (last && refine(x) <= kLargeResidual)))
         return true;
       std::ranges::transform(condition.rows(), weight_.begin(), [](double w) { return 1 / w; });
@@ -172,41 +194,54 @@ class BlockSolver final : public LinearSolver {
   }
 
   LinearStatus do_solve(std::span<double> b) override {
+    if (determined_fits_) return determined_->solve(layout_, values_, b);
     if (by_klu_) return klu_->solve(b);
-    if (!look_at_residual_) {
+    if (!refined_ && !drifted_) {
       factor_.solve(schedule_, b);
       return {};
     }
     b_.assign(b.begin(), b.end());
     factor_.solve(schedule_, b);
-    const double size = residual(b_, b);
-    if (size <= kSmallResidual || refine(b, size <= kFairResidual ? 1 : kRefinements) <= kLargeResidual) return {};
+    if (!drifted_) {
+      find_remainder(b_, b);
+      correct(b);
+      return {};
+    }
+    if (residual(b_, b) <= kSmallResidual || refine(b) <= kLargeResidual) return {};
     std::ranges::copy(b_, b.begin());
     if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
     return klu_->solve(b);
   }
 
-  // x ← x + A⁻¹ (b_ − A x), r_ being b_ − A x, until the residual is small, a few times at most; the residual. A single
-  // step is trusted without looking.
-  double refine(std::span<double> x, int steps = kRefinements) {
+  // Corrects x, r_ being b_ − A x, until the residual is small, a few times at most; the residual.
+  double refine(std::span<double> x) {
     double size = HUGE_VAL;
-    for (int step = 0; step < steps && !(size <= kSmallResidual); ++step) {
-      factor_.solve(schedule_, r_);
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] += r_[i];
-      size = steps == 1 ? 0 : residual(b_, x);
+    for (int step = 0; step < kRefinements && !(size <= kSmallResidual); ++step) {
+      correct(x);
+      size = residual(b_, x);
     }
     return size;
   }
 
-  // r_ ← b − A x; the largest |r| against the largest of |A||x| and |b|, of the equilibrated system.
-  double residual(std::span<const double> b, std::span<const double> x) {
+  // x ← x + A⁻¹ r_
+  void correct(std::span<double> x) {
+    factor_.solve(schedule_, r_);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += r_[i];
+  }
+
+  // r_ ← b − A x
+  void find_remainder(std::span<const double> b, std::span<const double> x) {
     r_.assign(b.begin(), b.end());
-    double size_x = 0, size_b = 0, size_r = 0;
-    for (std::size_t j = 0; j < r_.size(); ++j) {
+    for (std::size_t j = 0; j < r_.size(); ++j)
       for (int k = layout_.start[j]; k < layout_.start[j + 1]; ++k) r_[at(layout_.row[at(k)])] -= values_[at(k)] * x[j];
-      size_x = std::max(size_x, std::abs(x[j]) / columns_[j]);
-    }
+  }
+
+  // The largest |b − A x| against the largest of |A||x| and |b|, of the equilibrated system; leaves b − A x in r_.
+  double residual(std::span<const double> b, std::span<const double> x) {
+    find_remainder(b, x);
+    double size_x = 0, size_b = 0, size_r = 0;
     for (std::size_t i = 0; i < r_.size(); ++i) {
+      size_x = std::max(size_x, std::abs(x[i]) / columns_[i]);
       size_b = std::max(size_b, std::abs(b[i]) * rows_[i]);
       size_r = std::max(size_r, std::abs(r_[i]) * rows_[i]);
     }
@@ -236,12 +271,15 @@ class BlockSolver final : public LinearSolver {
   std::vector<int> node_, fused_;
   Schedule schedule_;
   BlockFactor factor_;
+  std::unique_ptr<Determined> determined_;  // where the structure has the form
   std::unique_ptr<LinearSolver> klu_;
   std::vector<double> b_, r_;
   std::vector<double> weight_;          // of rows in the choice of pivots
   std::vector<double> rows_, columns_;  // in which residuals are measured: factors for rows, sizes of unknowns
-  bool examined_ = false, look_at_residual_ = false;
-  bool refined_ = false;  // the last fresh factorization solved well only with refinement
+  bool ordered_ = false, examined_ = false, determined_fits_ = false;
+  bool refined_ = false;  // the last fresh factorization solved well only with refinement: every solution gets it
+  bool watched_ = false;  // not so well, or with much cancellation: every residual is looked at
+  bool drifted_ = false;  // that, or pivots left those of the last fresh factorization
   bool by_klu_ = false, only_klu_ = false;
   int helped_ = 0;
 };

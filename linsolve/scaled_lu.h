@@ -31,6 +31,7 @@ class ScaledLu : public LinearSolver {
   virtual int pivot_column(int k) = 0;
 
   const CscLayout& layout() const { return layout_; }
+  const Equilibration& equilibration() const { return equilibration_; }
   std::span<double> scaled() { return scaled_; }
   static LinearStatus singular(int unknown);
 

@@ -1,0 +1,94 @@
+#include "linsolve/determined.h"
+
+#include <algorithm>
+
+namespace poinsot {
+namespace {
+
+std::size_t at(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+}  // namespace
+
+bool Determined::analyze(const CscLayout& layout) {
+  const int n = layout.n;
+  if (n % 2 != 0) return false;
+  const auto find = [&](int i, int j) {
+    const auto first = layout.row.begin() + layout.start[at(j)], last = layout.row.begin() + layout.start[at(j) + 1];
+    const auto it = std::lower_bound(first, last, i);
+    return it != last && *it == i ? static_cast<int>(it - layout.row.begin()) : -1;
+  };
+  velocities_.clear(), multipliers_.clear();
+  velocity_of_.assign(at(n), -1);
+  std::vector<int> multiplier_of(at(n), -1);
+  for (int k = 0; k < n; ++k) {
+    if (find(k, k) >= 0) {
+      velocity_of_[at(k)] = static_cast<int>(velocities_.size());
+      velocities_.push_back(k);
+    } else {
+      multiplier_of[at(k)] = static_cast<int>(multipliers_.size());
+      multipliers_.push_back(k);
+    }
+  }
+  if (velocities_.size() != multipliers_.size()) return false;
+
+  Pattern g{n / 2, {}, std::vector<int>(at(n / 2), 0)};
+  g_.clear(), mirror_.clear();
+  int entries_above = 0;
+  for (int j = 0; j < n; ++j)
+    for (int k = layout.start[at(j)]; k < layout.start[at(j) + 1]; ++k) {
+      const int i = layout.row[at(k)];
+      if (velocity_of_[at(i)] >= 0) {
+        entries_above += velocity_of_[at(j)] < 0;
+        continue;
+      }
+      if (velocity_of_[at(j)] < 0) return false;  // constraints that are coupled directly
+      const int above = find(j, i);
+      if (above < 0) return false;
+      g.blocks.push_back({multiplier_of[at(i)], velocity_of_[at(j)], 1, 1});
+      g_.emplace_back(k, 0);
+      mirror_.emplace_back(k, above);
+    }
+  if (entries_above != static_cast<int>(g_.size()) || !klu_.analyze(g).ok()) return false;
+  for (std::size_t k = 0; k < g_.size(); ++k) g_[k].second = klu_.slots()[k];
+  for (auto* v : {&v_, &f_}) v->assign(velocities_.size(), 0);
+  return true;
+}
+
+bool Determined::fits(std::span<const double> values) const {
+  bool equal = true;
+  for (const auto& [g, above] : mirror_) equal = equal && values[at(g)] == values[at(above)];
+  return equal;
+}
+
+LinearStatus Determined::factor(std::span<const double> values) {
+  double poison = 0;  // stays 0 as long as everything is finite, K included
+  for (const double value : values) poison += value * 0;
+  if (poison != 0) return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
+  for (const auto& [whole, part] : g_) klu_.values()[at(part)] = values[at(whole)];
+  LinearStatus status = klu_.factor();
+  if (status.unknown >= 0) status.unknown = velocities_[at(status.unknown)];
+  return status;
+}
+
+LinearStatus Determined::solve(const CscLayout& layout, std::span<const double> values, std::span<double> b) {
+  for (std::size_t k = 0; k < v_.size(); ++k) {
+    v_[k] = b[at(multipliers_[k])];
+    f_[k] = b[at(velocities_[k])];
+  }
+  if (LinearStatus status = klu_.solve(v_); !status.ok()) return status;
+  for (std::size_t c = 0; c < v_.size(); ++c) {
+    const int j = velocities_[c];
+    for (int k = layout.start[at(j)]; k < layout.start[at(j) + 1]; ++k)
+      if (const int r = velocity_of_[at(layout.row[at(k)])]; r >= 0) f_[at(r)] -= values[at(k)] * v_[c];
+  }
+  klu_.solve_transposed(f_);
+  for (std::size_t k = 0; k < v_.size(); ++k) {
+    b[at(velocities_[k])] = v_[k];
+    b[at(multipliers_[k])] = f_[k];
+  }
+  return {};
+}
+
+}  // namespace poinsot

@@ -1,0 +1,120 @@
+#include "linsolve/klu_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/check.h"
+#include "linsolve/back_ends.h"
+
+namespace poinsot {
+namespace {
+
+constexpr double kPivotRange = 100;
+
+}  // namespace
+
+Klu::Klu() {
+  klu_defaults(&common_);
+  common_.scale = -1;  // the matrix comes scaled and checked
+  common_.halt_if_singular = 0;
+  common_.tol = 0.1;  // with the default of 1e-3 backward errors reach 1e-11 on loops
+}
+
+Klu::~Klu() {
+  release();
+}
+
+// Two orders compete at the first factorization, and the one with fewer entries in the factors stays: AMD after a
+// permutation to block triangular form (chains, trees, determined mechanisms) and COLAMD (loops). The search for that
+// form takes time in the square of n on saddle points.
+LinearStatus Klu::do_symbolic() {
+  constexpr int kLargestSearched = 20000;
+  release();
+  fresh_pivots_.assign(static_cast<std::size_t>(layout().n), 0);
+  if (layout().n <= kLargestSearched) symbolic_ = analyze_as(0, true);
+  rival_ = analyze_as(1, false);
+  if (!symbolic_) std::swap(symbolic_, rival_);
+  return symbolic_ ? LinearStatus{} : library_status();
+}
+
+klu_symbolic* Klu::analyze_as(int ordering, bool block_triangular) {
+  common_.ordering = ordering;
+  common_.btf = block_triangular;
+  return klu_analyze(layout().n, start(), row(), &common_);
+}
+
+bool Klu::do_refactor() {
+  return klu_refactor(start(), row(), scaled().data(), symbolic_, numeric_, &common_) && common_.status == KLU_OK &&
+         pivots_still_good();
+}
+
+LinearStatus Klu::do_fresh() {
+  if (numeric_) klu_free_numeric(&numeric_, &common_);
+  numeric_ = klu_factor(start(), row(), scaled().data(), symbolic_, &common_);
+  if (!numeric_) return library_status();
+  if (rival_) compare();
+  statistics_.factor_nonzeros = entries(*numeric_);
+  std::ranges::copy(pivots(), fresh_pivots_.begin());
+  fresh_growth_ = reciprocal_growth();
+  return {};
+}
+
+void Klu::compare() {
+  klu_numeric* other = klu_factor(start(), row(), scaled().data(), rival_, &common_);
+  if (other && entries(*other) < entries(*numeric_)) {
+    std::swap(numeric_, other);
+    std::swap(symbolic_, rival_);
+  }
+  if (other) klu_free_numeric(&other, &common_);
+  klu_free_symbolic(&rival_, &common_);
+}
+
+void Klu::do_substitute(std::span<double> b) {
+  klu_solve(symbolic_, numeric_, layout().n, 1, b.data(), &common_);
+}
+
+// A = D_r⁻¹ S D_c⁻¹, so A⁻ᵀ = D_r S⁻ᵀ D_c.
+void Klu::solve_transposed(std::span<double> b) {
+  check(state() == State::factored, "Klu::solve_transposed comes after a factor that was ok");
+  equilibration().scale_solution(b);
+  klu_tsolve(symbolic_, numeric_, layout().n, 1, b.data(), &common_);
+  equilibration().scale_right_hand_side(b);
+}
+
+bool Klu::pivots_still_good() {
+  bool good = true;
+  for (std::size_t k = 0; k < fresh_pivots_.size(); ++k) {
+    const double now = std::abs(pivots()[k]), then = std::abs(fresh_pivots_[k]);
+    good = good && now * kPivotRange >= then && now <= then * kPivotRange;
+  }
+  return good && reciprocal_growth() * kPivotRange >= fresh_growth_;
+}
+
+// min over columns of max|A| / max|U|.
+double Klu::reciprocal_growth() {
+  klu_rgrowth(start(), row(), scaled().data(), symbolic_, numeric_, &common_);
+  return common_.rgrowth;
+}
+
+std::span<const double> Klu::pivots() const {
+  return {static_cast<const double*>(numeric_->Udiag), fresh_pivots_.size()};
+}
+
+LinearStatus Klu::library_status() const {
+  if (common_.status == KLU_OUT_OF_MEMORY) return {LinearFailure::out_of_memory, -1, "not enough memory for KLU"};
+  check(common_.status == KLU_TOO_LARGE, "KLU accepts the matrix");
+  return {LinearFailure::refused, -1, "the factors have more entries than KLU's 32-bit indices can count"};
+}
+
+void Klu::release() {
+  if (numeric_) klu_free_numeric(&numeric_, &common_);
+  if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
+  if (rival_) klu_free_symbolic(&rival_, &common_);
+}
+
+std::unique_ptr<LinearSolver> make_klu() {
+  return std::make_unique<Klu>();
+}
+
+}  // namespace poinsot

@@ -1,0 +1,53 @@
+// KLU (T. Davis and E. Palamadai Natarajan, Algorithm 907): fresh pivots once, then refactorizations that keep them.
+//
+// Pivots chosen for other values can turn bad. After each refactorization every pivot is compared with its value at the
+// last fresh factorization; a pivot a hundred times smaller or larger, or a hundredfold loss of reciprocal growth,
+// is answered by fresh pivots for the same values.
+#pragma once
+
+#include <klu.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "linsolve/scaled_lu.h"
+
+namespace poinsot {
+
+class Klu final : public ScaledLu {
+ public:
+  Klu();
+  ~Klu() override;
+
+  // b ← A⁻ᵀ b, for the values of the last factor().
+  void solve_transposed(std::span<double> b);
+
+ private:
+  LinearStatus do_symbolic() override;
+  LinearStatus do_fresh() override;
+  bool do_refactor() override;
+  void do_substitute(std::span<double> b) override;
+  double pivot(int k) override { return fresh_pivots_[static_cast<std::size_t>(k)]; }
+  int pivot_column(int k) override { return symbolic_->Q[k]; }
+
+  klu_symbolic* analyze_as(int ordering, bool block_triangular);
+  void compare();
+  static std::int64_t entries(const klu_numeric& n) { return std::int64_t{n.lnz} + n.unz + n.nzoff - n.n; }
+  bool pivots_still_good();
+  double reciprocal_growth();
+  std::span<const double> pivots() const;
+  LinearStatus library_status() const;
+  // KLU only reads these, though its interface does not say so.
+  int* start() { return const_cast<int*>(layout().start.data()); }
+  int* row() { return const_cast<int*>(layout().row.data()); }
+  void release();
+
+  std::vector<double> fresh_pivots_;
+  double fresh_growth_ = 0;
+  klu_common common_;
+  klu_symbolic *symbolic_ = nullptr, *rival_ = nullptr;
+  klu_numeric* numeric_ = nullptr;
+};
+
+}  // namespace poinsot
