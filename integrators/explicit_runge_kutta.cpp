@@ -66,7 +66,7 @@ class ExplicitRungeKutta final : public Integrator {
       const double to = t + 1.01 * h >= end ? end : t + h;
       h = to - t;
       tiny = h < kTiny * longest ? tiny + 1 : 0;
-      if (tiny > kCreeping) return creeping(t, h);
+      if (tiny > kCreeping) return stuck(t, h, {});
       using enum ExplicitStepper::Stages;
       double error = 0;
       Status status = stepper.attempt(to, rejections < kDifficult ? as_they_come : projected, error);
@@ -74,7 +74,7 @@ class ExplicitRungeKutta final : public Integrator {
       if (!status.ok() || !(error <= 1)) {
         ++statistics.rejected_steps;
         h = status.ok() && std::isfinite(error) ? controller.rejected(h, error) : controller.failed(h);
-        if (h < smallest) return too_small(t, h, status);
+        if (h < smallest) return stuck(t, h, status);
         if (++rejections == kDifficult) h = std::max(h, completed);
         continue;
       }
@@ -96,21 +96,14 @@ class ExplicitRungeKutta final : public Integrator {
     return {};
   }
 
-  static Status too_small(double t, double h, const Status& cause) {
-    return {Failure::step_size_too_small, t,
-            fmt::format("at t = {:.9g} s the step had to become {:.3g} s, too small to advance the time: the motion "
-                        "jumps or grows without bound here, the mechanism comes to a singular position, or the "
-                        "tolerances ask for more than the arithmetic has{}",
-                        t, h, cause.ok() ? "" : "; the last attempt: " + cause.message)};
-  }
-
-  static Status creeping(double t, double h) {
+  static Status stuck(double t, double h, const Status& cause) {
     return {
         Failure::step_size_too_small, t,
-        fmt::format("at t = {:.9g} s the steps creep with {:.3g} s: a singular position of the mechanism, near which "
-                    "accelerations are lost to rounding; larger tolerances may step over it, an implicit integrator "
-                    "with a fixed step too",
-                    t, h)};
+        fmt::format("at t = {:.9g} s the steps became too small to get on with ({:.3g} s): the motion jumps or grows "
+                    "without bound here, the mechanism comes to a singular position, near which accelerations are "
+                    "lost to rounding, or the tolerances ask for more than the arithmetic has; larger tolerances or "
+                    "an implicit integrator with a fixed step may pass{}",
+                    t, h, cause.ok() ? "" : "; the last attempt: " + cause.message)};
   }
 
   const RungeKuttaPair& pair_;
