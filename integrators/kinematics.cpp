@@ -75,13 +75,12 @@ class Kinematics final : public Integrator {
  private:
   static Status position(Problem& problem, StepSystem& system, const Settings& settings, Refresh refresh, double t,
                          Vector& q, Vector& q_next, Vector& delta, Statistics& statistics) {
-    constexpr double kSlow = 0.25;  // as in NewtonLoop
-    double correction = 0, before = INFINITY;
-    bool slow = !system.ready();
+    double correction = 0;
     for (int k = 0; k < settings.max_iterations; ++k) {
       problem.set_position(t, span(q));
       problem.position_residual(span(delta));
-      if (refresh == Refresh::every_iteration || (refresh == Refresh::before_step && k == 0) || slow) {
+      // A kept matrix would carry the position past a bifurcation unseen: kinematics keeps none.
+      if (refresh != Refresh::before_step || k == 0) {
         if (Status status = system.refresh(t, {}, {}, {}, {}); !status.ok()) return status;
       }
       delta = -delta;
@@ -94,8 +93,6 @@ class Kinematics final : public Integrator {
         return {Failure::not_finite, t, fmt::format("at t = {:.9g} s the position's correction is not finite", t)};
       }
       if (correction < settings.tolerance) return {};
-      slow = refresh == Refresh::when_slow && !(correction < kSlow * before);
-      before = correction;
     }
     Eigen::Index largest = 0;
     delta.cwiseAbs().maxCoeff(&largest);
