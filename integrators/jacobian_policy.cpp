@@ -11,8 +11,8 @@ constexpr JacobianEntry kJacobians[] = {
     {"simplified",
      "the original study's: no variation of reactions, factored once, where the last step ended; no predictor",
      MatrixKind::simplified, Refresh::before_step},
-    {"kept", "the full Newton matrix, kept while it converges well, over iterations and steps (not in kinematics)", MatrixKind::exact,
-     Refresh::when_slow},
+    {"kept", "the full Newton matrix, kept while it converges well, over iterations and steps (not in kinematics)",
+     MatrixKind::exact, Refresh::when_slow},
 };
 
 }  // namespace
