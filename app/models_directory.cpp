@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/paper_figures.h"
+#include "app/program_data.h"
 #include "core/input_error.h"
 
 namespace poinsot::app {
@@ -21,13 +22,11 @@ fs::path models_directory(const std::string& given) {
     throw InputError(fmt::format("--models: found no {}.json in {}, expected a folder with the paper's mechanisms",
                                  kMechanisms.front().file, given));
   }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed = (program.parent_path() / POINSOT_INSTALLED_MODELS).lexically_normal();
-  if (!error && holds_models(installed)) return installed;
-  if (holds_models(POINSOT_SOURCE_MODELS)) return POINSOT_SOURCE_MODELS;
+  const auto places = program_data("models", "models");
+  for (const fs::path& place : places)
+    if (holds_models(place)) return place;
   throw InputError(fmt::format("the models are neither in {} nor in {}; give their folder with --models DIR",
-                               installed.string(), POINSOT_SOURCE_MODELS));
+                               places[0].string(), places[1].string()));
 }
 
 }  // namespace poinsot::app

@@ -24,5 +24,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/poinsotConfigVersion.cmak
 install(FILES ${PROJECT_BINARY_DIR}/poinsotConfig.cmake ${PROJECT_BINARY_DIR}/poinsotConfigVersion.cmake
               cmake/suitesparse.cmake
         DESTINATION ${poinsot_package})
-install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/poinsot)
+install(DIRECTORY models app/plots DESTINATION ${CMAKE_INSTALL_DATADIR}/poinsot PATTERN __pycache__ EXCLUDE)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
