@@ -65,6 +65,7 @@ struct IntegratorEntry {
   std::string_view name;
   std::string_view about;  // one line: order, what it needs, what it refuses
   Analysis analysis;
+  int order;  // in the step, of positions, velocities, accelerations and multipliers alike; 0: not a matter of steps
   std::unique_ptr<Integrator> (*make)();
   std::span<const Refusal> refuses = {};
   bool controls_error = false;  // chooses its steps by rtol and atol; `step` and `tolerance` mean nothing to it
