@@ -64,8 +64,10 @@ struct LastState {
 void print_summary(const Scene& scene, const Settings& settings, const Outcome& outcome, const LastState& last) {
   const Statistics& s = outcome.statistics;
   const bool kinematics = settings.analysis == Analysis::kinematics;
+  std::string solver = settings.linear_solver;
+  if (s.linear_solver != solver && !s.linear_solver.empty()) solver += fmt::format(" ({})", s.linear_solver);
   fmt::print("{}: {}, {}{}, {}, h = {:g} s\n", scene.name, kinematics ? "kinematics" : "dynamics", settings.formulation,
-             kinematics ? "" : ", " + settings.integrator, settings.linear_solver, settings.step);
+             kinematics ? "" : ", " + settings.integrator, solver, settings.step);
   fmt::print("t = {:g} s\n", last.t);
   std::size_t width = 4;
   for (const Body& body : scene.bodies) width = std::max(width, body.name.size());

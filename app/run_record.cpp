@@ -19,7 +19,8 @@ std::string to_json(const RunRecord& record) {
   if (failure != Failure::none) json["failure_time"] = time;
   json["notices"] = record.outcome.notices;
   json["reactions_undetermined"] = record.outcome.reactions_undetermined;
-  json["statistics"] = {{"steps", s.steps},
+  json["statistics"] = {{"linear_solver", s.linear_solver},
+                        {"steps", s.steps},
                         {"rejected_steps", s.rejected_steps},
                         {"newton_iterations", s.newton_iterations},
                         {"convergence_rate", s.convergence.rate()},

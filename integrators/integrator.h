@@ -32,6 +32,7 @@ struct Statistics {
   struct {
     double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
   } violation;
+  std::string_view linear_solver;  // the one that did the work: of auto, its pick
 };
 
 // A point of the trajectory. The problem stands at (t, q, v).

@@ -12,7 +12,7 @@ struct Settings {
   Analysis analysis = Analysis::dynamics;
   std::string formulation = "rA";
   std::string integrator = "implicit_euler";  // of dynamics
-  std::string linear_solver = "klu";
+  std::string linear_solver = "auto";
   std::string jacobian = "exact";
   double step = 1e-3;            // s
   double end = 1;                // s; the last step lands on it exactly

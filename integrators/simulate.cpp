@@ -110,6 +110,7 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   }
   const std::unique_ptr<LinearSolver> solver = linear_solver.make();
   outcome.status = integrator.make()->run(*problem, *solver, settings, state, observe, outcome.statistics);
+  outcome.statistics.linear_solver = solver->picked().empty() ? linear_solver.name : solver->picked();
   return outcome;
 }
 

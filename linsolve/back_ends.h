@@ -7,6 +7,7 @@
 
 namespace poinsot {
 
+std::unique_ptr<LinearSolver> make_auto();
 std::unique_ptr<LinearSolver> make_block();
 std::unique_ptr<LinearSolver> make_dense();
 std::unique_ptr<LinearSolver> make_eigen_sparselu();

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "linsolve/pattern.h"
@@ -48,8 +49,10 @@ class LinearSolver {
   LinearStatus factor();
   LinearStatus solve(std::span<double> b);
 
-  std::span<const int> slots() const { return slots_; }  // one per block column, blocks in pattern order
-  std::span<double> values() { return values_; }
+  virtual std::span<const int> slots() const { return slots_; }  // one per block column, blocks in pattern order
+  virtual std::span<double> values() { return values_; }
+  // Of a solver that chooses another one to do its work: that one's name, from analyze() on.
+  virtual std::string_view picked() const { return {}; }
   State state() const { return state_; }
   int size() const { return n_; }
   const LinearStatistics& statistics() const { return statistics_; }

@@ -6,6 +6,7 @@ namespace poinsot {
 namespace {
 
 constexpr LinearSolverEntry kEntries[] = {
+    {"auto", "picks the fastest of those below by size and structure, as measured, and says which", make_auto},
     {"klu", "sparse LU that keeps its pivots while they stay good (SuiteSparse KLU); for systems of every size",
      make_klu},
     {"block",

@@ -1,0 +1,67 @@
+// auto: picks a linear solver when the structure is known, and leaves everything to it.
+//
+//   structure                                    pick    measured: klu's time for factor + solve over the pick's
+//   unsymmetric: kinematics, G alone             klu     1 (block hands these to klu, with a copy: 0.92 to 0.98)
+//   saddle point of bodies and constraints       block   1.1 to 1.8 single bodies and the paper's mechanisms, 1.1
+//   to 2.7
+//                                                        chains of 1 to 10 bodies, 2.5 to 3.4 chains and trees of 100
+//                                                        and more, 3.5 to 3.8 ladders, 1.3 to 2.0 many four-bars
+//
+// Measured: bench/linear_solver_bench, exact Newton matrices in rA, rp and reps, all in one run in turn; cycles of an
+// AMD EPYC with AVX-512. The other solvers of the registry won nowhere.
+#include "linsolve/back_ends.h"
+#include "linsolve/registry.h"
+
+namespace poinsot {
+namespace {
+
+// Whether rows and columns have equally many entries one by one, as they have in a saddle point. Cheaper than to look
+// for mirrored entries; a chance hit only costs time.
+bool saddle_point(const Pattern& pattern) {
+  constexpr double kSymmetric = 0.9;  // share of the unknowns
+  // Differences from each unknown to the one before of: entries in its row − entries in its column.
+  std::vector<int> change(static_cast<std::size_t>(pattern.n) + 1, 0);
+  const auto at = [&](int k) -> int& { return change[static_cast<std::size_t>(k)]; };
+  for (const Block& b : pattern.blocks) {
+    at(b.row) += b.cols, at(b.row + b.rows) -= b.cols;
+    at(b.col) -= b.rows, at(b.col + b.cols) += b.rows;
+  }
+  int excess = 0, equal = 0;
+  for (int k = 0; k < pattern.n; ++k) {
+    excess += at(k);
+    if (excess == 0) ++equal;
+  }
+  return equal >= kSymmetric * pattern.n;
+}
+
+class Auto final : public LinearSolver {
+ public:
+  std::span<const int> slots() const override { return solver_ ? solver_->slots() : LinearSolver::slots(); }
+  std::span<double> values() override { return solver_ ? solver_->values() : LinearSolver::values(); }
+  std::string_view picked() const override { return picked_; }
+
+ private:
+  LinearStatus do_analyze(const Pattern& pattern) override {
+    picked_ = saddle_point(pattern) ? "block" : "klu";
+    solver_ = find_linear_solver(picked_)->make();
+    return followed(solver_->analyze(pattern));
+  }
+  LinearStatus do_factor() override { return followed(solver_->factor()); }
+  LinearStatus do_solve(std::span<double> b) override { return followed(solver_->solve(b)); }
+
+  LinearStatus followed(LinearStatus status) {
+    statistics_ = solver_->statistics();
+    return status;
+  }
+
+  std::string_view picked_;
+  std::unique_ptr<LinearSolver> solver_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_auto() {
+  return std::make_unique<Auto>();
+}
+
+}  // namespace poinsot
