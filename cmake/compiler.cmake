@@ -18,6 +18,15 @@ if(POINSOT_NATIVE)
 else()
   add_compile_options(-ffp-contract=off)
 endif()
+# The formulations are a few large functions of many small ones; g++'s limits on their growth would leave the small ones
+# as calls (a fifth more instructions in a step of a small mechanism).
+set(poinsot_kernel_options)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT POINSOT_SANITIZE)
+  foreach(limit inline-unit-growth=2000 large-function-growth=2000 large-stack-frame-growth=5000
+                large-unit-insns=100000 max-inline-insns-single=2000 max-inline-insns-auto=300)
+    list(APPEND poinsot_kernel_options --param=${limit})
+  endforeach()
+endif()
 if(POINSOT_SANITIZE)
   list(APPEND poinsot_interface_options -fsanitize=address,undefined -fno-sanitize-recover=undefined
        -fno-omit-frame-pointer)

@@ -32,13 +32,18 @@ Mat3<T> tilde(const Vec3<T>& s) {
   return m;
 }
 
-// Σ_k (−x)ᵏ n!/(n + 2k)!: the series behind the coefficients above (n = 1: a, 2: 2b, 3: 6c), below 1e-21 at x = 1/4.
-template <int n, class T>
+// Σ_k (−x)ᵏ n!/(n + 2k)!, the series behind the coefficients above (n = 1: a, 2: 2b, 3: 6c), up to xᵗ, t = terms.
+template <int n, int terms, class T>
 T factorial_series(const T& x) {
   T sum = T(1);
 #pragma GCC unroll 9
-  for (int k = 8; k >= 0; --k) sum = T(1) - x * T(1.0 / ((n + 2 * k + 1) * (n + 2 * k + 2))) * sum;
+  for (int k = terms - 1; k >= 0; --k) sum = T(1) - x * T(1.0 / ((n + 2 * k + 1) * (n + 2 * k + 2))) * sum;
   return sum;
+}
+// What is left out is below 1e-20 of the sum; the angle of a usual step needs half the terms.
+template <int n, class T>
+T factorial_series(const T& x) {
+  return plain(x) < 1.0 / 64 ? factorial_series<n, 5>(x) : factorial_series<n, 9>(x);
 }
 
 // The coefficients as functions of x = θ²; below 1/4 by their series, because the closed forms cancel there.
@@ -81,8 +86,14 @@ T inverse_tangent_coefficient(const T& x) {  // d = Σ |B_2k| x^(k−1)/(2k)!, B
 // I + first θ̃ + second θ̃θ̃, with θ̃θ̃ = θθᵀ − θ² I.
 template <class T>
 Mat3<T> rotation_polynomial(const Vec3<T>& theta, const T& first, const T& second) {
-  Mat3<T> m = second * theta * theta.transpose() + first * tilde(theta);
-  m.diagonal().array() += T(1) - second * theta.squaredNorm();
+  const T x = theta[0], y = theta[1], z = theta[2];
+  const T sx = second * x, sy = second * y, sz = second * z;
+  const T fx = first * x, fy = first * y, fz = first * z;
+  const T xx = sx * x, yy = sy * y, zz = sz * z, xy = sx * y, xz = sx * z, yz = sy * z;
+  Mat3<T> m;
+  m << T(1) - (yy + zz), xy - fz, xz + fy,  //
+      xy + fz, T(1) - (xx + zz), yz - fx,   //
+      xz - fy, yz + fx, T(1) - (xx + yy);
   return m;
 }
 
@@ -106,6 +117,13 @@ Mat3<T> right_jacobian(const Vec3<T>& theta) {
 template <class T>
 Mat3<T> right_jacobian_inverse(const Vec3<T>& theta) {
   return rotation_polynomial<T>(theta, T(0.5), inverse_tangent_coefficient<T>(theta.squaredNorm()));
+}
+
+// T⁻¹(θ) z
+template <class T>
+Vec3<T> right_jacobian_inverse_times(const Vec3<T>& theta, const Vec3<T>& z) {
+  const Vec3<T> once = theta.cross(z);
+  return z + T(0.5) * once + inverse_tangent_coefficient<T>(theta.squaredNorm()) * theta.cross(once);
 }
 
 // E(p) and G(p), 3×4: global and body angular velocity ω = 2 E ṗ, ω̄ = 2 G ṗ of a unit p.

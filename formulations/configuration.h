@@ -37,7 +37,6 @@ class Configuration {
       : elements(std::move(of)),
         at(static_cast<std::size_t>(elements->nb)),
         rate(at.size()),
-        ambient_rate(at.size()),
         s(elements->markers.size()),
         s_dot(s.size(), Vec3<T>::Zero()),
         f(elements->right_sides.size()),
@@ -71,17 +70,24 @@ class Configuration {
     for (std::size_t b = 0; b < at.size(); ++b) {
       const T* xd = this->xd(v, static_cast<int>(b));
       F::velocity(at[b], xd, rate[b]);
-      ambient_rate[b].template head<3>() = rate[b].wg;
-      if constexpr (F::ambient == 4) {
-        ambient_rate[b][3] = at[b].W().row(3).dot(Eigen::Map<const Eigen::Matrix<T, F::m, 1>>(xd));
-      }
     }
+  }
+
+  // Ŵ ẋ: global angular velocity, in rp also the stretch rate.
+  Ambient ambient_rate(int body) const {
+    const std::size_t b = static_cast<std::size_t>(body);
+    Ambient z;
+    z.template head<3>() = rate[b].wg;
+    if constexpr (F::ambient == 4) {
+      z[3] = at[b].W().row(3).dot(Eigen::Map<const Eigen::Matrix<T, F::m, 1>>(xd(v, body)));
+    }
+    return z;
   }
 
   // ṡ of every attached vector: for velocity rows, damping and γ only, so not part of set_velocity.
   void compute_s_dot() {
     for (std::size_t k = 0; k < static_cast<std::size_t>(elements->ground_markers); ++k) {
-      s_dot[k] = E_times(s[k], ambient_rate[static_cast<std::size_t>(elements->markers[k].body)]);
+      s_dot[k] = E_times(s[k], ambient_rate(elements->markers[k].body));
     }
   }
 
@@ -108,6 +114,12 @@ class Configuration {
   static Vec3<T> E_times(const Vec3<T>& s_of, const Ambient& z) {
     Vec3<T> u = z.template head<3>().cross(s_of);
     if constexpr (F::ambient == 4) u += z[3] * s_of;
+    return u;
+  }
+  // E(s) of every column
+  static Eigen::Matrix<T, 3, F::m> E_times(const Vec3<T>& s_of, const typename F::template Map<T>& z) {
+    Eigen::Matrix<T, 3, F::m> u;
+    for (int k = 0; k < F::m; ++k) u.col(k) = E_times(s_of, Ambient(z.col(k)));
     return u;
   }
   static Eigen::Matrix<T, 3, F::ambient> E(const Vec3<T>& s_of) {
@@ -137,11 +149,10 @@ class Configuration {
   const T* v = nullptr;
   std::vector<typename F::template Position<T>> at;
   std::vector<typename F::template Velocity<T>> rate;
-  std::vector<Ambient> ambient_rate;  // Ŵ ẋ: global angular velocity, in rp also the stretch rate
-  std::vector<Vec3<T>> s, s_dot;      // of every marker, global
-  std::vector<Jet2<T>> f;             // of every right-hand side
-  std::vector<DP1Row> dp1;            // with the alternates that stand in at this time
-  std::vector<double> twist;          // angle of every torsion spring at the last accepted step, rad
+  std::vector<Vec3<T>> s, s_dot;  // of every marker, global
+  std::vector<Jet2<T>> f;         // of every right-hand side
+  std::vector<DP1Row> dp1;        // with the alternates that stand in at this time
+  std::vector<double> twist;      // angle of every torsion spring at the last accepted step, rad
 
  private:
   static Vec3<T> vector3(const T* data, int body, int stride) {

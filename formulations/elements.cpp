@@ -55,7 +55,6 @@ struct Elements::Builder {
   void couple(int pair_index, bool rr, bool rx, bool xr) {
     if (pair_index < 0) return;
     Pair& p = e.pairs[static_cast<std::size_t>(pair_index)];
-    p.xx = true;
     p.rr |= rr, p.rx |= rx, p.xr |= xr;
   }
   void touch(int body, bool rr, bool rx) {
@@ -113,6 +112,38 @@ struct Elements::Builder {
     }
   }
 
+  void join_coincidences() {
+    const auto along_axes = [&](std::size_t k) {
+      for (std::size_t l = 0; l < 3; ++l) {
+        const CDRow &first = e.cd[k], &r = e.cd[k + l];
+        const bool same = r.i == first.i && r.j == first.j && r.p == first.p && r.q == first.q;
+        if (!same || r.row != first.row + static_cast<int>(l) || r.f != 0 || r.c != Vector3::Unit(static_cast<int>(l)))
+          return false;
+      }
+      return true;
+    };
+    std::vector<CDRow> others;
+    for (std::size_t k = 0; k < e.cd.size();) {
+      if (k + 2 < e.cd.size() && along_axes(k)) {
+        e.coincidences.push_back({e.cd[k], e.cd[k].p, e.cd[k].q});
+        k += 3;
+      } else {
+        others.push_back(e.cd[k++]);
+      }
+    }
+    e.cd = std::move(others);
+  }
+
+  void number_blocks() {
+    for (Pair& p : e.pairs) {
+      if (p.rr || p.rx || p.xr) p.with_r = e.pairs_with_r++;
+    }
+    e.body_own.assign(static_cast<std::size_t>(e.nb), -1);
+    for (std::size_t b = 0; b < e.body_own.size(); ++b) {
+      if (e.body_rx[b]) e.body_own[b] = e.bodies_own++;
+    }
+  }
+
   // Ground vectors do not move: they go to the end and are evaluated once.
   void sort_markers() {
     std::vector<int> order(e.markers.size()), place(e.markers.size());
@@ -134,6 +165,7 @@ struct Elements::Builder {
     for (auto& r : e.dp2) move(r.a, r.p, r.q);
     for (auto& r : e.d) move(r.p, r.q);
     for (auto& r : e.cd) move(r.p, r.q);
+    for (auto& r : e.coincidences) move(r.p, r.q);
     for (auto& r : e.angle) move(r.a, r.b, r.v);
     for (auto& r : e.pfaffian) move(r.a, r.p, r.q);
     for (auto& s : e.springs) move(s.p, s.q);
@@ -157,6 +189,9 @@ Elements::Elements(std::shared_ptr<const Model> of, std::span<const int> dropped
     model_row.push_back(index);
     build.add(model->rows[k]);
   }
+  build.join_coincidences();
+  build.number_blocks();
+  for (const Body& b : model->bodies) inertia.push_back({b.mass, b.inertia});
   for (const Spring& s : model->springs) {
     springs.push_back({s.i, s.j, build.marker(s.i, s.s_i), build.marker(s.j, s.s_j), s.stiffness, s.damping, s.length});
   }

@@ -18,10 +18,17 @@ struct Marker {
   Vector3 s_bar = Vector3::Zero();
 };
 
-// Which second-derivative blocks the rows between two free bodies fill: r–r, r–x and x–x.
+// Two free bodies that a row couples in the second variation: x–x always, r–r, r–x and x–r where it says so.
 struct Pair {
   int i, j;
-  bool rr = false, rx = false, xr = false, xx = false;  // rx: (r_i, x_j) and its mirror; xr: (x_i, r_j) and its mirror
+  bool rr = false, rx = false, xr = false;  // rx: (r_i, x_j) and its mirror; xr: (x_i, r_j) and its mirror
+  int with_r = -1;                          // place among the pairs with one of these, −1 without
+};
+
+// What a body's kinetics need.
+struct Inertia {
+  double mass;
+  Matrix3 J;
 };
 
 // Right-hand side f(t), or f(t)², of a row. Constant ones are evaluated here and never again.
@@ -46,6 +53,11 @@ struct DRow : RowBase {
 };
 struct CDRow : RowBase {
   Vector3 c;
+  int p, q;
+};
+// Three CD rows in a row, along the x, y and z axis and with f = 0, that hold one point of body j at one of body i:
+// what most joints have. Together they are d = 0, and their reaction is one force. `row` is the first.
+struct CoincidenceRows : RowBase {
   int p, q;
 };
 struct AngleRow : RowBase {
@@ -97,13 +109,18 @@ struct Elements {
   std::vector<DP2Row> dp2;
   std::vector<DRow> d;
   std::vector<CDRow> cd;
+  std::vector<CoincidenceRows> coincidences;
   std::vector<AngleRow> angle;
   std::vector<PfaffianRow> pfaffian;
   std::vector<AlternateRow> alternates;
 
+  std::vector<Inertia> inertia;  // by body
   std::vector<Pair> pairs;
+  int pairs_with_r = 0;
   // Body blocks that rows fill beside the inertia: (r, r), (r, x) and its mirror.
   std::vector<char> body_rr, body_rx;
+  std::vector<int> body_own;  // place among the bodies with such blocks, −1 without
+  int bodies_own = 0;
   // Node of each row for linear solvers: rows between the same two bodies belong together.
   std::vector<int> row_node;
   int row_nodes = 0;

@@ -65,8 +65,8 @@ class Mechanism {
     Rows<F, T>::nu(c, out);
     const auto times_v = [&](const Gradient& g, auto has_r, const T&) {
       T sum = T(0);
-      if (g.i != kGround) sum += g.ei.dot(c.ambient_rate[index(g.i)]);
-      if (g.j != kGround) sum += g.ej.dot(c.ambient_rate[index(g.j)]);
+      if (g.i != kGround) sum += g.ei.dot(c.ambient_rate(g.i));
+      if (g.j != kGround) sum += g.ej.dot(c.ambient_rate(g.j));
       if constexpr (has_r) sum += g.g.dot(c.rd(g.j) - c.rd(g.i));
       out[g.row] = sum - out[g.row];
     };
@@ -94,10 +94,8 @@ class Mechanism {
   // M v
   void momentum(const T* v_in, T* out) const {
     for (int b = 0; b < nb(); ++b) {
-      const Body& body = c.elements->model->bodies[index(b)];
-      Eigen::Map<Vec3<T>>(out + b * kV) = T(body.mass) * Eigen::Map<const Vec3<T>>(v_in + b * kV);
-      Eigen::Map<X>(out + b * kV + 3) =
-          F::mass(c.at[index(b)], Mat3<T>(body.inertia.template cast<T>())) * coordinates(v_in + b * kV + 3);
+      Eigen::Map<Vec3<T>>(out + b * kV) = mass(b) * Eigen::Map<const Vec3<T>>(v_in + b * kV);
+      Eigen::Map<X>(out + b * kV + 3) = F::mass(c.at[index(b)], J(b)) * coordinates(v_in + b * kV + 3);
     }
   }
 
@@ -115,10 +113,22 @@ class Mechanism {
         if constexpr (has_r) wrench_[index(g.j)].f += l * g.g;
       }
     };
-    Rows<F, T>::holonomic(c, [&](const Gradient& g, auto has_r, const T& Phi) {
+    Rows<F, T>::scalar(c, [&](const Gradient& g, auto has_r, const T& Phi) {
       react(g, has_r, lambda[g.row]);
       if (rows) rows[g.row] = by * Phi;
     });
+    for (const CoincidenceRows& k : c.elements->coincidences) {
+      const Vec3<T> force = Eigen::Map<const Vec3<T>>(lambda + k.row);
+      if (k.i != kGround) {
+        wrench_[index(k.i)].f -= force;
+        wrench_[index(k.i)].e -= C::Et_times(c.s[index(k.p)], force);
+      }
+      if (k.j != kGround) {
+        wrench_[index(k.j)].f += force;
+        wrench_[index(k.j)].e += C::Et_times(c.s[index(k.q)], force);
+      }
+      if (rows) Eigen::Map<Vec3<T>>{rows + k.row} = by * c.span(k.i, k.j, k.p, k.q);
+    }
     Rows<F, T>::velocity(c, [&](const Gradient& g, auto has_r, const T& psi) {
       react(g, has_r, lambda[g.row]);
       if (rows) rows[g.row] = psi / T(scale->velocity);
@@ -128,14 +138,12 @@ class Mechanism {
 
     const Vec3<T> gravity = c.elements->model->gravity.template cast<T>();
     for (int b = 0; b < nb(); ++b) {
-      const Body& body = c.elements->model->bodies[index(b)];
       const auto& at = c.at[index(b)];
       const T* xd = c.xd(c.v, b);
       const T* ab = a + b * kV;
-      Eigen::Map<Vec3<T>>(out + b * kV) =
-          T(body.mass) * (Eigen::Map<const Vec3<T>>(ab) - gravity) + wrench_[index(b)].f;
+      Eigen::Map<Vec3<T>>(out + b * kV) = mass(b) * (Eigen::Map<const Vec3<T>>(ab) - gravity) + wrench_[index(b)].f;
       X x = at.W().transpose() * wrench_[index(b)].e;
-      x += F::inertia_residual(at, c.rate[index(b)], xd, ab + 3, Mat3<T>(body.inertia.template cast<T>()));
+      x += F::inertia_residual(at, c.rate[index(b)], xd, ab + 3, J(b));
       if constexpr (F::normalized) x += lambda[c.elements->rows + b] * at.p;
       Eigen::Map<X>(out + b * kV + 3) = x;
     }
@@ -152,13 +160,13 @@ class Mechanism {
     const bool exact = kind == MatrixKind::exact;
     tangents(dq);
     if (exact) {
-      second_.clear(*c.elements);
+      second_.clear();
       Rows<F, T>::second_variation(c, lambda, second_);
     }
     const T ca = T(scale.acceleration), cv = T(scale.velocity), cq = T(scale.position);
     for (int b = 0; b < nb(); ++b) body_blocks(b, kind, ca, cv, cq, a, lambda, sink);
     if (exact) {
-      for (std::size_t k = 0; k < c.elements->pairs.size(); ++k) pair_blocks(k, cq, sink);
+      for (int k = 0; k < static_cast<int>(c.elements->pairs.size()); ++k) pair_blocks(k, cq, sink);
     }
     if (newton && c.elements->has_forces()) {
       ForceSink<Sink> blocks{sink};
@@ -173,7 +181,7 @@ class Mechanism {
     if constexpr (F::lie_group) {
       for (int b = 0; b < bodies; ++b) {
         Eigen::Map<X> x(z + b * kV + 3);
-        x = right_jacobian_inverse<T>(Eigen::Map<const X>(dq + b * kV + 3)) * x;
+        x = right_jacobian_inverse_times<T>(Eigen::Map<const X>(dq + b * kV + 3), x);
       }
     }
   }
@@ -195,10 +203,8 @@ class Mechanism {
     T sum = Forces<F, T>::energy(c);
     const Vec3<T> gravity = c.elements->model->gravity.template cast<T>();
     for (int b = 0; b < nb(); ++b) {
-      const Body& body = c.elements->model->bodies[index(b)];
       const Vec3<T>& w = c.rate[index(b)].w;
-      sum += T(0.5 * body.mass) * c.rd(b).squaredNorm() - T(body.mass) * gravity.dot(c.r(b)) +
-             T(0.5) * w.dot(body.inertia.template cast<T>() * w);
+      sum += T(0.5) * mass(b) * c.rd(b).squaredNorm() - mass(b) * gravity.dot(c.r(b)) + T(0.5) * w.dot(J(b) * w);
     }
     return sum;
   }
@@ -209,6 +215,15 @@ class Mechanism {
   static std::size_t index(int k) { return static_cast<std::size_t>(k); }
   static Eigen::Map<const X> coordinates(const T* x) { return Eigen::Map<const X>(x); }
   const Vec4<T>& p(int b) const { return c.at[index(b)].p; }
+  T mass(int b) const { return T(c.elements->inertia[index(b)].mass); }
+  decltype(auto) J(int b) const {
+    const Matrix3& J_bar = c.elements->inertia[index(b)].J;
+    if constexpr (std::is_same_v<T, double>) {
+      return (J_bar);
+    } else {
+      return Mat3<T>(J_bar.template cast<T>());
+    }
+  }
   static bool damped(const Elements& e) {
     return std::any_of(e.springs.begin(), e.springs.end(), [](const SpringElement& k) { return k.damping != 0; }) ||
            std::any_of(e.torsions.begin(), e.torsions.end(), [](const TorsionRow& k) { return k.damping != 0; });
@@ -235,15 +250,14 @@ class Mechanism {
                    Sink&& sink) {
     const bool newton = kind == MatrixKind::simplified || kind == MatrixKind::exact;
     const bool exact = kind == MatrixKind::exact;
-    const Body& body = c.elements->model->bodies[index(b)];
-    const Mat3<T> J = body.inertia.template cast<T>();
+    const Mat3<T>& J = this->J(b);
     const auto& at = c.at[index(b)];
     const auto& rate = c.rate[index(b)];
     const T* xd = c.xd(c.v, b);
     const int r = b * kV, x = r + 3;
 
-    const Eigen::Matrix<T, 1, 1> mass(ca * T(body.mass));
-    for (int k = 0; k < 3; ++k) sink.block(r + k, r + k, mass);
+    const Eigen::Matrix<T, 1, 1> m(ca * mass(b));
+    for (int k = 0; k < 3; ++k) sink.block(r + k, r + k, m);
 
     XX xx = ca * F::mass(at, J);
     if (exact || (newton && F::simplified_keeps_rate_term)) xx += cv * F::inertia_rate_variation(at, rate, xd, J);
@@ -257,7 +271,7 @@ class Mechanism {
       }
       if constexpr (F::normalized) K.diagonal().array() += lambda[c.elements->rows + b];
       if (c.elements->body_rx[index(b)]) {
-        const auto& own = second_.body[index(b)];
+        const auto& own = second_.body(b);
         const auto& W = at.W();
         K += W.transpose() * own.xx * W;
         if (c.elements->body_rr[index(b)]) sink.block(r, r, Mat3<T>(cq * own.rr));
@@ -275,13 +289,15 @@ class Mechanism {
   }
 
   template <class Sink>
-  void pair_blocks(std::size_t k, const T& cq, Sink&& sink) {
-    const Pair& pair = c.elements->pairs[k];
-    const auto& sum = second_.pair[k];
+  void pair_blocks(int k, const T& cq, Sink&& sink) {
+    const Pair& pair = c.elements->pairs[index(k)];
+    const auto& xx = second_.pair(k);
     const auto &Wi = c.at[index(pair.i)].W(), &Wj = c.at[index(pair.j)].W();
     const int ri = pair.i * kV, xi = ri + 3, rj = pair.j * kV, xj = rj + 3;
-    sink.block(xi, xj, XX(cq * (Wi.transpose() * sum.xx_ij * Wj)));
-    sink.block(xj, xi, XX(cq * (Wj.transpose() * sum.xx_ji * Wi)));
+    sink.block(xi, xj, XX(cq * (Wi.transpose() * xx.xx_ij * Wj)));
+    sink.block(xj, xi, XX(cq * (Wj.transpose() * xx.xx_ji * Wi)));
+    if (pair.with_r < 0) return;
+    const auto& sum = second_.pair_with_r(k);
     using RX = Eigen::Matrix<T, 3, F::m>;
     using XR = Eigen::Matrix<T, F::m, 3>;
     if (pair.rx) {
@@ -308,7 +324,11 @@ class Mechanism {
       if (g.i != kGround) gradient_blocks<decltype(has_r)::value>(first_row + g.row, g.i, -g.g, g.ei, transposed, sink);
       if (g.j != kGround) gradient_blocks<decltype(has_r)::value>(first_row + g.row, g.j, g.g, g.ej, transposed, sink);
     };
-    Rows<F, T>::holonomic(c, write);
+    Rows<F, T>::scalar(c, write);
+    for (const CoincidenceRows& k : c.elements->coincidences) {
+      if (k.i != kGround) coincidence_blocks(first_row + k.row, k.i, k.p, T(-1), transposed, sink);
+      if (k.j != kGround) coincidence_blocks(first_row + k.row, k.j, k.q, T(1), transposed, sink);
+    }
     Rows<F, T>::velocity(c, write);
     if constexpr (F::normalized) {
       if (transposed) return;  // beside the inertia there
@@ -316,6 +336,18 @@ class Mechanism {
         sink.block(c.elements->rows + b, b * kV + 3, Eigen::Matrix<T, 1, F::m>(p(b).transpose()));
       }
     }
+  }
+  // ± [I, E(s) Ŵ]
+  template <class Sink>
+  void coincidence_blocks(int row, int body, int point, const T& sign, bool transposed, Sink&& sink) {
+    using GX = Eigen::Matrix<T, 3, F::m>;
+    const Eigen::Matrix<T, 1, 1> one(sign);
+    const GX x = sign * C::E_times(c.s[index(point)], c.at[index(body)].W());
+    for (int l = 0; l < 3; ++l) sink.block(row + l, body * kV + l, one);
+    sink.block(row, body * kV + 3, x);
+    if (!transposed) return;
+    for (int l = 0; l < 3; ++l) sink.block(body * kV + l, row + l, one);
+    sink.block(body * kV + 3, row, Eigen::Matrix<T, F::m, 3>(x.transpose()));
   }
   template <bool has_r, class Sink>
   void gradient_blocks(int row, int body, const Vec3<T>& g, const Ambient& e, bool transposed, Sink&& sink) {

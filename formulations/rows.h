@@ -6,6 +6,8 @@
 // variation, weighed by λ, is collected per body and per coupled pair in the same ambient form; see SecondVariation.
 #pragma once
 
+#include <algorithm>
+
 #include "formulations/configuration.h"
 
 namespace poinsot {
@@ -21,34 +23,40 @@ struct SecondVariation {
     RA3 xr_transposed = RA3::Zero();
     AA xx = AA::Zero();
   };
-  struct OnPair {  // (i, j) and, mirrored, (j, i); xr blocks are kept transposed
-    T rr = T(0);
-    RA3 rx_ij = RA3::Zero(), rx_ji = RA3::Zero(), xr_ij_transposed = RA3::Zero(), xr_ji_transposed = RA3::Zero();
+  struct OnPair {  // (i, j) and, mirrored, (j, i)
     AA xx_ij = AA::Zero(), xx_ji = AA::Zero();
   };
+  struct OnPairWithR {  // xr blocks are kept transposed
+    T rr = T(0);
+    RA3 rx_ij = RA3::Zero(), rx_ji = RA3::Zero(), xr_ij_transposed = RA3::Zero(), xr_ji_transposed = RA3::Zero();
+  };
 
-  explicit SecondVariation(const Elements& elements)
-      : S(static_cast<std::size_t>(elements.nb)), body(S.size()), pair(elements.pairs.size()) {}
+  explicit SecondVariation(const Elements& of)
+      : elements(of),
+        S(index(of.nb)),
+        bodies_(index(of.bodies_own)),
+        pairs_(of.pairs.size()),
+        pairs_with_r_(index(of.pairs_with_r)) {}
 
-  void clear(const Elements& elements) {
+  void clear() {
     for (Mat3<T>& sum : S) sum.setZero();
-    for (std::size_t b = 0; b < body.size(); ++b) {
-      if (elements.body_rx[b]) body[b] = OnBody();
-    }
-    for (std::size_t k = 0; k < pair.size(); ++k) {
-      const Pair& p = elements.pairs[k];
-      if (p.rx || p.xr) {
-        pair[k] = OnPair();
-      } else {
-        pair[k].xx_ij.setZero();
-        pair[k].xx_ji.setZero();
-      }
-    }
+    std::fill(bodies_.begin(), bodies_.end(), OnBody());
+    std::fill(pairs_.begin(), pairs_.end(), OnPair());
+    std::fill(pairs_with_r_.begin(), pairs_with_r_.end(), OnPairWithR());
   }
 
+  OnBody& body(int b) { return bodies_[index(elements.body_own[index(b)])]; }
+  OnPair& pair(int k) { return pairs_[index(k)]; }
+  OnPairWithR& pair_with_r(int k) { return pairs_with_r_[index(elements.pairs[index(k)].with_r)]; }
+
+  const Elements& elements;
   std::vector<Mat3<T>> S;
-  std::vector<OnBody> body;
-  std::vector<OnPair> pair;
+
+ private:
+  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
+  std::vector<OnBody> bodies_;
+  std::vector<OnPair> pairs_;
+  std::vector<OnPairWithR> pairs_with_r_;
 };
 
 template <class F, class T>
@@ -63,9 +71,23 @@ class Rows {
     Vec3<T> g;
   };
 
-  // visit(gradient, has_r, Phi): every holonomic row, kind by kind. The order is the order of assembly.
+  // visit(gradient, has_r, Phi): every holonomic row, kind by kind.
   template <class Visit>
   static void holonomic(const C& c, Visit&& visit) {
+    scalar(c, visit);
+    for (const CoincidenceRows& k : c.elements->coincidences) {
+      const Vec3<T> d = c.span(k.i, k.j, k.p, k.q);
+      for (int l = 0; l < 3; ++l) {
+        Gradient g = along(k, c.s[index(k.p)], c.s[index(k.q)], Vec3<T>(Vec3<T>::Unit(l)));
+        g.row += l;
+        visit(g, std::true_type(), d[l]);
+      }
+    }
+  }
+
+  // The same without the rows of coincidences. The order is the order of assembly.
+  template <class Visit>
+  static void scalar(const C& c, Visit&& visit) {
     const Elements& e = *c.elements;
     const auto s = [&](int k) -> const Vec3<T>& { return c.s[index(k)]; };
     for (const DP1Row& k : c.dp1) {
@@ -109,6 +131,7 @@ class Rows {
       for (const auto& k : rows) out[k.row] = c.f[index(k.f)].fd;
     };
     rate(c.dp1), rate(e.dp2), rate(e.d), rate(e.cd);
+    for (const CoincidenceRows& k : e.coincidences) std::fill_n(out + k.row, 3, T(0));
     for (const AngleRow& k : e.angle) {
       out[k.row] = -driven_rate(c, k).dot(c.s[index(k.v)]);
     }
@@ -151,6 +174,9 @@ class Rows {
     for (const CDRow& k : e.cd) {
       out[k.row] = c.f[index(k.f)].fdd - k.c.template cast<T>().dot(sdd(k.q) - sdd(k.p));
     }
+    for (const CoincidenceRows& k : e.coincidences) {
+      Eigen::Map<Vec3<T>>{out + k.row} = sdd(k.p) - sdd(k.q);
+    }
     for (const PfaffianRow& k : e.pfaffian) {
       const Vec3<T> dd = c.span_rate(k.i, k.j, k.p, k.q);
       out[k.row] = c.f[index(k.f)].fd - sd(k.a).dot(dd) - s(k.a).dot(sdd(k.q) - sdd(k.p));
@@ -171,8 +197,8 @@ class Rows {
       on_S(k.j, l * u, bar(v));
       if (k.pair < 0) return;
       const auto block = C::EtE(l * u, s(v));
-      sum.pair[index(k.pair)].xx_ij += block;
-      sum.pair[index(k.pair)].xx_ji += block.transpose();
+      sum.pair(k.pair).xx_ij += block;
+      sum.pair(k.pair).xx_ji += block.transpose();
     };
     for (const DP1Row& k : c.dp1) directions(k, s(k.u), bar(k.u), k.v);
     for (const AngleRow& k : e.angle) {
@@ -187,19 +213,18 @@ class Rows {
       on_S(k.i, -a, bar(k.p));
       on_S(k.j, a, bar(k.q));
       if (k.i != kGround) {
-        auto& own = sum.body[index(k.i)];
+        auto& own = sum.body(k.i);
         own.rx -= C::E(a);
         own.xr_transposed -= C::E(a);
         const auto block = C::EtE(a, s(k.p));
         own.xx -= block + block.transpose();
       }
       if (k.pair < 0) continue;
-      auto& pair = sum.pair[index(k.pair)];
-      pair.rx_ji += C::E(a);
-      pair.xr_ij_transposed += C::E(a);
+      sum.pair_with_r(k.pair).rx_ji += C::E(a);
+      sum.pair_with_r(k.pair).xr_ij_transposed += C::E(a);
       const auto block = C::EtE(a, s(k.q));
-      pair.xx_ij += block;
-      pair.xx_ji += block.transpose();
+      sum.pair(k.pair).xx_ij += block;
+      sum.pair(k.pair).xx_ji += block.transpose();
     }
     for (const DRow& k : e.d) {
       const T l = T(2) * lambda[k.row];
@@ -208,7 +233,7 @@ class Rows {
       on_S(k.j, d, bar(k.q));
       const auto own = [&](int body, int point) {
         if (body == kGround) return;
-        auto& mine = sum.body[index(body)];
+        auto& mine = sum.body(body);
         mine.rr.diagonal().array() += l;
         mine.rx += C::E(l * s(point));
         mine.xr_transposed += C::E(l * s(point));
@@ -217,32 +242,37 @@ class Rows {
       own(k.i, k.p);
       own(k.j, k.q);
       if (k.pair < 0) continue;
-      auto& pair = sum.pair[index(k.pair)];
+      auto& pair = sum.pair_with_r(k.pair);
       pair.rr -= l;
       pair.rx_ij -= C::E(l * s(k.q));
       pair.rx_ji -= C::E(l * s(k.p));
       pair.xr_ij_transposed -= C::E(l * s(k.p));
       pair.xr_ji_transposed -= C::E(l * s(k.q));
       const auto block = C::EtE(l * s(k.p), s(k.q));
-      pair.xx_ij -= block;
-      pair.xx_ji -= block.transpose();
+      sum.pair(k.pair).xx_ij -= block;
+      sum.pair(k.pair).xx_ji -= block.transpose();
     }
     for (const CDRow& k : e.cd) {
       const Vec3<T> n = lambda[k.row] * k.c.template cast<T>();
       on_S(k.i, -n, bar(k.p));
       on_S(k.j, n, bar(k.q));
     }
+    for (const CoincidenceRows& k : e.coincidences) {
+      const Vec3<T> force = Eigen::Map<const Vec3<T>>(lambda + k.row);
+      on_S(k.i, -force, bar(k.p));
+      on_S(k.j, force, bar(k.q));
+    }
     for (const PfaffianRow& k : e.pfaffian) {  // the reaction Ψᵀλ varies with a_j only; no mirror
       const Vec3<T> a = lambda[k.row] * s(k.a);
       on_S(k.i, -a, bar(k.p));
       on_S(k.j, a, bar(k.q));
       if (k.j != kGround) {
-        sum.body[index(k.j)].rx += C::E(a);
-        sum.body[index(k.j)].xx += C::EtE(s(k.q), a);
+        sum.body(k.j).rx += C::E(a);
+        sum.body(k.j).xx += C::EtE(s(k.q), a);
       }
       if (k.pair < 0) continue;
-      sum.pair[index(k.pair)].rx_ij -= C::E(a);
-      sum.pair[index(k.pair)].xx_ij -= C::EtE(s(k.p), a);
+      sum.pair_with_r(k.pair).rx_ij -= C::E(a);
+      sum.pair(k.pair).xx_ij -= C::EtE(s(k.p), a);
     }
   }
 

@@ -105,6 +105,25 @@ TEST(Formulations, RowsAreWhatTheSceneSays) {
   }
 }
 
+// The three rows of a point act on a position by the identity: its zeros are not stored, but those of rows along any
+// direction are numbers like all others.
+TEST(Formulations, APointOnAPointStoresNoZeros) {
+  Random random(1);
+  Model point = random_bodies(random, 2), rows = random_bodies(random, 2);
+  add_coincidence(point, 0, 1, random);
+  for (int k = 0; k < 3; ++k) add_row(rows, RowType::CD, 0, 1, random);
+  for (const FormulationEntry& entry : formulations()) {
+    const auto entries = [&](const Model& model) {
+      int sum = 0;
+      for (const Block& b : make_problem(entry.name, model)->pattern(MatrixKind::kinematic).blocks) {
+        sum += b.rows * b.cols;
+      }
+      return sum;
+    };
+    EXPECT_EQ(entries(rows) - entries(point), 2 * (9 - 3)) << entry.name;
+  }
+}
+
 // One row of each kind between the ground and a free body or two free bodies, and every force. Constraints are
 // violated, velocities too: the linear system does not mind.
 Model solvable_model(Random& random) {

@@ -113,6 +113,9 @@ TEST_F(So3, RightJacobianTimesItsInverse) {
     const Matrix3 inverse = right_jacobian_inverse<double>(theta);
     EXPECT_LT((right_jacobian<double>(theta) * inverse - Matrix3::Identity()).norm(), 1e-14 * inverse.norm())
         << "theta = " << theta.norm();
+    const Vector3 z = vector();
+    EXPECT_LT((right_jacobian_inverse_times<double>(theta, z) - inverse * z).norm(), 1e-14 * inverse.norm() * z.norm())
+        << "theta = " << theta.norm();
   }
 }
 

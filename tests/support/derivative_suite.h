@@ -180,6 +180,15 @@ class Derivatives : public DualFixture<F> {
         }
       }
     }
+    for (const auto& [i, j] : kPairs) {
+      for (int seed = 0; seed < scaled(40); ++seed) {
+        SCOPED_TRACE("coincidence" + pair_name(i, j) + ", seed " + std::to_string(seed));
+        Random random(static_cast<unsigned>(seed));
+        Model model = random_bodies(random, 2);
+        add_coincidence(model, i, j, random);
+        visit(model, random);
+      }
+    }
   }
   template <class Visit>
   static void for_each_force(Visit&& visit) {

@@ -111,6 +111,18 @@ inline void add_row(Model& model, RowType type, int i, int j, Random& random) {
   model.groups.push_back(group);
 }
 
+// Three rows in a group: a point of i and one of j coincide, as in most joints.
+inline void add_coincidence(Model& model, int i, int j, Random& random) {
+  const Vector3 s_i = random.vector(), s_j = random.vector();
+  for (int axis = 0; axis < 3; ++axis) {
+    add_row(model, RowType::CD, i, j, random);
+    Row& row = model.rows.back();
+    row.s_i = s_i, row.s_j = s_j;
+    row.c = Vector3::Unit(axis);
+    row.f = Expression(0.0);
+  }
+}
+
 enum class ForceType { spring, damped_spring, torsion, damped_torsion, force, body_force, torque, body_torque, drag };
 inline constexpr const char* kForceNames[] = {
     "spring", "damped_spring", "torsion", "damped_torsion", "force", "body_force", "torque", "body_torque", "drag"};
@@ -200,6 +212,8 @@ inline Model random_model(Random& random, int bodies) {
       const auto [i, j] = pair();
       add_row(model, type, i, j, random);
     }
+    const auto [first, second] = pair();
+    add_coincidence(model, first, second, random);
     for (int type = 0; type < kForceTypes; ++type) {
       const auto [i, j] = pair();
       add_force(model, static_cast<ForceType>(type), i,
