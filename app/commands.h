@@ -13,5 +13,7 @@ void add_list(CLI::App& app, int& status);
 void add_tables(CLI::App& app, int& status);
 void add_make(CLI::App& app, int& status);
 void add_scale(CLI::App& app, int& status);
+void add_reference(CLI::App& app, int& status);
+void add_chart(CLI::App& app, int& status);
 
 }  // namespace poinsot::app

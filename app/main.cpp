@@ -63,6 +63,8 @@ int main(int argc, char** argv) {
   add_tables(app, status);
   add_make(app, status);
   add_scale(app, status);
+  add_reference(app, status);
+  add_chart(app, status);
 
   try {
     hold_blas_to_one_thread();

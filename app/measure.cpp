@@ -37,13 +37,17 @@ double rest(const Statistics& s) {
   return s.seconds.other;
 }
 
+Timing timing(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const double median = quantile(values, 0.5);
+  return {median, median > 0 ? (quantile(values, 0.75) - quantile(values, 0.25)) / median : 0};
+}
+
 Timing us_per_step(const Cell& cell, Phase phase) {
   if (cell.runs.empty()) return {};
   std::vector<double> us;
   for (const Statistics& run : cell.runs) us.push_back(1e6 * phase(run) / static_cast<double>(run.steps));
-  std::sort(us.begin(), us.end());
-  const double median = quantile(us, 0.5);
-  return {median, median > 0 ? (quantile(us, 0.75) - quantile(us, 0.25)) / median : 0};
+  return timing(us);
 }
 
 double iterations_per_step(const Cell& cell) {

@@ -21,11 +21,14 @@ struct Cell {
   std::string failure;           // why there are none: refused or failed
 };
 
-// Microseconds of a phase for one step, over the repetitions.
+// Of repeated measurements.
 struct Timing {
   double median = 0;
   double spread = 0;  // distance of the quartiles relative to the median
 };
+Timing timing(std::vector<double> values);
+
+// Microseconds of a phase for one step, over the repetitions.
 using Phase = double (*)(const Statistics&);  // seconds of a run
 Timing us_per_step(const Cell& cell, Phase phase);
 

@@ -6,11 +6,25 @@
 
 namespace poinsot::app {
 
+void add_origin(nlohmann::ordered_json& json) {
+  const Provenance& origin = provenance();
+  nlohmann::ordered_json libraries;
+  for (const Library& library : origin.libraries) libraries[library.name] = library.version;
+  json["program"] = {{"name", "poinsot"},
+                     {"version", origin.version},
+                     {"commit", origin.commit},
+                     {"dirty", origin.dirty},
+                     {"compiler", origin.compiler},
+                     {"flags", origin.flags},
+                     {"build_type", origin.build_type},
+                     {"libraries", libraries}};
+  json["processor"] = processor();
+}
+
 std::string to_json(const RunRecord& record) {
   using Json = nlohmann::ordered_json;
   const auto& [failure, time, message] = record.outcome.status;
   const Statistics& s = record.outcome.statistics;
-  const Provenance& origin = provenance();
 
   Json json;
   json["status"] = name(failure);
@@ -34,17 +48,7 @@ std::string to_json(const RunRecord& record) {
                           {"solve", s.seconds.solve},
                           {"other", s.seconds.other}}},
                         {"violation", {{"position", s.violation.position}, {"velocity", s.violation.velocity}}}};
-  Json libraries;
-  for (const Library& library : origin.libraries) libraries[library.name] = library.version;
-  json["program"] = {{"name", "poinsot"},
-                     {"version", origin.version},
-                     {"commit", origin.commit},
-                     {"dirty", origin.dirty},
-                     {"compiler", origin.compiler},
-                     {"flags", origin.flags},
-                     {"build_type", origin.build_type},
-                     {"libraries", libraries}};
-  json["processor"] = processor();
+  add_origin(json);
   json["configuration"] = Json::parse(record.configuration);
   json["scene_file"] = record.scene_file.string();
   json["scene"] = Json::parse(record.scene.source, nullptr, true, true);

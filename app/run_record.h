@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core/scene.h"
@@ -17,5 +18,8 @@ struct RunRecord {
 };
 
 std::string to_json(const RunRecord& record);
+
+// "program" and "processor": which program computed it, where.
+void add_origin(nlohmann::ordered_json& json);
 
 }  // namespace poinsot::app

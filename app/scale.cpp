@@ -7,6 +7,7 @@
 #include "app/commands.h"
 #include "app/isolated_run.h"
 #include "app/measure.h"
+#include "app/name_list.h"
 #include "app/output_file.h"
 #include "app/progress.h"
 #include "app/report.h"
@@ -30,16 +31,10 @@ struct Series {  // one structure, formulation and linear solver over growing si
   std::vector<std::vector<IsolatedRun>> runs;  // by size, by repetition
 };
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 double median(const std::vector<IsolatedRun>& runs, double IsolatedRun::*figure) {
   std::vector<double> values;
   for (const IsolatedRun& run : runs) values.push_back(run.*figure);
-  return median(values);
+  return timing(values).median;
 }
 
 bool good(const std::vector<IsolatedRun>& runs) {
@@ -120,19 +115,6 @@ Table growth_table(const std::vector<Series>& all) {
                           series.settings.linear_solver, fitted, ratio});
   }
   return table;
-}
-
-std::vector<std::string> names_in(std::string_view option, const std::string& list, bool (*known)(std::string_view)) {
-  std::vector<std::string> names;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    names.push_back(list.substr(begin, end - begin));
-    if (!known(names.back())) {
-      throw InputError(fmt::format("{}: found \"{}\"; `poinsot list` says what there is", option, names.back()));
-    }
-    begin = end + 1;
-  }
-  return names;
 }
 
 int scale(const Options& options) {

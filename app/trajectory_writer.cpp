@@ -24,8 +24,12 @@ TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file, const Scen
 
 void TrajectoryWriter::write(const Sample& sample) {
   sample.problem.to_bodies(sample.a, states_);
-  file_.write(sample.t);
-  for (const BodyState& body : states_) {
+  write(sample.t, states_);
+}
+
+void TrajectoryWriter::write(double t, std::span<const BodyState> bodies) {
+  file_.write(t);
+  for (const BodyState& body : bodies) {
     write(body.r);
     for (const double e : parameters_from_rotation<double>(body.A)) {
       file_.write(",");

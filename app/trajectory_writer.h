@@ -4,6 +4,7 @@
 // significant digits: what is read back is what was computed.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "app/output_file.h"
@@ -17,6 +18,7 @@ class TrajectoryWriter {
   TrajectoryWriter(const std::filesystem::path& file, const Scene& scene);  // throws InputError
 
   void write(const Sample& sample);
+  void write(double t, std::span<const BodyState> bodies);
   void commit() { file_.commit(); }
 
  private:

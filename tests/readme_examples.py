@@ -24,6 +24,7 @@ problems = []
 
 with tempfile.TemporaryDirectory() as directory:
     os.symlink(source / "models", pathlib.Path(directory) / "models")
+    environment["XDG_CACHE_HOME"] = directory
     for language, block in blocks:
         if language == "sh":
             done = subprocess.run(["bash", "-euo", "pipefail", "-c", block], cwd=directory, env=environment,

@@ -56,7 +56,7 @@ def save(figure, stem, notes):
     """Writes STEM.svg and STEM.png, whole or not at all, the origin of the numbers in the foot."""
     program, compiler = note(notes, "program"), note(notes, "compiler")
     foot = [note(notes, "processor"), f"{program}; {compiler}" if compiler else program]
-    figure.text(0.01, 0.004, "\n".join(line[:200] for line in foot if line), fontsize=6.5, color="#555555", va="bottom")
+    figure.text(0.01, 0.004, "\n".join(line[:280] for line in foot if line), fontsize=6.5, color="#555555", va="bottom")
     for extension, options in (("svg", {"metadata": {"Date": None}}), ("png", {"dpi": 150})):
         partial = f"{stem}.{os.getpid()}.partial"
         figure.savefig(partial, format=extension, **options)

@@ -1,0 +1,247 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+#include "app/chart_file.h"
+#include "app/commands.h"
+#include "app/measure.h"
+#include "app/models_directory.h"
+#include "app/name_list.h"
+#include "app/natural_end.h"
+#include "app/plot.h"
+#include "app/progress.h"
+#include "app/report.h"
+#include "app/terminal.h"
+#include "core/input_error.h"
+#include "core/scene_reader.h"
+#include "formulations/registry.h"
+#include "linsolve/registry.h"
+
+namespace poinsot::app {
+namespace {
+namespace fs = std::filesystem;
+
+// What a sweep goes through. Steps beyond `longest` s are left out, as the run before lets expect them.
+struct Extent {
+  std::vector<int> steps;
+  std::vector<double> tolerances;
+  double longest;
+  int repetitions;
+};
+const Extent kFull{{100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000},
+                   {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12},
+                   0.5,
+                   5};
+const Extent kQuick{{100, 300, 1000, 3000, 10000}, {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}, 0.02, 3};
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::string out = "results", end, models, formulations, integrators, linear_solvers, cache = user_cache().string();
+  bool all = false, quick = false, fresh = false, quiet = false;
+
+  const Extent& extent() const { return quick ? kQuick : kFull; }
+};
+
+std::vector<fs::path> scene_files(const Options& options) {
+  std::set<fs::path> files(options.scenes.begin(), options.scenes.end());
+  if (options.all) {
+    for (const auto& entry : fs::directory_iterator(models_directory(options.models)))
+      if (entry.path().extension() == ".json" && entry.path().stem().extension() != ".schema")
+        files.insert(entry.path());
+  }
+  if (files.empty()) throw InputError("found no scene, expected poinsot chart SCENE, or --all");
+  std::set<std::string> stems;
+  for (const fs::path& file : files)
+    if (!stems.insert(file.stem()).second)
+      throw InputError(fmt::format("{}: two scenes would be charted as {}.csv", file.string(), file.stem().string()));
+  return {files.begin(), files.end()};
+}
+
+SweepPlan plan_of(const Options& options) {
+  SweepPlan plan = everything();
+  plan.steps = options.extent().steps;
+  plan.tolerances = options.extent().tolerances;
+  if (!options.formulations.empty())
+    plan.formulations = names_in("--formulations", options.formulations,
+                                 [](std::string_view name) { return find_formulation(name) != nullptr; });
+  if (!options.integrators.empty())
+    plan.integrators = names_in("--integrators", options.integrators, [](std::string_view name) {
+      const IntegratorEntry* entry = find_integrator(name);
+      return entry && entry->analysis == Analysis::dynamics;
+    });
+  if (!options.linear_solvers.empty())
+    plan.linear_solvers = names_in("--linear-solvers", options.linear_solvers,
+                                   [](std::string_view name) { return find_linear_solver(name) != nullptr; });
+  return plan;
+}
+
+std::vector<std::string> notes(const Scene& scene, double end, const Reference& r, const Options& options,
+                               const SweepPlan& plan, int core) {
+  std::vector<std::string> lines{fmt::format("scene: {}, content {:016x}", scene.name, content_hash(scene.source))};
+  for (const std::string& line : origin_lines(core)) lines.push_back(line);
+  lines.push_back(fmt::format("settings: to t = {:g} s; {}; {}; linear solver {}; steps {}; rtol {}, atol rtol/100",
+                              end, fmt::join(plan.formulations, " "), fmt::join(plan.integrators, " "),
+                              fmt::join(plan.linear_solvers, " "), fmt::join(plan.steps, " "),
+                              fmt::join(plan.tolerances, " ")));
+  lines.push_back(fmt::format(
+      "errors: largest over {} output times and all bodies or constraints, relative to the largest value of the motion "
+      "(rotations: rad)",
+      kOutputs));
+  lines.push_back(
+      fmt::format("reference: {} in {}, rtol {:g}, {}; it resolves {:.1g} in positions, {:.1g} in "
+                  "velocities, {:.1g} in accelerations, {:.1g} in multipliers",
+                  r.of().integrator, r.of().formulation, r.of().tight,
+                  r.independent ? "confirmed by another method" : "not confirmed by another method", r.agreement[0],
+                  r.agreement[1], r.agreement[2], r.agreement[3]));
+  lines.push_back(fmt::format(
+      "time: of the time-stepping loop, median of {} interleaved repetitions after a first run; runs expected to take "
+      "over {:g} s are left out",
+      options.extent().repetitions, options.extent().longest));
+  lines.push_back(fmt::format(
+      "front: no other case is as accurate and as fast; errors the reference does not resolve count as equal, errors "
+      "over {:g} not at all",
+      kUseless));
+  return lines;
+}
+
+// What a run takes, in steps, roughly: for the progress only.
+double weight(const Case& one, const Extent& extent) {
+  constexpr double of_error_control = 3000, per_step = 1e-5;  // s
+  if (one.parameter() != "step") return of_error_control;
+  const double steps = one.settings.end / one.settings.step;
+  return steps * per_step < extent.longest ? steps : 0;
+}
+
+// A sentence where the case would take too long, by the run of its method before it.
+std::string too_long(const Case& one, const std::vector<std::vector<Case>>& levels, const ChartFile& file,
+                     double longest) {
+  if (one.level == 0) return {};
+  for (const Case& before : levels[static_cast<std::size_t>(one.level) - 1]) {
+    if (before.method() != one.method()) continue;
+    const ChartRow* row = file.find(before);
+    if (!row || row->measured.status.starts_with("left out")) return "left out, as the one before";
+    const double expected =
+        one.parameter() == "step" ? row->measured.seconds * before.value() / one.value() : row->measured.seconds * 2;
+    if (row->measured.ok() && expected > longest) return fmt::format("left out, some {:.2g} s are expected", expected);
+  }
+  return {};
+}
+
+void measure_scene(const Sweep& sweep, const std::vector<std::vector<Case>>& levels, ChartFile& file,
+                   const Extent& extent, const std::function<void(double)>& at) {
+  double all = 0, done = 0;
+  for (const auto& level : levels)
+    for (const Case& one : level) all += weight(one, extent) * (1 + extent.repetitions);
+  for (const std::vector<Case>& level : levels) {
+    std::vector<Case> batch;
+    for (const Case& one : level) {
+      const std::string why = file.find(one) ? "measured" : too_long(one, levels, file, extent.longest);
+      if (why.empty())
+        batch.push_back(one);
+      else if (!file.find(one))
+        file.add(one, {why});
+      if (!why.empty()) done += weight(one, extent) * (1 + extent.repetitions);
+    }
+    const std::vector<Measured> measured = sweep.measure(batch, extent.repetitions, [&](const Case& one) {
+      done += weight(one, extent);
+      at(done / all);
+    });
+    for (std::size_t k = 0; k < batch.size(); ++k) file.add(batch[k], measured[k]);
+  }
+}
+
+// Of how many charts each integrator is on the front, of any quantity; those of none are named.
+void print_fronts(const std::vector<std::string>& integrators, const std::vector<std::vector<ChartRow>>& charts) {
+  std::vector<std::string> on, none;
+  for (const std::string& integrator : integrators) {
+    const auto leads = [&](const ChartRow& row) {
+      return row.integrator == integrator && std::count(row.front.begin(), row.front.end(), true) > 0;
+    };
+    const auto count = std::count_if(charts.begin(), charts.end(), [&](const std::vector<ChartRow>& rows) {
+      return std::any_of(rows.begin(), rows.end(), leads);
+    });
+    if (count > 0)
+      on.push_back(fmt::format("{} {}", integrator, count));
+    else
+      none.push_back(integrator);
+  }
+  fmt::print("on the front of so many of {} charts: {}\n", charts.size(), fmt::join(on, ", "));
+  if (!none.empty()) fmt::print("on no front: {}\n", fmt::join(none, ", "));
+}
+
+int chart(const Options& options) {
+  const std::vector<fs::path> files = scene_files(options);
+  const SweepPlan plan = plan_of(options);
+  std::vector<Scene> scenes;
+  for (const fs::path& file : files) scenes.push_back(read_scene(file));
+  make_folder(options.out);
+  const int core = pin_to_one_core();
+
+  int status = kDone;
+  std::vector<std::vector<ChartRow>> charts;
+  std::vector<Plot> plots;
+  Progress progress(static_cast<double>(scenes.size()), "scenes", !options.quiet);
+  for (std::size_t k = 0; k < scenes.size(); ++k) {
+    const double end = end_time(options.end, scenes[k]);
+    std::vector<std::string> said;
+    const Reference r = reference(scenes[k], {end, end / kOutputs}, Cache(options.cache), said);
+    for (const std::string& notice : said) {
+      progress.clear();
+      if (!options.quiet) print_notice(notice);
+    }
+    if (r.given < 0) {
+      progress.clear();
+      print_error(fmt::format("{}: no chart: {}", files[k].string(), why_none(r)));
+      status = kNumericsFailed;
+      continue;
+    }
+    const fs::path stem = fs::path(options.out) / files[k].stem();
+    ChartFile file(fs::path(stem).concat(".csv"), notes(scenes[k], end, r, options, plan, core), options.fresh);
+    const Sweep sweep(scenes[k], end, r);
+    measure_scene(sweep, sweep.cases(plan), file, options.extent(),
+                  [&](double share) { progress.at(static_cast<double>(k) + share); });
+    file.finish(r);
+    charts.push_back(file.rows());
+    plots.push_back({file.path(), stem});
+  }
+  progress.clear();
+  if (const std::string why = draw("work_precision", plots); !why.empty()) print_notice(why);
+  if (options.quiet || charts.empty()) return status;
+  for (const Plot& plot : plots) fmt::print("{}\n", plot.csv.string());
+  print_fronts(plan.integrators, charts);
+  return status;
+}
+
+}  // namespace
+
+void add_chart(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("chart", "measure speed against accuracy of all methods, and draw it");
+  const auto options = std::make_shared<Options>();
+  command->add_option("scenes", options->scenes, "scene files")->type_name("SCENE");
+  command->add_flag("--all", options->all, "the models that came with the program, too");
+  command->add_option("--models", options->models, "folder of these models")->type_name("DIR");
+  command->add_option("--out", options->out, "folder for a CSV, SVG and PNG for each scene (default results)")
+      ->type_name("DIR");
+  command->add_flag("--quick", options->quick, "a reduced set: fewer and shorter runs");
+  command->add_option("--end", options->end, fmt::format("end time, s (default: {})", kNaturalEnd))->type_name("X");
+  command->add_option("--formulations", options->formulations, "with commas between (default: all)")
+      ->type_name("NAMES");
+  command->add_option("--integrators", options->integrators, "with commas between (default: all)")->type_name("NAMES");
+  command
+      ->add_option("--linear-solvers", options->linear_solvers,
+                   fmt::format("with commas between (default {})", kUsualSolver))
+      ->type_name("NAMES");
+  command->add_flag("--fresh", options->fresh, "measure everything, also what the folder holds already");
+  command->add_option("--cache", options->cache, "folder where references are kept (default $XDG_CACHE_HOME/poinsot)")
+      ->type_name("DIR");
+  command->add_flag("--quiet", options->quiet, "nothing but errors");
+  command->footer(
+      "Errors are those against a reference (`poinsot reference`). A sweep that was interrupted goes on where it\n"
+      "stopped when the command is given again.");
+  command->callback([options, &status] { status = chart(*options); });
+}
+
+}  // namespace poinsot::app

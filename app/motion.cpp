@@ -1,0 +1,146 @@
+#include "app/motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "core/input_error.h"
+#include "integrators/reactions.h"
+
+namespace poinsot::app {
+namespace {
+
+constexpr double kNone = 1e-6;  // of the other kind of motion
+
+// Sizes of linear and angular motion; where one is rounding, the other stands in.
+void settle(double& linear, double& angular, double length) {
+  if (linear < kNone * length * angular) linear = length * angular;
+  if (angular * length < kNone * linear) angular = linear / length;
+  if (linear == 0) linear = angular = 1;
+}
+
+// A multiplier as a force, N.
+double as_force(const Row& row, double lambda, double length) {
+  switch (row.type) {
+    case RowType::DP1:
+    case RowType::angle:
+      return lambda / length;
+    case RowType::D:
+      return lambda * length;
+    case RowType::DP2:
+    case RowType::CD:
+    case RowType::pfaffian:
+      break;
+  }
+  return lambda;
+}
+
+bool is_zero(const Expression& f) {
+  return f.is_constant() && f.at(0.0).f == 0;
+}
+
+}  // namespace
+
+MotionRun run_motion(const Scene& scene, const Settings& settings) {
+  MotionRun run;
+  std::optional<Reactions> reactions;
+  double energy = 0;
+  const auto keep = [&](const Sample& sample) {
+    Motion& motion = run.motion;
+    motion.t.push_back(sample.t);
+    sample.problem.to_bodies(sample.a, motion.bodies.emplace_back(scene.bodies.size()));
+    if (!reactions) {
+      reactions.emplace(sample.problem);
+      energy = sample.problem.energy();
+    }
+    reactions->update(sample);
+    std::vector<double>& lambda = motion.lambda.emplace_back(sample.problem.model().rows.size());
+    for (std::size_t row = 0; row < lambda.size(); ++row) lambda[row] = reactions->lambda(static_cast<int>(row));
+    run.energy_drift = std::max(run.energy_drift, std::abs(sample.problem.energy() - energy));
+  };
+  try {
+    run.outcome = simulate(scene, settings, keep);
+  } catch (const InputError& refused) {
+    run.outcome.status = {Failure::inconsistent_state, 0, refused.what()};
+  }
+  return run;
+}
+
+Sizes sizes(const Motion& motion, const Model& model) {
+  Sizes s{0, 0, 0, 0, 0, 0};
+  for (const auto& bodies : motion.bodies) {
+    for (const BodyState& body : bodies) {
+      s.length = std::max(s.length, body.r.norm());
+      s.velocity = std::max(s.velocity, body.rd.norm());
+      s.angular_velocity = std::max(s.angular_velocity, body.w.norm());
+      s.acceleration = std::max(s.acceleration, body.rdd.norm());
+      s.angular_acceleration = std::max(s.angular_acceleration, body.wd.norm());
+    }
+  }
+  if (s.length == 0) s.length = 1;
+  settle(s.velocity, s.angular_velocity, s.length);
+  settle(s.acceleration, s.angular_acceleration, s.length);
+  for (const auto& lambda : motion.lambda)
+    for (std::size_t row = 0; row < lambda.size(); ++row)
+      s.force = std::max(s.force, std::abs(as_force(model.rows[row], lambda[row], s.length)));
+  if (s.force == 0) s.force = 1;
+  return s;
+}
+
+PerQuantity difference(const Motion& motion, const Motion& from, const Sizes& sizes, const Model& model) {
+  PerQuantity d{};
+  if (motion.t.size() != from.t.size()) {
+    d.fill(std::numeric_limits<double>::infinity());
+    return d;
+  }
+  const auto raise = [](double& largest, double x) { largest = x > largest || std::isnan(x) ? x : largest; };
+  for (std::size_t k = 0; k < from.t.size(); ++k) {
+    for (std::size_t b = 0; b < from.bodies[k].size(); ++b) {
+      const BodyState &x = motion.bodies[k][b], &y = from.bodies[k][b];
+      raise(d[0], (x.r - y.r).norm() / sizes.length);
+      raise(d[0], 2 * std::asin(std::min(1.0, (x.A - y.A).norm() / (2 * std::numbers::sqrt2))));
+      raise(d[1], (x.rd - y.rd).norm() / sizes.velocity);
+      raise(d[1], (x.w - y.w).norm() / sizes.angular_velocity);
+      raise(d[2], (x.rdd - y.rdd).norm() / sizes.acceleration);
+      raise(d[2], (x.wd - y.wd).norm() / sizes.angular_acceleration);
+    }
+    for (std::size_t row = 0; row < from.lambda[k].size(); ++row)
+      raise(d[3], std::abs(as_force(model.rows[row], motion.lambda[k][row] - from.lambda[k][row], sizes.length)) /
+                      sizes.force);
+  }
+  return d;
+}
+
+bool conserves_energy(const Model& model) {
+  const auto still = [](const Row& row) {
+    if (row.type == RowType::pfaffian && !is_zero(row.f)) return false;
+    return row.f.is_constant() && (!row.alternate || row.alternate->f.is_constant());
+  };
+  if (!std::all_of(model.rows.begin(), model.rows.end(), still)) return false;
+  for (const PointForce& force : model.point_forces)
+    if (!std::all_of(std::begin(force.force), std::end(force.force), is_zero)) return false;
+  for (const Torque& torque : model.torques)
+    if (!std::all_of(std::begin(torque.torque), std::end(torque.torque), is_zero)) return false;
+  const auto undamped = [](const auto& spring) { return spring.damping == 0; };
+  if (!std::all_of(model.springs.begin(), model.springs.end(), undamped)) return false;
+  for (const TorsionElement& torsion : model.torsions)
+    if (!undamped(torsion.spring)) return false;
+  return std::all_of(model.drags.begin(), model.drags.end(),
+                     [](const LinearDrag& drag) { return drag.translational == 0 && drag.rotational == 0; });
+}
+
+double kinetic_energy(const Motion& motion, const Model& model) {
+  double largest = 0;
+  for (const auto& bodies : motion.bodies) {
+    double energy = 0;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      energy += model.bodies[b].mass * bodies[b].rd.squaredNorm() / 2 +
+                bodies[b].w.dot(model.bodies[b].inertia * bodies[b].w) / 2;
+    largest = std::max(largest, energy);
+  }
+  return largest;
+}
+
+}  // namespace poinsot::app

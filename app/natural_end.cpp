@@ -1,0 +1,69 @@
+#include "app/natural_end.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/input_error.h"
+#include "integrators/settings_reader.h"
+#include "integrators/simulate.h"
+
+namespace poinsot::app {
+namespace {
+
+constexpr double kTravel = 15;                // rad, or sizes of the mechanism
+constexpr double kFirst = 1e-3, kLast = 1e3;  // s, ends tried, each four times the one before
+
+// The nearest of 1, 2, 3, 5 times a power of ten, by ratio.
+double rounded(double t) {
+  const double power = std::pow(10.0, std::floor(std::log10(t)));
+  double best = power;
+  for (const double factor : {2.0, 3.0, 5.0, 10.0})
+    if (std::abs(std::log(t / (factor * power))) < std::abs(std::log(t / best))) best = factor * power;
+  return best;
+}
+
+}  // namespace
+
+double natural_end(const Scene& scene) {
+  double size = 0;
+  for (const Body& body : scene.bodies) size = std::max(size, body.position.norm());
+  if (size == 0) size = 1;
+  Settings settings;  // as accurate as a reference, to come to an end where that would
+  settings.integrator = "dop853";
+  settings.rtol = 1e-12;
+  settings.atol = 1e-14;
+  for (settings.end = kFirst; settings.end < kLast; settings.end *= 4) {
+    std::vector<BodyState> bodies(scene.bodies.size()), before;
+    std::vector<double> travel(2 * bodies.size());  // angle and path of each
+    double reached = 0, t = 0;                      // time of the travel, and the latest
+    const auto watch = [&](const Sample& sample) {
+      sample.problem.to_bodies(sample.a, bodies);
+      for (std::size_t b = 0; b < before.size(); ++b) {
+        travel[2 * b] += (sample.t - t) * (before[b].w.norm() + bodies[b].w.norm()) / 2;
+        travel[2 * b + 1] += (sample.t - t) * (before[b].rd.norm() + bodies[b].rd.norm()) / 2 / size;
+      }
+      before = bodies;
+      t = sample.t;
+      if (reached == 0 && *std::max_element(travel.begin(), travel.end()) >= kTravel) reached = t;
+    };
+    bool whole = false;
+    try {
+      whole = simulate(scene, settings, watch).status.ok();
+    } catch (const InputError&) {  // told when the scene is run in earnest
+      return 1;
+    }
+    if (reached > 0) return rounded(reached);
+    if (!whole) return t > 0 ? rounded(t / 2) : 1;  // well before where the pilot came to an end
+  }
+  return 1;
+}
+
+double end_time(const std::string& given, const Scene& scene) {
+  if (given.empty()) return natural_end(scene);
+  Settings settings;
+  set_setting(*find_setting("end"), given, settings);
+  return settings.end;
+}
+
+}  // namespace poinsot::app

@@ -1,0 +1,158 @@
+#include "app/reference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "integrators/settings_reader.h"
+
+namespace poinsot::app {
+namespace {
+using Json = nlohmann::json;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct MethodEntry {
+  const char *integrator, *formulation;
+  double smallest;  // rtol below which rounding rules
+};
+// Unlike each other in the integrator and in the coordinates.
+constexpr MethodEntry kMethods[] = {{"dop853", "rA", 1e-13}, {"dop853", "rp", 1e-13}};
+constexpr double kApart = 100;  // ratio of a method's two tolerances
+
+Settings settings_of(const Reference::Method& method, double rtol, const ReferenceSettings& asked) {
+  Settings settings;
+  settings.formulation = method.formulation;
+  settings.integrator = method.integrator;
+  settings.rtol = rtol;
+  settings.atol = rtol / 100;
+  settings.end = asked.end;
+  settings.every = asked.every;
+  return settings;
+}
+
+double largest(const PerQuantity& difference) {
+  return *std::max_element(difference.begin(), difference.end());
+}
+
+// A JSON file has no infinity.
+Json packed(const PerQuantity& difference) {
+  Json list;
+  for (const double x : difference) list.push_back(std::isfinite(x) ? Json(x) : Json(nullptr));
+  return list;
+}
+PerQuantity unpacked(const Json& list) {
+  PerQuantity difference;
+  for (std::size_t k = 0; k < difference.size(); ++k)
+    difference[k] = list.at(k).is_null() ? kInfinity : list.at(k).get<double>();
+  return difference;
+}
+
+// Applies `one` to every number of a body's state, in a fixed order.
+template <class State, class One>
+void each_number(State& body, const One& one) {
+  for (auto* vector : {&body.r, &body.rd, &body.w, &body.rdd, &body.wd})
+    for (auto& x : vector->reshaped()) one(x);
+  for (auto& x : body.A.reshaped()) one(x);
+}
+
+std::string packed(const Reference& reference) {
+  Json json;
+  for (const Reference::Method& m : reference.methods)
+    json["methods"].push_back({m.integrator, m.formulation, m.loose, m.tight, m.failure, packed(m.apart)});
+  json["given"] = reference.given;
+  json["independent"] = reference.independent;
+  json["agreement"] = packed(reference.agreement);
+  json["t"] = reference.motion.t;
+  json["lambda"] = reference.motion.lambda;
+  std::vector<double> numbers;
+  for (const auto& bodies : reference.motion.bodies)
+    for (const BodyState& body : bodies) each_number(body, [&](double x) { numbers.push_back(x); });
+  json["bodies"] = numbers;
+  return json.dump();
+}
+
+Reference unpacked(const std::string& data, std::size_t bodies) {
+  const Json json = Json::parse(data);
+  Reference reference;
+  for (const Json& m : json.at("methods"))
+    reference.methods.push_back({m.at(0), m.at(1), m.at(2), m.at(3), m.at(4), unpacked(m.at(5))});
+  reference.given = json.at("given");
+  reference.independent = json.at("independent");
+  reference.agreement = unpacked(json.at("agreement"));
+  reference.motion.t = json.at("t").get<std::vector<double>>();
+  reference.motion.lambda = json.at("lambda").get<std::vector<std::vector<double>>>();
+  const auto numbers = json.at("bodies").get<std::vector<double>>();
+  auto next = numbers.begin();
+  reference.motion.bodies.assign(reference.motion.t.size(), std::vector<BodyState>(bodies));
+  for (auto& states : reference.motion.bodies)
+    for (BodyState& body : states) each_number(body, [&](double& x) { x = *next++; });
+  return reference;
+}
+
+Reference compute(const Scene& scene, const ReferenceSettings& asked) {
+  const Model model = compile(scene);
+  Reference reference;
+  std::vector<Motion> tight;
+  for (const MethodEntry& entry : kMethods) {
+    Reference::Method method{entry.integrator, entry.formulation, 0, 0, {}, {}};
+    method.tight = std::max(std::pow(10.0, -asked.digits - 1), entry.smallest);
+    method.loose = kApart * method.tight;
+    MotionRun last = run_motion(scene, settings_of(method, method.tight, asked));
+    MotionRun before;
+    method.failure = last.outcome.status.message;
+    method.apart.fill(kInfinity);
+    if (method.failure.empty()) {
+      before = run_motion(scene, settings_of(method, method.loose, asked));
+      method.failure = before.outcome.status.message;
+    }
+    if (method.failure.empty()) method.apart = difference(before.motion, last.motion, sizes(last.motion, model), model);
+    reference.methods.push_back(method);
+    tight.push_back(std::move(last.motion));
+  }
+  for (std::size_t m = 0; m < reference.methods.size(); ++m)
+    if (reference.methods[m].failure.empty() &&
+        (reference.given < 0 || largest(reference.methods[m].apart) < largest(reference.of().apart)))
+      reference.given = static_cast<int>(m);
+  if (reference.given < 0) return reference;
+
+  const auto given = static_cast<std::size_t>(reference.given);
+  reference.motion = tight[given];
+  reference.agreement = reference.of().apart;
+  const Sizes scale = sizes(reference.motion, model);
+  for (std::size_t m = 0; m < reference.methods.size(); ++m) {
+    if (m == given || !reference.methods[m].failure.empty()) continue;
+    reference.agreement = difference(tight[m], reference.motion, scale, model);
+    reference.independent = true;
+  }
+  return reference;
+}
+
+}  // namespace
+
+Reference reference(const Scene& scene, const ReferenceSettings& settings, const Cache& cache,
+                    std::vector<std::string>& notices) {
+  std::string key = fmt::format("{}\nreference: end {:.17g}, every {:.17g}, {} digits\n", program_identity(),
+                                settings.end, settings.every, settings.digits);
+  key += scene.source;
+  if (const auto kept = cache.find(key, notices)) return unpacked(*kept, scene.bodies.size());
+  const Reference computed = compute(scene, settings);
+  cache.keep(key, packed(computed), notices);
+  return computed;
+}
+
+double digits(double difference) {
+  return std::max(0.0, -std::log10(std::max(difference, std::numeric_limits<double>::epsilon())));
+}
+
+std::string why_none(const Reference& reference) {
+  std::string sentence = "no reference could be computed";
+  for (const Reference::Method& method : reference.methods)
+    sentence += fmt::format("; {} in {}: {}", method.integrator, method.formulation, method.failure);
+  return sentence;
+}
+
+}  // namespace poinsot::app

@@ -1,0 +1,49 @@
+// A reference motion of a scene, and how far it can be trusted: two methods, each at two tolerances.
+//
+// How far a method's two tolerances are apart tells what its error control leaves; how far the two methods are apart
+// tells what neither can tell of itself. The motion given is the tighter one of the method whose tolerances are least
+// apart, and `agreement` is how far the other method is from it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/cache.h"
+#include "app/motion.h"
+
+namespace poinsot::app {
+
+struct ReferenceSettings {
+  double end = 1;    // s
+  double every = 1;  // s between output times
+  int digits = 12;   // asked for: the tighter tolerance is 10^−(digits + 1), the other one a hundred times that
+};
+
+struct Reference {
+  struct Method {
+    std::string integrator, formulation;
+    double loose = 0, tight = 0;  // rtol
+    std::string failure;          // of one of its runs; empty where both are good
+    PerQuantity apart{};          // its two tolerances
+  };
+
+  std::vector<Method> methods;
+  int given = -1;            // the method of the motion; -1: there is none, each method's failure says why
+  bool independent = false;  // a second method confirms it
+  PerQuantity agreement{};   // with the other method; where there is none, between the tolerances
+  Motion motion;
+
+  const Method& of() const { return methods[static_cast<std::size_t>(given)]; }
+};
+
+// From the cache where it is there. Notices are for the user.
+Reference reference(const Scene& scene, const ReferenceSettings& settings, const Cache& cache,
+                    std::vector<std::string>& notices);
+
+// Decimal digits of a difference.
+double digits(double difference);
+
+// Sentence: why there is no reference.
+std::string why_none(const Reference& reference);
+
+}  // namespace poinsot::app

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/natural_end.h"
+#include "app/reference.h"
+#include "app/run_record.h"
+#include "app/terminal.h"
+#include "app/trajectory_writer.h"
+#include "core/input_error.h"
+#include "core/scene_reader.h"
+#include "integrators/settings_reader.h"
+
+namespace poinsot::app {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr int kRows = 100;  // of the trajectory, where --every does not say
+
+struct Options {
+  std::string scene, out, end, every, cache = user_cache().string();
+  int digits = ReferenceSettings{}.digits;
+  bool quiet = false;
+};
+
+std::string row(const std::string& name, const PerQuantity& difference) {
+  std::string text = fmt::format("  {:<46}", name);
+  for (const double d : difference) text += fmt::format("{:>14.2g}", d);
+  return text + "\n";
+}
+
+void print_agreement(const Scene& scene, const Reference& r, const ReferenceSettings& settings) {
+  fmt::print("{}: reference at {} times to t = {:g} s\n", scene.name, r.motion.t.size(), settings.end);
+  fmt::print("  {:<46}", "largest difference, relative to the motion");
+  for (const auto quantity : kQuantities) fmt::print("{:>14}", quantity);
+  fmt::print("\n");
+  for (const Reference::Method& m : r.methods)
+    if (m.failure.empty())
+      fmt::print("{}",
+                 row(fmt::format("{} in {}, rtol {:.0e} against {:.0e}", m.integrator, m.formulation, m.loose, m.tight),
+                     m.apart));
+  for (const Reference::Method& m : r.methods)
+    if (m.failure.empty() && &m != &r.of())
+      fmt::print("{}", row(fmt::format("{} in {} against {} in {}", m.integrator, m.formulation, r.of().integrator,
+                                       r.of().formulation),
+                           r.agreement));
+  fmt::print("  {:<46}", "digits that agree");
+  for (const double d : r.agreement) fmt::print("{:>14.1f}", digits(d));
+  fmt::print("\n  given is {} in {} with rtol {:.0e}: {}\n", r.of().integrator, r.of().formulation, r.of().tight,
+             r.independent ? "its two tolerances are least apart, and the other method confirms it"
+                           : "no other method confirms it");
+}
+
+std::string record(const Scene& scene, const Reference& r, const ReferenceSettings& settings) {
+  nlohmann::ordered_json json;
+  const auto named = [](const PerQuantity& difference) {
+    nlohmann::ordered_json object;
+    for (std::size_t k = 0; k < kQuantities.size(); ++k) object[std::string(kQuantities[k])] = difference[k];
+    return object;
+  };
+  json["end"] = settings.end;
+  json["every"] = settings.every;
+  json["given"] = {{"integrator", r.of().integrator}, {"formulation", r.of().formulation}, {"rtol", r.of().tight}};
+  json["confirmed_by_another_method"] = r.independent;
+  json["agreement"] = named(r.agreement);
+  for (const Reference::Method& m : r.methods)
+    json["methods"].push_back({{"integrator", m.integrator},
+                               {"formulation", m.formulation},
+                               {"rtol", {m.loose, m.tight}},
+                               {"failure", m.failure},
+                               {"difference_of_tolerances", named(m.apart)}});
+  add_origin(json);
+  json["scene"] = nlohmann::ordered_json::parse(scene.source, nullptr, true, true);
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+int run(const Options& options) {
+  ReferenceSettings settings;
+  if (options.digits < 4 || options.digits > 12)
+    throw InputError(fmt::format("--digits: found {}, expected a whole number from 4 to 12", options.digits));
+  settings.digits = options.digits;
+  const Scene scene = read_scene(options.scene);
+  settings.end = end_time(options.end, scene);
+  Settings every;
+  if (!options.every.empty()) set_setting(*find_setting("every"), options.every, every);
+  settings.every = every.every > 0 ? every.every : settings.end / kRows;
+  std::optional<TrajectoryWriter> trajectory;
+  std::optional<OutputFile> beside;
+  if (!options.out.empty()) {
+    const fs::path file = fs::path(options.out).replace_extension(".json");
+    if (fs::weakly_canonical(file) == fs::weakly_canonical(options.scene))
+      throw InputError(
+          fmt::format("{}: the record beside --out would overwrite the scene; choose another name", file.string()));
+    trajectory.emplace(options.out, scene);
+    if (!is_device(options.out)) beside.emplace(file);
+  }
+
+  std::vector<std::string> notices;
+  const Reference r = reference(scene, settings, Cache(options.cache), notices);
+  for (const Reference::Method& m : r.methods)
+    if (!m.failure.empty() && r.given >= 0)
+      notices.push_back(fmt::format("{} in {} gives no reference: {}", m.integrator, m.formulation, m.failure));
+  if (!options.quiet)
+    for (const std::string& notice : notices) print_notice(notice);
+  if (r.given < 0) {
+    print_error(why_none(r));
+    return kNumericsFailed;
+  }
+  if (trajectory) {
+    for (std::size_t k = 0; k < r.motion.t.size(); ++k) trajectory->write(r.motion.t[k], r.motion.bodies[k]);
+    trajectory->commit();
+  }
+  if (beside) {
+    beside->write(record(scene, r, settings));
+    beside->commit();
+  }
+  if (!options.quiet) print_agreement(scene, r, settings);
+  return kDone;
+}
+
+}  // namespace
+
+void add_reference(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("reference", "compute a motion as exactly as can be, and how exact it is");
+  const auto options = std::make_shared<Options>();
+  command->add_option("scene", options->scene, "scene file")->required()->type_name("SCENE");
+  command->add_option("--end", options->end, fmt::format("end time, s (default: {})", kNaturalEnd))->type_name("X");
+  command->add_option("--every", options->every, fmt::format("time between output rows, s (default: end/{})", kRows))
+      ->type_name("X");
+  command
+      ->add_option("--digits", options->digits,
+                   fmt::format("decimal digits to aim at, 4 to 12 (default {})", options->digits))
+      ->type_name("N");
+  command
+      ->add_option("--out", options->out,
+                   "the motion, CSV, as `poinsot run` writes it; beside it .json with the evidence")
+      ->type_name("FILE.csv");
+  command->add_option("--cache", options->cache, "folder where references are kept (default $XDG_CACHE_HOME/poinsot)")
+      ->type_name("DIR");
+  command->add_flag("--quiet", options->quiet, "nothing but errors");
+  command->footer(
+      "Two methods, each at two tolerances: what they differ by is stated for positions, velocities, accelerations "
+      "and\n"
+      "multipliers. Kept by the content of scene, settings and program, and not computed twice.");
+  command->callback([options, &status] { status = run(*options); });
+}
+
+}  // namespace poinsot::app

@@ -1,0 +1,140 @@
+#include "app/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/measure.h"
+#include "formulations/registry.h"
+
+namespace poinsot::app {
+
+std::string Case::parameter() const {
+  return find_integrator(settings.integrator)->controls_error ? "rtol" : "step";
+}
+
+double Case::value() const {
+  return find_integrator(settings.integrator)->controls_error ? settings.rtol : settings.step;
+}
+
+std::string Case::method() const {
+  const std::string name = fmt::format("{} in {}", settings.integrator, settings.formulation);
+  return settings.linear_solver == kUsualSolver ? name : fmt::format("{} with {}", name, settings.linear_solver);
+}
+
+SweepPlan everything() {
+  SweepPlan plan;
+  for (const FormulationEntry& entry : formulations()) plan.formulations.emplace_back(entry.name);
+  for (const IntegratorEntry& entry : integrators())
+    if (entry.analysis == Analysis::dynamics) plan.integrators.emplace_back(entry.name);
+  plan.linear_solvers = {kUsualSolver};
+  return plan;
+}
+
+Sweep::Sweep(const Scene& scene, double end, const Reference& reference)
+    : scene_(scene),
+      reference_(reference),
+      model_(compile(scene)),
+      end_(end),
+      sizes_(sizes(reference.motion, model_)),
+      kinetic_energy_(kinetic_energy(reference.motion, model_)),
+      conservative_(conserves_energy(model_) && kinetic_energy_ > 0) {}
+
+std::vector<std::vector<Case>> Sweep::cases(const SweepPlan& plan) const {
+  // Newton stops where a correction is small beside the accelerations of the motion, by four digits or five: more does
+  // not change the errors of any method.
+  const double tolerance = std::pow(10, std::floor(std::log10(1e-4 * sizes_.acceleration)));
+  std::vector<std::vector<Case>> levels(std::max(plan.steps.size(), plan.tolerances.size()));
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    for (const std::string& integrator : plan.integrators) {
+      const IntegratorEntry& entry = *find_integrator(integrator);
+      if (level >= (entry.controls_error ? plan.tolerances.size() : plan.steps.size())) continue;
+      for (const std::string& formulation : plan.formulations) {
+        const auto refused = [&](const Refusal& refusal) { return refusal.formulation == formulation; };
+        if (std::any_of(entry.refuses.begin(), entry.refuses.end(), refused)) continue;
+        for (const std::string& linear_solver : plan.linear_solvers) {
+          Settings settings;
+          settings.formulation = formulation;
+          settings.integrator = integrator;
+          settings.linear_solver = linear_solver;
+          settings.end = end_;
+          settings.every = end_ / kOutputs;
+          if (entry.controls_error) {
+            settings.rtol = plan.tolerances[level];
+            settings.atol = settings.rtol / 100;
+          } else {
+            settings.step = end_ / plan.steps[level];
+            settings.tolerance = tolerance;
+          }
+          levels[level].push_back({settings, static_cast<int>(level)});
+        }
+      }
+    }
+  }
+  return levels;
+}
+
+Measured Sweep::compare(const Case& one) const {
+  const MotionRun run = run_motion(scene_, one.settings);
+  const Statistics& s = run.outcome.statistics;
+  Measured measured;
+  measured.steps = s.steps;
+  measured.newton_iterations = s.newton_iterations;
+  measured.factorizations = s.factorizations;
+  measured.seconds = s.seconds.total;
+  if (!run.outcome.status.ok()) {
+    measured.status = run.outcome.status.message;
+    return measured;
+  }
+  measured.error = difference(run.motion, reference_.motion, sizes_, model_);
+  measured.violation_position = s.violation.position;
+  measured.violation_velocity = s.violation.velocity;
+  measured.energy_drift = conservative_ ? run.energy_drift / kinetic_energy_ : std::numeric_limits<double>::quiet_NaN();
+  return measured;
+}
+
+double Sweep::time(const Case& one) const {
+  return simulate(scene_, one.settings, {}).statistics.seconds.total;
+}
+
+std::vector<Measured> Sweep::measure(const std::vector<Case>& batch, int repetitions,
+                                     const std::function<void(const Case&)>& after) const {
+  std::vector<Measured> all;
+  for (const Case& one : batch) {
+    all.push_back(compare(one));
+    after(one);
+  }
+  std::vector<std::vector<double>> seconds(batch.size());
+  for (int repetition = 0; repetition < repetitions; ++repetition) {
+    for (std::size_t k = 0; k < batch.size(); ++k) {
+      if (all[k].ok()) seconds[k].push_back(time(batch[k]));
+      after(batch[k]);
+    }
+  }
+  for (std::size_t k = 0; k < batch.size(); ++k) {
+    if (!all[k].ok()) continue;
+    const Timing timed = timing(seconds[k]);
+    all[k].seconds = timed.median;
+    all[k].spread = timed.spread;
+  }
+  return all;
+}
+
+std::vector<bool> front(const std::vector<double>& errors, const std::vector<double>& seconds, double floor) {
+  std::vector<bool> on(errors.size());
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    if (!(errors[k] <= kUseless)) continue;
+    const double error = std::max(errors[k], floor);
+    on[k] = true;
+    for (std::size_t other = 0; other < errors.size() && on[k]; ++other) {
+      const double of_other = std::max(errors[other], floor);
+      const bool as_good = of_other <= error && seconds[other] <= seconds[k];
+      on[k] = !(as_good && (of_other < error || seconds[other] < seconds[k]));
+    }
+  }
+  return on;
+}
+
+}  // namespace poinsot::app

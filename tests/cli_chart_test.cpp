@@ -1,0 +1,109 @@
+// `poinsot chart`: the rows it writes, the front, going on after an interruption; not how fast anything is.
+#include <map>
+
+#include "command_line.h"
+
+namespace poinsot::test {
+namespace {
+
+using Row = std::map<std::string, std::string>;
+
+class Chart : public CommandLine {
+ protected:
+  Chart() { write("pendulum.json", kPendulum); }
+
+  Result chart(std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"chart", "pendulum.json", "--quick", "--end", "0.5", "--cache", "cache", "--out", "out",
+                               "--formulations", "rA,rp", "--integrators", "implicit_euler,dop853"});
+    return poinsot(more);
+  }
+
+  std::vector<Row> rows() const {
+    std::vector<Row> result;
+    std::vector<std::string> names;
+    for (const std::string& line : lines(read("out/pendulum.csv"))) {
+      if (line.starts_with("#")) continue;
+      const auto f = fields(line);
+      if (names.empty()) {
+        names = f;
+        continue;
+      }
+      Row& row = result.emplace_back();
+      for (std::size_t k = 0; k < f.size(); ++k) row[names[k]] = f[k];
+    }
+    return result;
+  }
+};
+
+TEST_F(Chart, MeasuresEveryCaseAndFindsTheFront) {
+  const Result result = chart();
+  ASSERT_EQ(result.status, 0) << result.err;
+  const bool pictures = result.err.empty();
+  EXPECT_TRUE(pictures || result.err.find("matplotlib") != std::string::npos) << result.err;
+  for (const char* picture : {"out/pendulum.svg", "out/pendulum.png"})
+    EXPECT_EQ(std::filesystem::exists(folder() / picture), pictures);
+
+  const std::vector<Row> all = rows();
+  ASSERT_EQ(all.size(), 1u + 2 * 5 + 2 * 5);
+  EXPECT_EQ(all[0].at("status"), "reference");
+  for (const char* quantity : {"position", "velocity", "acceleration", "multiplier"}) {
+    const double floor = std::stod(all[0].at(quantity));
+    EXPECT_LT(floor, 1e-10) << quantity;
+    const auto error = [&](const Row& row) { return std::max(floor, std::stod(row.at(quantity))); };
+    const auto seconds = [](const Row& row) { return std::stod(row.at("seconds")); };
+    double coarse = 0, fine = 1;
+    for (const Row& row : all) {
+      if (row.at("status") != "ok") continue;
+      bool beaten = error(row) > 0.1;
+      for (const Row& other : all)
+        if (other.at("status") == "ok" && error(other) <= error(row) && seconds(other) <= seconds(row))
+          beaten = beaten || error(other) < error(row) || seconds(other) < seconds(row);
+      EXPECT_EQ(row.at(std::string("front_") + quantity), beaten ? "0" : "1") << row.at("integrator");
+      (row.at("integrator") == "dop853" ? fine : coarse) = error(row);
+    }
+    EXPECT_LT(fine, coarse / 100);
+  }
+}
+
+TEST_F(Chart, GoesOnWhereItStopped) {
+  ASSERT_EQ(chart().status, 0);
+  const std::vector<Row> whole = rows();
+  const std::string text = read("out/pendulum.csv");
+  const std::size_t cut = text.rfind("dop853");  // within the last row
+  write("out/pendulum.csv", text.substr(0, cut));
+  ASSERT_EQ(chart().status, 0);
+  const std::vector<Row> again = rows();
+  ASSERT_EQ(again.size(), whole.size());
+  for (std::size_t k = 0; k + 1 < whole.size(); ++k) EXPECT_EQ(again[k].at("seconds"), whole[k].at("seconds")) << k;
+
+  const Result otherwise = chart({"--linear-solvers", "klu"});
+  EXPECT_EQ(otherwise.status, 2);
+  EXPECT_NE(otherwise.err.find("out/pendulum.csv: measured otherwise, there it says \"settings: "), std::string::npos);
+  EXPECT_NE(otherwise.err.find("--fresh begins it anew"), std::string::npos);
+  EXPECT_EQ(chart({"--linear-solvers", "klu", "--fresh"}).status, 0);
+}
+
+TEST_F(Chart, SaysWhatIsWrong) {
+  const auto says = [&](const std::vector<std::string>& arguments, const std::string& message) {
+    const Result result = poinsot(arguments);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(result.err, "poinsot: " + message + "\n");
+  };
+  says({"chart"}, "found no scene, expected poinsot chart SCENE, or --all");
+  says({"chart", "pendulum.json", "--integrators", "magic"},
+       "--integrators: found \"magic\"; `poinsot list` says what there is");
+  write("other.csv", "1,2\n");
+  says({"chart", "pendulum.json", "./pendulum.json"}, "pendulum.json: two scenes would be charted as pendulum.csv");
+}
+
+TEST_F(Chart, AFailureIsARowAndASceneWithoutReferenceASentence) {
+  write("overstretched.json", kOverstretched);
+  const Result result = poinsot({"chart", "overstretched.json", "pendulum.json", "--quick", "--end", "1.5", "--cache",
+                                 "cache", "--out", "out", "--integrators", "dop853"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.err.find("overstretched.json: no chart: no reference could be computed"), std::string::npos);
+  EXPECT_FALSE(rows().empty());
+}
+
+}  // namespace
+}  // namespace poinsot::test

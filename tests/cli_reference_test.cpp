@@ -1,0 +1,98 @@
+// `poinsot reference`: the digits it gives, what it keeps, and what it says where there is no reference.
+#include <cmath>
+
+#include "command_line.h"
+
+namespace poinsot::test {
+namespace {
+
+class ReferenceCommand : public CommandLine {
+ protected:
+  ReferenceCommand() { write("pendulum.json", kPendulum); }
+
+  Result reference(const std::string& out) const {
+    return poinsot({"reference", "pendulum.json", "--end", "1", "--every", "0.25", "--cache", "cache", "--out", out});
+  }
+  std::filesystem::path kept() const { return *std::filesystem::directory_iterator(folder() / "cache"); }
+};
+
+// The rod's angle from the horizontal, by the classical Runge-Kutta method with steps that leave its error below 1e-13.
+double angle(double end) {
+  constexpr int steps = 4000;
+  const double h = end / steps, of = 3 * 9.81 / (1 + 3);
+  const auto rate = [&](double a) { return -of * std::cos(a); };
+  double x = 0, v = 0;
+  for (int k = 0; k < steps; ++k) {
+    const double a1 = rate(x), a2 = rate(x + h / 2 * v), a3 = rate(x + h / 2 * v + h * h / 4 * a1),
+                 a4 = rate(x + h * v + h * h / 2 * a2);
+    x += h * v + h * h / 6 * (a1 + a2 + a3);
+    v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+  }
+  return x;
+}
+
+TEST_F(ReferenceCommand, GivesTheMotionAndHowManyDigitsAgree) {
+  const Result result = reference("motion.csv");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_NE(result.out.find("digits that agree"), std::string::npos);
+  const auto rows = lines(read("motion.csv"));
+  ASSERT_EQ(rows.size(), 6u);
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const auto f = fields(rows[k]);
+    const double t = 0.25 * static_cast<double>(k - 1);
+    EXPECT_EQ(std::stod(f[0]), t);
+    EXPECT_NEAR(std::stod(f[2]), std::cos(angle(t)), 1e-11);
+    EXPECT_NEAR(std::stod(f[3]), std::sin(angle(t)), 1e-11);
+  }
+  const auto record = read_json("motion.json");
+  for (const char* quantity : {"position", "velocity", "acceleration", "multiplier"}) {
+    EXPECT_LT(record["agreement"][quantity].get<double>(), 1e-11) << quantity;
+    for (const auto& method : record["methods"]) EXPECT_EQ(method["failure"], "");
+  }
+  EXPECT_TRUE(record["confirmed_by_another_method"].get<bool>());
+}
+
+TEST_F(ReferenceCommand, KeepsItByContent) {
+  ASSERT_EQ(reference("first.csv").status, 0);
+  const auto made = std::filesystem::last_write_time(kept());
+  ASSERT_EQ(reference("second.csv").status, 0);
+  EXPECT_EQ(std::filesystem::last_write_time(kept()), made) << "computed twice";
+  EXPECT_EQ(read("first.csv"), read("second.csv"));
+  EXPECT_EQ(read("first.json"), read("second.json"));
+
+  const std::string good = test::read(kept());
+  std::string damaged = good;
+  damaged[damaged.size() - 20] ^= 1;
+  for (const std::string& text : {damaged, good.substr(0, good.size() / 2), std::string()}) {
+    std::ofstream(kept()) << text;
+    const Result again = reference("third.csv");
+    EXPECT_EQ(again.status, 0);
+    EXPECT_NE(again.err.find("damaged"), std::string::npos) << again.err;
+    EXPECT_EQ(read("third.csv"), read("first.csv"));
+    EXPECT_EQ(test::read(kept()), good);
+  }
+
+  std::string heavier = kPendulum;
+  heavier.replace(heavier.find("\"mass\": 3"), 9, "\"mass\": 4");
+  write("pendulum.json", heavier);
+  ASSERT_EQ(reference("heavier.csv").status, 0);
+  EXPECT_NE(read("heavier.csv"), read("first.csv"));
+}
+
+TEST_F(ReferenceCommand, SaysWhyThereIsNone) {
+  write("overstretched.json", kOverstretched);
+  const Result none = poinsot({"reference", "overstretched.json", "--end", "2", "--cache", "", "--out", "motion.csv"});
+  EXPECT_EQ(none.status, 3);
+  EXPECT_TRUE(none.err.starts_with("poinsot: no reference could be computed; ")) << none.err;
+  EXPECT_FALSE(std::filesystem::exists(folder() / "motion.csv"));
+  const Result many = poinsot({"reference", "pendulum.json", "--digits", "30"});
+  EXPECT_EQ(many.status, 2);
+  EXPECT_EQ(many.err, "poinsot: --digits: found 30, expected a whole number from 4 to 12\n");
+  const Result same = poinsot({"reference", "pendulum.json", "--out", "pendulum.csv"});
+  EXPECT_EQ(same.status, 2);
+  EXPECT_EQ(read("pendulum.json"), kPendulum);
+}
+
+}  // namespace
+}  // namespace poinsot::test
