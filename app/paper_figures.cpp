@@ -37,6 +37,13 @@ constexpr std::array kFigures{
     PaperFigures{dyn, "slider_crank", "reps", 1.31, 1.30, 2.49, 2.49, 10536, 5339, 5339},
 };
 
+constexpr std::array kIterations{OriginalIterations{"rA", 1e-2, 7.63},   OriginalIterations{"rA", 5e-3, 5.86},
+                                 OriginalIterations{"rA", 2e-3, 4.43},   OriginalIterations{"rA", 1e-3, 3.75},
+                                 OriginalIterations{"rp", 1e-2, 9.16},   OriginalIterations{"rp", 5e-3, 6.82},
+                                 OriginalIterations{"rp", 2e-3, 5.04},   OriginalIterations{"rp", 1e-3, 4.24},
+                                 OriginalIterations{"reps", 1e-2, 8.78}, OriginalIterations{"reps", 5e-3, 6.80},
+                                 OriginalIterations{"reps", 2e-3, 4.97}, OriginalIterations{"reps", 1e-3, 4.18}};
+
 }  // namespace
 
 std::span<const PaperCounts> paper_counts() {
@@ -44,6 +51,10 @@ std::span<const PaperCounts> paper_counts() {
 }
 std::span<const PaperFigures> paper_figures() {
   return kFigures;
+}
+
+std::span<const OriginalIterations> original_iterations() {
+  return kIterations;
 }
 
 const PaperFigures* find_paper_figures(Analysis analysis, std::string_view mechanism, std::string_view formulation) {

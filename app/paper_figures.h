@@ -40,6 +40,14 @@ struct PaperFigures {
 std::span<const PaperFigures> paper_figures();
 const PaperFigures* find_paper_figures(Analysis analysis, std::string_view mechanism, std::string_view formulation);
 
+// Newton iterations a step of the original codes, four link, dynamics over 1 s with steps of exactly h and tolerance
+// 1e-11/h², measured on them.
+struct OriginalIterations {
+  std::string_view formulation;
+  double step, iterations;
+};
+std::span<const OriginalIterations> original_iterations();
+
 // Where the codes were measured.
 inline constexpr std::string_view kOriginalMachine =
     "Intel Xeon 2.50 GHz, Python 3.11.2, numpy 1.24.2, scipy 1.10.1, one BLAS thread, CPU time, median of 3 "

@@ -4,10 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <tuple>
 
+#include "app/range.h"
 #include "core/model.h"
 #include "formulations/registry.h"
 
@@ -42,18 +42,6 @@ std::string figure(double value, int decimals) {
 std::string printed(const PaperFigures* figures, double PaperFigures::*member, int decimals) {
   return figures ? figure(figures->*member, decimals) : kNone;
 }
-
-// Smallest and largest of the values seen, as "1.20 to 1.55".
-struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-
-  void add(double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  bool empty() const { return low > high; }
-  std::string text(int decimals) const { return fmt::format("{:.{}f} to {:.{}f}", low, decimals, high, decimals); }
-};
 
 double speed_up(std::span<const Cell> cells, const Cell& cell) {
   const Cell* baseline = find(cells, cell.settings.analysis, *cell.mechanism, kBaseline, cell.settings.jacobian);

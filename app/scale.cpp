@@ -1,16 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "app/commands.h"
-#include "app/isolated_run.h"
 #include "app/measure.h"
 #include "app/name_list.h"
-#include "app/output_file.h"
 #include "app/progress.h"
-#include "app/report.h"
+#include "app/scale_series.h"
 #include "app/terminal.h"
 #include "core/input_error.h"
 #include "formulations/registry.h"
@@ -24,22 +21,6 @@ struct Options {
   int most = 100000, repetitions = 3;
   bool quiet = false;
 };
-
-struct Series {  // one structure, formulation and linear solver over growing sizes
-  const SceneGenerator* structure;
-  Settings settings;
-  std::vector<std::vector<IsolatedRun>> runs;  // by size, by repetition
-};
-
-double median(const std::vector<IsolatedRun>& runs, double IsolatedRun::*figure) {
-  std::vector<double> values;
-  for (const IsolatedRun& run : runs) values.push_back(run.*figure);
-  return timing(values).median;
-}
-
-bool good(const std::vector<IsolatedRun>& runs) {
-  return !runs.empty() && runs.front().failure.empty();
-}
 
 // A series ends where ten times the bodies would take longer than this at the same cost per body.
 constexpr double kLongestRun = 60;  // s
@@ -57,64 +38,6 @@ std::vector<int> sizes(int most) {
 // Few steps where a step is long: about as much work for every size, 5 to 200 steps.
 double end_of(int bodies, double step) {
   return step * std::clamp(20000 / bodies, 5, 200);
-}
-
-// Exponent of the time of a step over the number of bodies, by least squares in logarithms, from 100 bodies on.
-std::string exponent(const Series& series) {
-  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const auto& runs : series.runs) {
-    if (!good(runs) || runs.front().bodies < 100) continue;
-    const double lx = std::log(runs.front().bodies);
-    const double ly = lx + std::log(median(runs, &IsolatedRun::us_per_body));
-    n += 1, x += lx, y += ly, xx += lx * lx, xy += lx * ly;
-  }
-  return n < 2 ? "" : fmt::format("{:.3f}", (n * xy - x * y) / (n * xx - x * x));
-}
-
-Table cost_table(const std::vector<Series>& all) {
-  Table table{"scaling",
-              "Cost per body and Newton iteration",
-              "Implicit Euler, exact Newton matrix; microseconds per body and iteration, the whole step and by phase; "
-              "kilobytes resident per body; seconds from the scene to the first step.",
-              {"structure", "formulation", "linear solver", "bodies", "us/body", "assembly", "factor", "solve", "rest",
-               "kB/body", "start s"},
-              {}};
-  for (const Series& series : all) {
-    for (const auto& runs : series.runs) {
-      if (!good(runs)) continue;
-      std::vector<std::string> row{std::string(series.structure->name), series.settings.formulation,
-                                   series.settings.linear_solver, std::to_string(runs.front().bodies)};
-      for (const auto figure :
-           {&IsolatedRun::us_per_body, &IsolatedRun::assembly, &IsolatedRun::factor, &IsolatedRun::solve,
-            &IsolatedRun::rest, &IsolatedRun::kilobytes_per_body, &IsolatedRun::start}) {
-        row.push_back(fmt::format("{:.3f}", median(runs, figure)));
-      }
-      table.rows.push_back(row);
-    }
-  }
-  return table;
-}
-
-Table growth_table(const std::vector<Series>& all) {
-  Table table{"growth",
-              "Growth",
-              "Time of a step over the number of bodies N is a power of N: the fitted exponent from 100 bodies on, and "
-              "the cost per body of the largest scene relative to that of 100 bodies.",
-              {"structure", "formulation", "linear solver", "exponent", "largest / 100 bodies"},
-              {}};
-  for (const Series& series : all) {
-    const std::string fitted = exponent(series);
-    if (fitted.empty()) continue;
-    const auto& at_100 = series.runs[2];
-    const auto& largest = series.runs.back();
-    const std::string ratio = good(at_100) && good(largest)
-                                  ? fmt::format("{:.2f}", median(largest, &IsolatedRun::us_per_body) /
-                                                              median(at_100, &IsolatedRun::us_per_body))
-                                  : "";
-    table.rows.push_back({std::string(series.structure->name), series.settings.formulation,
-                          series.settings.linear_solver, fitted, ratio});
-  }
-  return table;
 }
 
 int scale(const Options& options) {
@@ -162,7 +85,8 @@ int scale(const Options& options) {
   progress.clear();
 
   Report report{"Scaling",
-                "Chains, trees, ladders of closed loops and the N-four-bar, each run in its own process.",
+                "Chains, trees, ladders of closed loops and the N-four-bar, each run in its own process.\n\n"
+                "![Cost over the number of bodies](scaling_plot.svg)",
                 {cost_table(all), growth_table(all)},
                 origin_lines(core)};
   report.foot.push_back(
@@ -182,6 +106,8 @@ int scale(const Options& options) {
     }
   }
   const auto written = write_report(report, options.out, "scaling");
+  if (const std::string why = write_plots({scaling_plot(all)}, options.out, report.foot); !why.empty())
+    print_notice(why);
   if (!options.quiet) fmt::print("{}\n", written.front().string());
   return failed ? kNumericsFailed : kDone;
 }
@@ -191,7 +117,7 @@ int scale(const Options& options) {
 void add_scale(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("scale", "measure how time and memory grow with the number of bodies");
   const auto options = std::make_shared<Options>();
-  command->add_option("--out", options->out, "folder for the Markdown page and the CSV files (default results)")
+  command->add_option("--out", options->out, "folder for the Markdown page, CSV files and plots (default results)")
       ->type_name("DIR");
   command->add_option("--bodies", options->most, fmt::format("largest scene (default {})", options->most))
       ->type_name("N");

@@ -1,5 +1,8 @@
 // `poinsot make` and `poinsot scale`: generated scene files, and the files of the scaling study; not how fast anything
 // is.
+#include <cmath>
+#include <map>
+
 #include "command_line.h"
 #include "core/scene_generator.h"
 
@@ -51,6 +54,34 @@ TEST_F(Scale, MeasuresEverySizeOfEveryStructure) {
   }
   EXPECT_EQ(rows, scene_generators().size() * 2 * 2 * 3);
   EXPECT_NE(read("results/scaling.md").find("processor: "), std::string::npos);
+}
+
+TEST_F(Scale, ExponentsFollowFromTheTable) {
+  const Result result = poinsot({"scale", "--bodies", "1000", "--formulations", "rA", "--linear-solvers", "block",
+                                 "--repetitions", "1", "--out", "results"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_TRUE(read("results/scaling_plot.png").starts_with("\x89PNG"));
+  EXPECT_NE(read("results/scaling_plot.svg").find("memory, kB per body"), std::string::npos);
+  std::map<std::string, std::vector<std::pair<double, double>>> times;  // of an iteration, by structure
+  for (const std::string& line : lines(read("results/scaling.csv"))) {
+    if (line.starts_with('#') || line.starts_with("structure,")) continue;
+    const auto f = fields(line);
+    if (std::stod(f[3]) < 100) continue;
+    times[f[0]].emplace_back(std::log(std::stod(f[3])), std::log(std::stod(f[3]) * std::stod(f[4])));
+  }
+  EXPECT_EQ(times.size(), scene_generators().size());
+  std::size_t rows = 0;
+  for (const std::string& line : lines(read("results/growth.csv"))) {
+    if (line.starts_with('#') || line.starts_with("structure,")) continue;
+    const auto f = fields(line);
+    const auto& two = times.at(f[0]);
+    ASSERT_EQ(two.size(), 2u);
+    EXPECT_NEAR(std::stod(f[3]), (two[1].second - two[0].second) / (two[1].first - two[0].first), 2e-3) << line;
+    EXPECT_EQ(f[8], "-") << "memory takes two scenes of 1000 bodies and more";
+    ++rows;
+  }
+  EXPECT_EQ(rows, scene_generators().size());
 }
 
 TEST_F(Scale, SaysWhatItDoesNotKnow) {

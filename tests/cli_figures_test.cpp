@@ -1,0 +1,88 @@
+// `poinsot figures`: the files it writes, and that what it says was fitted follows from the points in the CSV.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "command_line.h"
+
+namespace poinsot::test {
+namespace {
+
+using Figures = CommandLine;
+
+// The names below "Figures:" in the help text.
+std::set<std::string> listed(const std::string& help) {
+  std::set<std::string> names;
+  bool below = false;
+  for (const std::string& line : lines(help)) {
+    if (below && line.starts_with("  ")) names.insert(line.substr(2, line.find(' ', 2) - 2));
+    below = below || line == "Figures:";
+  }
+  return names;
+}
+
+TEST_F(Figures, HelpListsThem) {
+  const Result result = poinsot({"figures", "--help"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(listed(result.out),
+            (std::set<std::string>{"order_paper", "order_integrators", "solution_deltas", "iterations", "energy"}));
+}
+
+TEST_F(Figures, OrdersFollowFromThePoints) {
+  const Result result = poinsot({"figures", "order_paper", "--quick", "--out", "results"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  std::set<std::string> found;
+  for (const auto& file : std::filesystem::directory_iterator(folder() / "results"))
+    found.insert(file.path().filename());
+  EXPECT_EQ(found, (std::set<std::string>{"figures.md", "order_paper.csv", "order_paper.svg", "order_paper.png",
+                                          "order_paper_table.csv"}));
+  EXPECT_TRUE(read("results/order_paper.png").starts_with("\x89PNG"));
+  EXPECT_NE(read("results/order_paper.svg").find("four link, z of link 3: velocity"), std::string::npos);
+
+  // panel and formulation -> points of the fit, in logarithms
+  std::map<std::pair<std::string, std::string>, std::vector<std::pair<double, double>>> points;
+  for (const std::string& line : lines(read("results/order_paper.csv"))) {
+    if (line.starts_with('#') || line.starts_with("panel,")) continue;
+    const std::size_t quote = line.rfind('"');  // panels hold commas
+    ASSERT_TRUE(line.starts_with('"') && quote != std::string::npos) << line;
+    const auto f = fields(line.substr(quote + 2));  // series, variant, x, y, low, high, in_fit
+    ASSERT_EQ(f.size(), 7u) << line;
+    if (f[6] == "1")
+      points[{line.substr(1, quote - 1), f[0]}].emplace_back(std::log(std::stod(f[2])), std::log(std::stod(f[3])));
+  }
+  EXPECT_EQ(points.size(), 3u * 2 * 3);
+  int rows = 0;
+  for (const std::string& line : lines(read("results/order_paper_table.csv"))) {
+    if (line.starts_with('#') || line.starts_with("coordinate,")) continue;
+    const std::size_t quote = line.rfind('"');
+    const auto f = fields(line.substr(quote + 2));  // formulation, quantity, exponent, least, largest, ...
+    const std::string unit = f[1] == "velocity" ? "m/s" : "m/s²";
+    const auto& p = points.at({fmt::format("{}: {}, {}", line.substr(1, quote - 1), f[1], unit), f[0]});
+    ASSERT_GE(p.size(), 5u);
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    const auto n = static_cast<double>(p.size());
+    for (const auto& [x, y] : p) sx += x, sy += y, sxx += x * x, sxy += x * y;
+    EXPECT_NEAR(std::stod(f[2]), (n * sxy - sx * sy) / (n * sxx - sx * sx), 6e-4) << line;
+    EXPECT_NEAR(std::stod(f[2]), 1, 0.1) << line;
+    EXPECT_NEAR(std::stod(f[3]), 1, 0.1) << line;
+    EXPECT_NEAR(std::stod(f[4]), 1, 0.1) << line;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 3 * 2 * 3);
+  EXPECT_TRUE(result.out.starts_with("order_paper\n  implicit_euler (order 1): exponents ")) << result.out;
+}
+
+TEST_F(Figures, SaysWhatItDoesNotKnow) {
+  const Result result = poinsot({"figures", "order_paper", "portrait", "--out", "results"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.err,
+            "poinsot: NAME: found \"portrait\", expected one of order_paper, order_integrators, solution_deltas, "
+            "iterations, energy\n");
+  EXPECT_TRUE(files().empty());
+}
+
+}  // namespace
+}  // namespace poinsot::test
