@@ -73,6 +73,7 @@ void measure(std::vector<Cell>& cells, int repetitions, bool show_progress) {
       if (!cell.failure.empty()) continue;
       try {
         const Outcome outcome = simulate(*cell.scene, cell.settings, [](const Sample&) {});
+        cell.refused = outcome.status.failure == Failure::refused;
         if (!outcome.status.ok())
           cell.failure = outcome.status.message;
         else if (repetition >= 0)

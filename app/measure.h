@@ -19,6 +19,7 @@ struct Cell {
 
   std::vector<Statistics> runs;  // by repetition
   std::string failure;           // why there are none: refused or failed
+  bool refused = false;          // by the linear solver, which does not take such matrices
 };
 
 // Of repeated measurements.

@@ -288,17 +288,25 @@ Table against_original_table(std::span<const Cell> cells, Analysis analysis) {
 }
 
 Table linear_solvers_table(std::span<const Cell> cells) {
-  Table table{"linear_solvers",
-              "Dynamics: all linear solvers, time of a step by phase, microseconds",
-              "Medians; the spread is the distance of the quartiles of the total.",
-              {"mechanism", "formulation", "jacobian", "linear solver", "total", "spread, %", "assembly",
-               "factorization", "solves", "the rest"},
-              {}};
+  Table table{
+      "linear_solvers",
+      "Dynamics: all linear solvers, time of a step by phase, microseconds",
+      "Medians; the spread is the distance of the quartiles of the total. Refused: the solver does not take such "
+      "matrices.",
+      {"mechanism", "formulation", "jacobian", "linear solver", "total", "spread, %", "assembly", "factorization",
+       "solves", "the rest"},
+      {}};
   for (const Cell& cell : cells) {
+    std::vector<std::string> row{std::string(cell.mechanism->title), cell.settings.formulation, cell.settings.jacobian,
+                                 cell.settings.linear_solver};
+    if (cell.refused) {
+      row.push_back("refused");
+      row.resize(table.header.size());
+      table.rows.push_back(std::move(row));
+      continue;
+    }
     const Timing whole = us_per_step(cell, total);
-    std::vector<std::string> row{
-        std::string(cell.mechanism->title), cell.settings.formulation, cell.settings.jacobian,
-        cell.settings.linear_solver,        figure(whole.median, 3),   figure(100 * whole.spread, 1)};
+    row.insert(row.end(), {figure(whole.median, 3), figure(100 * whole.spread, 1)});
     for (const Phase phase : {assembly, factor, solve, rest}) row.push_back(figure(us_per_step(cell, phase).median, 3));
     table.rows.push_back(std::move(row));
   }

@@ -18,6 +18,8 @@ std::string_view name(Failure failure) {
       return "inconsistent_state";
     case Failure::step_size_too_small:
       return "step_size_too_small";
+    case Failure::refused:
+      return "refused";
   }
   return "unknown";
 }

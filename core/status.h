@@ -14,6 +14,7 @@ enum class Failure {
   not_finite,               // a NaN or an infinity came up
   inconsistent_state,       // the state violates the constraints and may not or cannot be projected onto them
   step_size_too_small,      // error control asks for steps that do not advance the time
+  refused,                  // the chosen linear solver does not take this system
 };
 
 // The failure's name as it stands in the run record: "ok", "not_converged", ...

@@ -40,6 +40,7 @@ Status explain(const Problem& problem, double t, const LinearStatus& status) {
   }
   std::string where;
   if (status.unknown >= 0) where = fmt::format(" near {}", problem.describe_unknown(status.unknown));
+  if (status.failure == LinearFailure::refused) return {Failure::refused, t, status.message + where};
   return {Failure::singular_matrix, t,
           fmt::format("at t = {:.9g} s the linear system is singular{} ({}); a singular position of the mechanism, "
                       "dependent constraints or a body without inertia: `poinsot check` names them, a smaller step may "

@@ -27,6 +27,7 @@
 #include "linsolve/csc_layout.h"
 #include "linsolve/determined.h"
 #include "linsolve/equilibration.h"
+#include "linsolve/residual.h"
 
 namespace poinsot {
 namespace {
@@ -131,12 +132,12 @@ class BlockSolver final : public LinearSolver {
   // Factorizes with pivots chosen in the units of the equilibrated matrix and, where that does not serve, in those the
   // condition estimate finds. Finds out whether solutions need refinement.
   bool trustworthy(const Equilibration& equilibration) {
-    rows_.assign(equilibration.row().begin(), equilibration.row().end());
-    columns_.assign(equilibration.col().begin(), equilibration.col().end());
-    weight_ = rows_;
+    const auto rows = equilibration.row(), columns = equilibration.col();
+    residual_.measure_by(rows, columns);
+    weight_.assign(rows.begin(), rows.end());
     Condition condition;
     condition.resize(layout_.n);
-    std::vector<double> scale = columns_, x;
+    std::vector<double> scale(columns.begin(), columns.end()), x(rows.size());
     double size = 0;
     const auto solve = [&](std::span<double> b) {
       b_.assign(b.begin(), b.end());
@@ -150,8 +151,7 @@ class BlockSolver final : public LinearSolver {
       const double estimate = condition.estimate(layout_, values_, solve, scale);
       statistics_.reciprocal_condition = 1 / estimate;
       if (!std::isfinite(estimate)) return false;
-      x.resize(rows_.size());
-      std::ranges::transform(rows_, x.begin(), [](double row) { return 1 / row; });
+      std::ranges::transform(rows, x.begin(), [](double row) { return 1 / row; });
       solve(x);
       refined_ = size > kSmallResidual;
       watched_ = size > kFairResidual;
@@ -203,7 +203,7 @@ class BlockSolver final : public LinearSolver {
     b_.assign(b.begin(), b.end());
     factor_.solve(schedule_, b);
     if (!drifted_) {
-      find_remainder(b_, b);
+      residual_.find(layout_, values_, b_, b);
       correct(b);
       return {};
     }
@@ -213,7 +213,7 @@ class BlockSolver final : public LinearSolver {
     return klu_->solve(b);
   }
 
-  // Corrects x, r_ being b_ − A x, until the residual is small, a few times at most; the residual.
+  // Corrects x, whose residual for b_ was found, until the residual is small, a few times at most; the residual.
   double refine(std::span<double> x) {
     double size = HUGE_VAL;
     for (int step = 0; step < kRefinements && !(size <= kSmallResidual); ++step) {
@@ -223,29 +223,15 @@ class BlockSolver final : public LinearSolver {
     return size;
   }
 
-  // x ← x + A⁻¹ r_
+  // x ← x + A⁻¹ r with the last residual r.
   void correct(std::span<double> x) {
-    factor_.solve(schedule_, r_);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += r_[i];
+    const std::span<double> r = residual_.vector();
+    factor_.solve(schedule_, r);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += r[i];
   }
 
-  // r_ ← b − A x
-  void find_remainder(std::span<const double> b, std::span<const double> x) {
-    r_.assign(b.begin(), b.end());
-    for (std::size_t j = 0; j < r_.size(); ++j)
-      for (int k = layout_.start[j]; k < layout_.start[j + 1]; ++k) r_[at(layout_.row[at(k)])] -= values_[at(k)] * x[j];
-  }
-
-  // The largest |b − A x| against the largest of |A||x| and |b|, of the equilibrated system; leaves b − A x in r_.
   double residual(std::span<const double> b, std::span<const double> x) {
-    find_remainder(b, x);
-    double size_x = 0, size_b = 0, size_r = 0;
-    for (std::size_t i = 0; i < r_.size(); ++i) {
-      size_x = std::max(size_x, std::abs(x[i]) / columns_[i]);
-      size_b = std::max(size_b, std::abs(b[i]) * rows_[i]);
-      size_r = std::max(size_r, std::abs(r_[i]) * rows_[i]);
-    }
-    return size_r == 0 ? 0 : size_r / (size_x + size_b);
+    return residual_.size(layout_, values_, b, x);
   }
 
   LinearStatus factor_by_klu() {
@@ -273,9 +259,9 @@ class BlockSolver final : public LinearSolver {
   BlockFactor factor_;
   std::unique_ptr<Determined> determined_;  // where the structure has the form
   std::unique_ptr<LinearSolver> klu_;
-  std::vector<double> b_, r_;
-  std::vector<double> weight_;          // of rows in the choice of pivots
-  std::vector<double> rows_, columns_;  // in which residuals are measured: factors for rows, sizes of unknowns
+  Residual residual_;
+  std::vector<double> b_;
+  std::vector<double> weight_;  // of rows in the choice of pivots
   bool ordered_ = false, examined_ = false, determined_fits_ = false;
   bool refined_ = false;  // the last fresh factorization solved well only with refinement: every solution gets it
   bool watched_ = false;  // not so well, or with much cancellation: every residual is looked at

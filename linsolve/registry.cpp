@@ -15,6 +15,10 @@ constexpr LinearSolverEntry kEntries[] = {
      make_block},
     {"dense", "LU with partial pivoting of the full matrix; for a handful of bodies, refuses more than 2000 unknowns",
      make_dense},
+    {"schur",
+     "LDL' of the Schur complement over bodies; for symmetric saddle points with a block for each body (consistent and "
+     "simplified matrices, of rA outside a step only), refuses all others",
+     make_schur},
     {"eigen_sparselu", "supernodal sparse LU of Eigen with fresh pivots every time; a reference without SuiteSparse",
      make_eigen_sparselu},
 #ifdef POINSOT_UMFPACK

@@ -43,7 +43,8 @@ LinearSystem matrix_of(const std::string& name, const FormulationEntry& formulat
   system.values.resize(static_cast<std::size_t>(size));
   const std::vector<double> a(v.size(), 1.0), lambda(static_cast<std::size_t>(problem->nc()), 100.0),
       dq(v.size(), 1e-3);
-  problem->assemble(kind, {1, h, h * h}, dq, a, lambda, slots, system.values);
+  const bool in_a_step = kind == MatrixKind::simplified || kind == MatrixKind::exact;
+  problem->assemble(kind, {1, h, h * h}, in_a_step ? dq : std::vector<double>(), a, lambda, slots, system.values);
   return system;
 }
 
@@ -62,6 +63,17 @@ double backward_error(const LinearSystem& system, std::span<const double> x, std
   return static_cast<double>(largest / scale);
 }
 
+// With a sentence may be refused: unsymmetric matrices, which are kinematics, the exact ones, rA's in a step; and those
+// of the four link, whose bars have no inertia about their axes.
+bool refused(const LinearStatus& status, std::string_view name, MatrixKind kind, const FormulationEntry& formulation) {
+  if (status.failure != LinearFailure::refused) return false;
+  EXPECT_FALSE(status.message.empty());
+  EXPECT_TRUE(kind == MatrixKind::kinematic || kind == MatrixKind::exact || name == "four_link" ||
+              (kind == MatrixKind::simplified && formulation.name == "rA"))
+      << status.message;
+  return true;
+}
+
 class OnMechanisms : public testing::TestWithParam<LinearSolverEntry> {};
 
 INSTANTIATE_TEST_SUITE_P(Registry, OnMechanisms, testing::ValuesIn(linear_solvers()),
@@ -77,11 +89,14 @@ TEST_P(OnMechanisms, SolveStepsOfAnyLengthAndOtherValuesOnTheSamePattern) {
           for (int turn = 0; turn < 3; ++turn) {
             const LinearSystem system = matrix_of(name, formulation, kind, h, turn);
             if (!analyzed) {
-              ASSERT_TRUE(solver->analyze(system.pattern).ok()) << system.name;
+              const LinearStatus status = solver->analyze(system.pattern);
+              if (refused(status, name, kind, formulation)) continue;
+              ASSERT_TRUE(status.ok()) << system.name << ": " << status.message;
               analyzed = true;
             }
             write(system, *solver);
             const LinearStatus factored = solver->factor();
+            if (refused(factored, name, kind, formulation)) continue;
             ASSERT_TRUE(factored.ok()) << system.name << ", h = " << h << ": " << factored.message;
             std::vector<double> b(static_cast<std::size_t>(system.pattern.n));
             for (std::size_t k = 0; k < b.size(); ++k) b[k] = std::cos(static_cast<double>(k));
@@ -100,7 +115,9 @@ TEST_P(OnMechanisms, SolveKinematics) {
     for (const FormulationEntry& formulation : formulations()) {
       const LinearSystem system = matrix_of(name, formulation, MatrixKind::kinematic, 1);
       const auto solver = GetParam().make();
-      ASSERT_TRUE(solver->analyze(system.pattern).ok()) << system.name;
+      const LinearStatus status = solver->analyze(system.pattern);
+      if (refused(status, name, MatrixKind::kinematic, formulation)) continue;
+      ASSERT_TRUE(status.ok()) << system.name << ": " << status.message;
       write(system, *solver);
       ASSERT_TRUE(solver->factor().ok()) << system.name;
       std::vector<double> b(static_cast<std::size_t>(system.pattern.n), 1.0), x = b;

@@ -1,0 +1,29 @@
+// The residual b − A x of a solve and its size, in the units of the equilibrated system.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "linsolve/csc_layout.h"
+
+namespace poinsot {
+
+class Residual {
+ public:
+  // Factors of rows; sizes of unknowns (the column factors of an equilibration).
+  void measure_by(std::span<const double> rows, std::span<const double> columns);
+  std::span<const double> rows() const { return rows_; }
+  std::span<const double> columns() const { return columns_; }
+
+  // Both leave b − A x in vector(). The size is the largest |b − A x| against the largest of |A||x| and |b|.
+  void find(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
+            std::span<const double> x);
+  double size(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
+              std::span<const double> x);
+  std::span<double> vector() { return r_; }
+
+ private:
+  std::vector<double> rows_, columns_, r_;
+};
+
+}  // namespace poinsot
