@@ -15,6 +15,7 @@ void add_make(CLI::App& app, int& status);
 void add_scale(CLI::App& app, int& status);
 void add_reference(CLI::App& app, int& status);
 void add_chart(CLI::App& app, int& status);
+void add_advise(CLI::App& app, int& status);
 void add_figures(CLI::App& app, int& status);
 
 }  // namespace poinsot::app

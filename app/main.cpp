@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
   add_scale(app, status);
   add_reference(app, status);
   add_chart(app, status);
+  add_advise(app, status);
   add_figures(app, status);
 
   try {

@@ -1,5 +1,7 @@
 #include "app/natural_end.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -16,10 +18,12 @@ constexpr double kFirst = 1e-3, kLast = 1e3;  // s, ends tried, each four times 
 
 // The nearest of 1, 2, 3, 5 times a power of ten, by ratio.
 double rounded(double t) {
-  const double power = std::pow(10.0, std::floor(std::log10(t)));
-  double best = power;
-  for (const double factor : {2.0, 3.0, 5.0, 10.0})
-    if (std::abs(std::log(t / (factor * power))) < std::abs(std::log(t / best))) best = factor * power;
+  const int exponent = static_cast<int>(std::floor(std::log10(t)));
+  double best = 0;
+  for (const int factor : {1, 2, 3, 5, 10}) {
+    const double round = std::stod(fmt::format("{}e{}", factor, exponent));
+    if (best == 0 || std::abs(std::log(t / round)) < std::abs(std::log(t / best))) best = round;
+  }
   return best;
 }
 

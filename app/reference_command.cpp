@@ -47,7 +47,8 @@ void print_agreement(const Scene& scene, const Reference& r, const ReferenceSett
                                        r.of().formulation),
                            r.agreement));
   fmt::print("  {:<46}", "digits that agree");
-  for (const double d : r.agreement) fmt::print("{:>14.1f}", digits(d));
+  const std::size_t quantities = kQuantities.size() - r.motion.lambda.front().empty();  // no multipliers, no digits
+  for (std::size_t k = 0; k < quantities; ++k) fmt::print("{:>14.1f}", digits(r.agreement[k]));
   fmt::print("\n  given is {} in {} with rtol {:.0e}: {}\n", r.of().integrator, r.of().formulation, r.of().tight,
              r.independent ? "its two tolerances are least apart, and the other method confirms it"
                            : "no other method confirms it");

@@ -33,6 +33,11 @@ SweepPlan everything() {
   return plan;
 }
 
+bool refuses(const IntegratorEntry& integrator, std::string_view formulation) {
+  return std::any_of(integrator.refuses.begin(), integrator.refuses.end(),
+                     [&](const Refusal& refusal) { return refusal.formulation == formulation; });
+}
+
 Sweep::Sweep(const Scene& scene, double end, const Reference& reference)
     : scene_(scene),
       reference_(reference),
@@ -42,33 +47,42 @@ Sweep::Sweep(const Scene& scene, double end, const Reference& reference)
       kinetic_energy_(kinetic_energy(reference.motion, model_)),
       conservative_(conserves_energy(model_) && kinetic_energy_ > 0) {}
 
+Case Sweep::make_case(const std::string& formulation, const IntegratorEntry& integrator, int steps, double rtol) const {
+  Settings settings;
+  settings.analysis = integrator.analysis;
+  settings.reactions = true;
+  settings.formulation = formulation;
+  settings.integrator = integrator.name;
+  settings.end = end_;
+  settings.every = end_ / kOutputs;
+  if (integrator.controls_error) {
+    settings.rtol = rtol;
+    settings.atol = std::stod(fmt::format("{:.3g}", rtol / 100));  // as one would write it
+  } else {
+    settings.step = end_ / steps;
+    // Newton stops where a correction is small beside the accelerations of the motion, by four digits or five: more
+    // does not change the errors of any method. In kinematics it is the error.
+    const double small =
+        integrator.analysis == Analysis::kinematics ? 1e-6 * sizes_.length : 1e-4 * sizes_.acceleration;
+    settings.tolerance = std::stod(fmt::format("1e{}", std::floor(std::log10(small))));
+  }
+  return {settings, 0};
+}
+
 std::vector<std::vector<Case>> Sweep::cases(const SweepPlan& plan) const {
-  // Newton stops where a correction is small beside the accelerations of the motion, by four digits or five: more does
-  // not change the errors of any method.
-  const double tolerance = std::pow(10, std::floor(std::log10(1e-4 * sizes_.acceleration)));
   std::vector<std::vector<Case>> levels(std::max(plan.steps.size(), plan.tolerances.size()));
   for (std::size_t level = 0; level < levels.size(); ++level) {
-    for (const std::string& integrator : plan.integrators) {
-      const IntegratorEntry& entry = *find_integrator(integrator);
-      if (level >= (entry.controls_error ? plan.tolerances.size() : plan.steps.size())) continue;
+    for (const std::string& name : plan.integrators) {
+      const IntegratorEntry& integrator = *find_integrator(name);
+      if (level >= (integrator.controls_error ? plan.tolerances.size() : plan.steps.size())) continue;
       for (const std::string& formulation : plan.formulations) {
-        const auto refused = [&](const Refusal& refusal) { return refusal.formulation == formulation; };
-        if (std::any_of(entry.refuses.begin(), entry.refuses.end(), refused)) continue;
+        if (refuses(integrator, formulation)) continue;
         for (const std::string& linear_solver : plan.linear_solvers) {
-          Settings settings;
-          settings.formulation = formulation;
-          settings.integrator = integrator;
-          settings.linear_solver = linear_solver;
-          settings.end = end_;
-          settings.every = end_ / kOutputs;
-          if (entry.controls_error) {
-            settings.rtol = plan.tolerances[level];
-            settings.atol = settings.rtol / 100;
-          } else {
-            settings.step = end_ / plan.steps[level];
-            settings.tolerance = tolerance;
-          }
-          levels[level].push_back({settings, static_cast<int>(level)});
+          Case one = make_case(formulation, integrator, integrator.controls_error ? 1 : plan.steps[level],
+                               integrator.controls_error ? plan.tolerances[level] : 0);
+          one.settings.linear_solver = linear_solver;
+          one.level = static_cast<int>(level);
+          levels[level].push_back(one);
         }
       }
     }
@@ -89,6 +103,7 @@ Measured Sweep::compare(const Case& one) const {
     return measured;
   }
   measured.error = difference(run.motion, reference_.motion, sizes_, model_);
+  if (model_.rows.empty()) measured.error.back() = std::numeric_limits<double>::quiet_NaN();
   measured.violation_position = s.violation.position;
   measured.violation_velocity = s.violation.velocity;
   measured.energy_drift = conservative_ ? run.energy_drift / kinetic_energy_ : std::numeric_limits<double>::quiet_NaN();

@@ -24,7 +24,7 @@ struct Case {
 
 struct Measured {
   std::string status = "ok";  // or why there are no figures
-  PerQuantity error{};
+  PerQuantity error{};        // multipliers: not a number where the scene has none
   double violation_position = 0, violation_velocity = 0;
   double energy_drift = 0;  // relative to the largest kinetic energy; not a number where the scene's energy changes
   std::int64_t steps = 0, newton_iterations = 0, factorizations = 0;
@@ -44,11 +44,14 @@ inline const std::string kUsualSolver = Settings{}.linear_solver;
 
 // All there is.
 SweepPlan everything();
+bool refuses(const IntegratorEntry& integrator, std::string_view formulation);
 
 class Sweep {
  public:
   Sweep(const Scene& scene, double end, const Reference& reference);
 
+  // `steps` over the whole time, or `rtol`, whichever the integrator goes by.
+  Case make_case(const std::string& formulation, const IntegratorEntry& integrator, int steps, double rtol) const;
   // By level. Formulations an integrator refuses are left out.
   std::vector<std::vector<Case>> cases(const SweepPlan& plan) const;
   // The first run.
@@ -72,6 +75,6 @@ class Sweep {
 // Whether each point (error, seconds) is on the front of a chart: none is better in one and at least as good in the
 // other. Errors below `floor`, which the reference cannot tell apart, are equal; errors above kUseless do not count.
 std::vector<bool> front(const std::vector<double>& errors, const std::vector<double>& seconds, double floor);
-inline constexpr double kUseless = 0.1;
+inline constexpr double kUseless = 0.01;
 
 }  // namespace poinsot::app

@@ -9,6 +9,9 @@ PANELS = [("position", "error in position"), ("velocity", "error in velocity"),
           ("violation_position", "violation of the constraints, position"),
           ("acceleration", "error in acceleration"), ("multiplier", "error in multipliers"),
           ("energy_drift", "energy drift, of the largest kinetic energy")]
+NONE = {column: "every one is 0 or nothing was computed" for column, _ in PANELS}
+NONE["multiplier"] = "the scene has no constraints"
+NONE["energy_drift"] = "the scene's energy changes"
 FORMULATIONS = {"rA": "o", "rp": "s", "reps": "^"}
 
 
@@ -39,6 +42,11 @@ def panel(axes, rows, column, title, colours, solvers, styles):
             axes.plot([float(row[column]) for row in best], [1e3 * float(row["seconds"]) for row in best], "", ls="",
                       color=colour, marker=marker, markersize=6.5, zorder=5)
             leaders += [(float(row["seconds"]), method(row, solvers)) for row in best]
+    if not axes.lines:
+        axes.set_axis_off()
+        axes.text(0.5, 0.5, f"no {title}:\n{NONE[column]}", ha="center", va="center", fontsize=9,
+                  color="#555555", transform=axes.transAxes)
+        return
     axes.set(xscale="log", yscale="log", xlabel=title, ylabel="time, ms")
     axes.invert_xaxis()
     if column in QUANTITIES and axes.get_xlim()[0] > 3:
@@ -58,7 +66,7 @@ def draw(rows, notes):
     figure, axes = pyplot.subplots(2, 3, figsize=(15, 9.6))
     for axis, (column, title) in zip(axes.flat, PANELS):
         panel(axis, rows, column, title, colours, solvers, styles)
-        if plotting.number(resolved.get(column, "")):
+        if axis.lines and plotting.number(resolved.get(column, "")):
             axis.axvline(float(resolved[column]), color="#555555", linewidth=0.9, linestyle="--")
 
     leading = {row["integrator"] for row in rows if any(row[f"front_{q}"] == "1" for q in QUANTITIES)}

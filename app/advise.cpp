@@ -1,0 +1,177 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "app/calibration.h"
+#include "app/commands.h"
+#include "app/measure.h"
+#include "app/name_list.h"
+#include "app/natural_end.h"
+#include "app/scene_waste.h"
+#include "app/terminal.h"
+#include "core/expression.h"
+#include "core/input_error.h"
+#include "core/scene_reader.h"
+#include "integrators/initial_state.h"
+#include "integrators/rank.h"
+
+namespace poinsot::app {
+namespace {
+
+constexpr std::size_t kListed = 6;  // further methods that reach the accuracy, and that do not
+
+struct Options {
+  std::string scene, end, of = "position", accuracy = "1e-6", cache = user_cache().string();
+};
+
+Asked asked(const Options& options) {
+  Asked result;
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(
+        fmt::format("--accuracy: found \"{}\"{}, expected a number between 0 and {}", options.accuracy, why, kUseless));
+  };
+  try {
+    result.accuracy = Expression::parse_constant(options.accuracy).at(0.0).f;
+  } catch (const ExpressionError& error) {
+    refuse(fmt::format(" ({})", error.what()));
+  }
+  if (!(result.accuracy > 0 && result.accuracy <= kUseless)) refuse("");
+  const auto number = [](std::string_view name) {
+    return static_cast<std::size_t>(std::find(kQuantities.begin(), kQuantities.end(), name) - kQuantities.begin());
+  };
+  for (std::size_t begin = 0; begin <= options.of.size();) {
+    const std::size_t end = std::min(options.of.find(',', begin), options.of.size());
+    const std::string name = options.of.substr(begin, end - begin);
+    if (number(name) == kQuantities.size())
+      throw InputError(fmt::format("--of: found \"{}\", expected one or more of {}, with commas between", name,
+                                   fmt::join(kQuantities, ", ")));
+    result.quantities.push_back(number(name));
+    begin = end + 1;
+  }
+  return result;
+}
+
+bool without_freedom(const Scene& scene) {
+  const auto model = std::make_shared<const Model>(compile(scene));
+  const auto pfaffian = [](const Row& row) { return row.type == RowType::pfaffian; };
+  return std::none_of(model->rows.begin(), model->rows.end(), pfaffian) &&
+         analyze_rank(model, given_state(*model)).degrees_of_freedom() == 0;
+}
+
+// As a shell takes it for one word.
+std::string shell_word(const std::string& text) {
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || std::string_view("/._-+,=").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string command_line(const std::string& scene, const Case& one) {
+  const Settings& s = one.settings;
+  std::string line = fmt::format("poinsot run {} --formulation {}", shell_word(scene), s.formulation);
+  line += s.analysis == Analysis::kinematics ? " --analysis kinematics" : fmt::format(" --integrator {}", s.integrator);
+  line += fmt::format(" --linear-solver {}", s.linear_solver);
+  if (one.parameter() == "rtol")
+    line += fmt::format(" --rtol {} --atol {}", s.rtol, s.atol);
+  else
+    line += fmt::format(" --step {}/{} --tolerance {}", s.end, std::llround(s.end / s.step), s.tolerance);
+  return line + fmt::format(" --end {} --every {}/{}", s.end, s.end, kOutputs);
+}
+
+std::string parameter_text(const Case& one) {
+  return one.parameter() == "rtol" ? fmt::format("rtol {:g}", one.value()) : fmt::format("h = {:.3g} s", one.value());
+}
+
+std::string row(const Candidate& c) {
+  std::string text =
+      fmt::format("  {:<34} {:<16} {:>10.3g}", c.one.method(), parameter_text(c.one), 1e3 * c.measured.seconds);
+  for (const double e : c.measured.error)
+    text += std::isfinite(e) ? fmt::format(" {:>12.2g}", e) : fmt::format(" {:>12}", "-");
+  return text + "\n";
+}
+
+void print_table(const std::string& title, std::span<const Candidate> candidates) {
+  fmt::print("\n{:<52} {:>10}", title, "time, ms");
+  for (const auto quantity : kQuantities) fmt::print(" {:>12}", quantity);
+  fmt::print("\n");
+  for (const Candidate& c : candidates.first(std::min(kListed, candidates.size()))) fmt::print("{}", row(c));
+}
+
+void print_advice(const Options& options, const Scene& scene, const Asked& asked, const Reference& r,
+                  const Calibration& found) {
+  std::vector<std::string_view> of;
+  for (const std::size_t quantity : asked.quantities) of.push_back(kQuantities[quantity]);
+  const Candidate& best = found.reaching.empty() ? found.others.front() : found.reaching.front();
+  const std::string wanted =
+      fmt::format("{:g} in {} to t = {:g} s", asked.accuracy, fmt::join(of, ", "), best.one.settings.end);
+  fmt::print("{}: ", scene.name);
+  if (found.reaching.empty())
+    fmt::print("nothing reaches {}; the most accurate was {}, {}\n", wanted, best.one.method(),
+               parameter_text(best.one));
+  else
+    fmt::print("{} costs least with {}, {}: {:.3g} ms\n", wanted, best.one.method(), parameter_text(best.one),
+               1e3 * best.measured.seconds);
+  fmt::print("\n  {}\n", command_line(options.scene, best.one));
+
+  if (!found.reaching.empty()) print_table("errors of what reaches it, the cheapest of each method", found.reaching);
+  if (!found.others.empty()) print_table("not reached, or only at many times the cost", found.others);
+  fmt::print("  {:<62}", "resolved by the reference");
+  for (const double d : r.agreement) fmt::print(" {:>12.2g}", d);
+  fmt::print(
+      "\n\nerrors: largest over {} times, relative to the motion; reference: {} in {}, rtol {:g}; time: of the "
+      "steps, {}\n",
+      kOutputs, r.of().integrator, r.of().formulation, r.of().tight, "on this machine");
+  for (const std::string& sentence : scene_waste(scene, r.motion))
+    fmt::print("costs without mattering: {}\n", sentence);
+}
+
+int advise(const Options& options) {
+  const Asked what = asked(options);
+  const Scene scene = read_scene(options.scene);
+  const double end = end_time(options.end, scene);
+  pin_to_one_core();
+  std::vector<std::string> notices;
+  const Reference r = reference(scene, {end, end / kOutputs}, Cache(options.cache), notices);
+  for (const std::string& notice : notices) print_notice(notice);
+  if (r.given < 0) {
+    print_error(fmt::format("nothing can be checked: {}", why_none(r)));
+    return kNumericsFailed;
+  }
+  for (const std::size_t quantity : what.quantities)
+    if (r.agreement[quantity] > what.accuracy)
+      print_notice(fmt::format("{:g} cannot be checked: in {} the reference resolves {:.2g}", what.accuracy,
+                               kQuantities[quantity], r.agreement[quantity]));
+  const Calibration found = calibrate(Sweep(scene, end, r), r, what, without_freedom(scene));
+  print_advice(options, scene, what, r, found);
+  return found.reaching.empty() ? kNumericsFailed : kDone;
+}
+
+}  // namespace
+
+void add_advise(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("advise", "find the cheapest way to an accuracy on a scene, by trying");
+  const auto options = std::make_shared<Options>();
+  command->add_option("scene", options->scene, "scene file")->required()->type_name("SCENE");
+  command
+      ->add_option("--accuracy", options->accuracy,
+                   fmt::format("largest error, relative to the motion (default {})", options->accuracy))
+      ->type_name("X");
+  command
+      ->add_option("--of", options->of,
+                   fmt::format("what must be so accurate, with commas between: {} (default {})",
+                               fmt::join(kQuantities, ", "), options->of))
+      ->type_name("NAMES");
+  command->add_option("--end", options->end, fmt::format("end time, s (default: {})", kNaturalEnd))->type_name("X");
+  command->add_option("--cache", options->cache, "folder where references are kept (default $XDG_CACHE_HOME/poinsot)")
+      ->type_name("DIR");
+  command->footer("Everything named has been run on this scene and compared with a reference (`poinsot reference`).");
+  command->callback([options, &status] { status = advise(*options); });
+}
+
+}  // namespace poinsot::app
