@@ -25,8 +25,8 @@ constexpr Mechanism kMechanisms[] = {{"single_pendulum", "single pendulum", true
                                      {"slider_crank", "slider crank", true, 3},
                                      {"four_link", "four link", true, 3},
                                      {"double_pendulum", "double pendulum, set off", false, 1}};
-// The double pendulum is set off with this, projected onto its constraints: from rest the velocity errors of symplectic
-// Euler cancel to second order.
+// The double pendulum is set off with this, projected onto its constraints: from rest the velocity errors of
+// half-implicit Euler cancel to second order.
 constexpr double kSpin = 1;  // rad/s about the body's z axis, the hinges'
 
 constexpr double kEvery = 0.1;       // s between the instants compared; a multiple of every step

@@ -30,7 +30,9 @@ constexpr IntegratorEntry kIntegrators[] = {
      make_dop853,
      {},
      true},
-    {"half_implicit", "symplectic Euler with the constraints at the new position: first order, fixed step",
+    {"half_implicit",
+     "half-implicit Euler with the constraints at the new position: first order, fixed step; symplectic in plane "
+     "motion",
      Analysis::dynamics, 1, make_half_implicit},
     {"rattle",
      "second order, fixed step, constraints kept in positions and velocities; symplectic in rA and rp: for long runs",
