@@ -9,6 +9,7 @@ PANELS = [("position", "error in position"), ("velocity", "error in velocity"),
           ("violation_position", "violation of the constraints, position"),
           ("acceleration", "error in acceleration"), ("multiplier", "error in multipliers"),
           ("energy_drift", "energy drift, of the largest kinetic energy")]
+STYLES = ["-", "--", ":", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 3)), (0, (1, 3)), (0, (3, 1))]  # linear solvers
 NONE = {column: "every one is 0 or nothing was computed" for column, _ in PANELS}
 NONE["multiplier"] = "the scene has no constraints"
 NONE["energy_drift"] = "the scene's energy changes"
@@ -35,7 +36,7 @@ def panel(axes, rows, column, title, colours, solvers, styles):
             continue
         x, y = [float(row[column]) for row in points], [1e3 * float(row["seconds"]) for row in points]
         colour, marker = colours[name[0]], FORMULATIONS.get(name[1], "D")
-        axes.plot(x, y, styles[name[2]], color=colour, marker=marker, markersize=3.5, linewidth=0.9, alpha=0.55,
+        axes.plot(x, y, linestyle=styles[name[2]], color=colour, marker=marker, markersize=3.5, linewidth=0.9, alpha=0.6,
                   markerfacecolor="white", markeredgewidth=0.8)
         if column in QUANTITIES:
             best = [row for row in points if row[f"front_{column}"] == "1"]
@@ -61,8 +62,8 @@ def draw(rows, notes):
     resolved = next((row for row in rows if row["status"] == "reference"), {})
     rows = [row for row in rows if row["status"] == "ok"]
     integrators, solvers = in_order(rows, "integrator"), in_order(rows, "linear_solver")
-    colours = dict(zip(integrators, plotting.COLOURS * 2))
-    styles = dict(zip(solvers, ["-", "--", ":", "-.", "-"]))
+    colours = dict(zip(integrators, plotting.COLOURS * 3))
+    styles = dict(zip(solvers, STYLES * 2))
     figure, axes = pyplot.subplots(2, 3, figsize=(15, 9.6))
     for axis, (column, title) in zip(axes.flat, PANELS):
         panel(axis, rows, column, title, colours, solvers, styles)
