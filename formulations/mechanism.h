@@ -10,7 +10,7 @@
 
 #include "formulations/forces.h"
 #include "formulations/problem.h"
-#include "formulations/rows.h"
+#include "formulations/rate_rows.h"
 
 namespace poinsot {
 
@@ -103,18 +103,8 @@ class Mechanism {
   void residual(const T* a, const T* lambda, T* out, const StepScale* scale, T* rows) {
     for (auto& w : wrench_) w = Wrench<F, T>();
     const T by = scale ? T(1.0 / scale->position) : T(0);
-    const auto react = [&](const Gradient& g, auto has_r, const T& l) {
-      if (g.i != kGround) {
-        wrench_[index(g.i)].e += l * g.ei;
-        if constexpr (has_r) wrench_[index(g.i)].f -= l * g.g;
-      }
-      if (g.j != kGround) {
-        wrench_[index(g.j)].e += l * g.ej;
-        if constexpr (has_r) wrench_[index(g.j)].f += l * g.g;
-      }
-    };
     Rows<F, T>::scalar(c, [&](const Gradient& g, auto has_r, const T& Phi) {
-      react(g, has_r, lambda[g.row]);
+      react<decltype(has_r)::value>(g, lambda[g.row]);
       if (rows) rows[g.row] = by * Phi;
     });
     for (const CoincidenceRows& k : c.elements->coincidences) {
@@ -130,7 +120,7 @@ class Mechanism {
       if (rows) Eigen::Map<Vec3<T>>{rows + k.row} = by * c.span(k.i, k.j, k.p, k.q);
     }
     Rows<F, T>::velocity(c, [&](const Gradient& g, auto has_r, const T& psi) {
-      react(g, has_r, lambda[g.row]);
+      react<decltype(has_r)::value>(g, lambda[g.row]);
       if (rows) rows[g.row] = psi / T(scale->velocity);
     });
     if (rows) normalization_residual(by, rows);
@@ -149,13 +139,25 @@ class Mechanism {
     }
   }
 
+  // Gᵀλ
+  void constraint_forces(const T* lambda, T* out) {
+    for (auto& w : wrench_) w = Wrench<F, T>();
+    const auto add = [&](const Gradient& g, auto has_r, const T&) { react<decltype(has_r)::value>(g, lambda[g.row]); };
+    Rows<F, T>::holonomic(c, add);
+    Rows<F, T>::velocity(c, add);
+    for (int b = 0; b < nb(); ++b) {
+      Eigen::Map<Vec3<T>>(out + b * kV) = wrench_[index(b)].f;
+      X x = c.at[index(b)].W().transpose() * wrench_[index(b)].e;
+      if constexpr (F::normalized) x += lambda[c.elements->rows + b] * p(b);
+      Eigen::Map<X>(out + b * kV + 3) = x;
+    }
+  }
+
   // See Problem::assemble. The sink takes block(row, col, matrix) calls; an empty dq (null) means T = I.
   template <class Sink>
   void write_matrix(MatrixKind kind, const StepScale& scale, const T* dq, const T* a, const T* lambda, Sink&& sink) {
-    if (kind == MatrixKind::kinematic) {
-      gradients(sink, 0, false);
-      return;
-    }
+    if (kind == MatrixKind::kinematic) return gradients(sink, 0, false);
+    if (kind == MatrixKind::rates) return rates(sink);
     const bool newton = kind == MatrixKind::simplified || kind == MatrixKind::exact;
     const bool exact = kind == MatrixKind::exact;
     tangents(dq);
@@ -227,6 +229,19 @@ class Mechanism {
   static bool damped(const Elements& e) {
     return std::any_of(e.springs.begin(), e.springs.end(), [](const SpringElement& k) { return k.damping != 0; }) ||
            std::any_of(e.torsions.begin(), e.torsions.end(), [](const TorsionRow& k) { return k.damping != 0; });
+  }
+
+  // Adds a row's force l on its two bodies.
+  template <bool has_r>
+  void react(const Gradient& g, const T& l) {
+    if (g.i != kGround) {
+      wrench_[index(g.i)].e += l * g.ei;
+      if constexpr (has_r) wrench_[index(g.i)].f -= l * g.g;
+    }
+    if (g.j != kGround) {
+      wrench_[index(g.j)].e += l * g.ej;
+      if constexpr (has_r) wrench_[index(g.j)].f += l * g.g;
+    }
   }
 
   void normalization_residual(const T& by, T* out) const {
@@ -369,29 +384,45 @@ class Mechanism {
   template <class Sink>
   void velocity_rows(const StepScale& scale, Sink&& sink) {
     const T by = T(scale.position / scale.velocity);
-    for (const PfaffianRow& k : c.elements->pfaffian) {
-      const Vec3<T>& a = c.s[index(k.a)];
-      const Vec3<T> d_dot = c.span_rate(k.i, k.j, k.p, k.q);
-      const auto add = [&](int body, int point, int sign) {
-        if (body == kGround) return;
-        const auto& at = c.at[index(body)];
-        const auto s_dot_variation = [&](int marker) {
-          const Vec3<T> bar = c.elements->markers[index(marker)].s_bar.template cast<T>();
-          return F::s_dot_variation(at, c.rate[index(body)], c.xd(c.v, body), bar);
-        };
-        Eigen::Matrix<T, 1, F::m> row = T(sign) * by * (a.transpose() * s_dot_variation(point));
-        if (sign > 0) row += by * (at.W().transpose() * C::Et_times(a, d_dot)).transpose();
-        if constexpr (F::lie_group) {
-          if (!T_inverse_.empty()) {
-            const Eigen::Matrix<T, 1, F::m> psi =
-                (T(sign) * (at.W().transpose() * C::Et_times(c.s[index(point)], a))).transpose();
-            row += psi * T_inverse_[index(body)] - psi;
-          }
+    const auto write = [&](int row, int body, const X& variation, const Vec3<T>& point, const Vec3<T>& direction) {
+      if (body == kGround) return;
+      X x = by * variation;
+      if constexpr (F::lie_group) {
+        if (!T_inverse_.empty()) {
+          const X psi = c.at[index(body)].W().transpose() * C::Et_times(point, direction);
+          x += T_inverse_[index(body)].transpose() * psi - psi;
         }
-        sink.block(nv() + k.row, body * kV + 3, row);
+      }
+      sink.block(nv() + row, body * kV + 3, Eigen::Matrix<T, 1, F::m>(x.transpose()));
+    };
+    auto k = c.elements->pfaffian.begin();
+    RateRows<F, T>::velocity(c, [&](const auto& variation, auto) {
+      const Vec3<T>& a = c.s[index(k->a)];
+      write(k->row, k->i, variation.xi, c.s[index(k->p)], -a);
+      write(k->row, k->j, variation.xj, c.s[index(k->q)], a);
+      ++k;
+    });
+  }
+
+  // ∂(G v − ν)/∂q
+  template <class Sink>
+  void rates(Sink&& sink) {
+    c.compute_s_dot();
+    const auto write = [&](const auto& variation, auto has_r) {
+      const auto on = [&](int body, const Vec3<T>& g, const X& x) {
+        if (body == kGround) return;
+        if constexpr (has_r) sink.block(variation.row, body * kV, Eigen::Matrix<T, 1, 3>(g.transpose()));
+        sink.block(variation.row, body * kV + 3, Eigen::Matrix<T, 1, F::m>(x.transpose()));
       };
-      add(k.i, k.p, -1);
-      add(k.j, k.q, 1);
+      on(variation.i, -variation.g, variation.xi);
+      on(variation.j, variation.g, variation.xj);
+    };
+    RateRows<F, T>::holonomic(c, write);
+    RateRows<F, T>::velocity(c, write);
+    if constexpr (F::normalized) {
+      for (int b = 0; b < nb(); ++b) {
+        sink.block(c.elements->rows + b, b * kV + 3, Eigen::Matrix<T, 1, F::m>(coordinates(c.xd(c.v, b)).transpose()));
+      }
     }
   }
 

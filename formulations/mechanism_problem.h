@@ -100,6 +100,10 @@ class MechanismProblem final : public Problem {
     expect(v_in, nv_), expect(out, nv_);
     mechanism_.momentum(v_in.data(), out.data());
   }
+  void constraint_forces(std::span<const double> lambda, std::span<double> out) override {
+    expect(lambda, nc_), expect(out, nv_);
+    mechanism_.constraint_forces(lambda.data(), out.data());
+  }
   void equations_of_motion(std::span<const double> a, std::span<const double> lambda, std::span<double> out) override {
     expect(a, nv_), expect(lambda, nc_), expect(out, nv_);
     mechanism_.residual(a.data(), lambda.data(), out.data(), nullptr, nullptr);
@@ -116,7 +120,8 @@ class MechanismProblem final : public Problem {
     scratch.set_position(0, zeros.data());
     scratch.set_velocity(zeros.data());
     Pattern pattern;
-    pattern.n = kind == MatrixKind::kinematic ? std::max(nv_, nc_) : nv_ + nc_;
+    const bool rows_only = kind == MatrixKind::kinematic || kind == MatrixKind::rates;
+    pattern.n = rows_only ? std::max(nv_, nc_) : nv_ + nc_;
     Recorder recorder{pattern.blocks};
     scratch.write_matrix(kind, {1, 1, 1}, nullptr, zeros.data(), zeros.data(), recorder);
     for (int k = 0; k < pattern.n; ++k) pattern.node.push_back(node_of(k));

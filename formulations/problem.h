@@ -29,6 +29,7 @@ namespace poinsot {
 
 enum class MatrixKind {
   kinematic,   // G, nc × nv: square for a mechanism without degrees of freedom
+  rates,       // ∂(G v − ν)/∂q, nc × nv: how the velocity constraints vary with the position
   consistent,  // [M Gᵀ; G 0]: accelerations and multipliers of a state, mass-orthogonal projections
   simplified,  // the original study's Newton matrix: no variation of the reactions (nor, in rp and reps, of the
                // inertia)
@@ -75,6 +76,8 @@ class Problem {
   virtual void gamma(std::span<double> out) = 0;
   // M v at the position set: the momentum of any v, in the dual of the formulation's velocities.
   virtual void momentum(std::span<const double> v_in, std::span<double> out) const = 0;
+  // Gᵀλ.
+  virtual void constraint_forces(std::span<const double> lambda, std::span<double> out) = 0;
   // M a + Gᵀλ − Q.
   virtual void equations_of_motion(std::span<const double> a, std::span<const double> lambda,
                                    std::span<double> out) = 0;

@@ -276,6 +276,18 @@ class Rows {
     }
   }
 
+  // u of an angle row, and A_i ∂ū/∂t.
+  static Vec3<T> driven(const C& c, const AngleRow& k) {
+    using std::cos, std::sin;
+    const T& f = c.f[index(k.f)].f;
+    return cos(f) * c.s[index(k.b)] - sin(f) * c.s[index(k.a)];
+  }
+  static Vec3<T> driven_rate(const C& c, const AngleRow& k) {
+    using std::cos, std::sin;
+    const Jet2<T>& f = c.f[index(k.f)];
+    return -f.fd * (cos(f.f) * c.s[index(k.a)] + sin(f.f) * c.s[index(k.b)]);
+  }
+
  private:
   static std::size_t index(int k) { return static_cast<std::size_t>(k); }
 
@@ -288,17 +300,6 @@ class Rows {
   // Gradient of w·d at fixed w.
   static Gradient along(const RowBase& k, const Vec3<T>& p, const Vec3<T>& q, const Vec3<T>& w) {
     return {k.row, k.i, k.j, -C::Et_times(p, w), C::Et_times(q, w), w};
-  }
-  static Vec3<T> driven(const C& c, const AngleRow& k) {
-    using std::cos, std::sin;
-    const T& f = c.f[index(k.f)].f;
-    return cos(f) * c.s[index(k.b)] - sin(f) * c.s[index(k.a)];
-  }
-  // A_i ∂ū/∂t
-  static Vec3<T> driven_rate(const C& c, const AngleRow& k) {
-    using std::cos, std::sin;
-    const Jet2<T>& f = c.f[index(k.f)];
-    return -f.fd * (cos(f.f) * c.s[index(k.a)] + sin(f.f) * c.s[index(k.b)]);
   }
 };
 

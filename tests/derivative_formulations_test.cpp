@@ -319,11 +319,12 @@ TEST(Formulations, PatternsFitTheMatrix) {
   for (const FormulationEntry& entry : formulations()) {
     SCOPED_TRACE(entry.name);
     const auto problem = make_problem(entry.name, model);
-    for (MatrixKind kind : {MatrixKind::kinematic, MatrixKind::consistent, MatrixKind::simplified, MatrixKind::exact}) {
+    for (MatrixKind kind : {MatrixKind::kinematic, MatrixKind::rates, MatrixKind::consistent, MatrixKind::simplified,
+                            MatrixKind::exact}) {
       const Pattern pattern = problem->pattern(kind);
+      const bool rows_only = kind == MatrixKind::kinematic || kind == MatrixKind::rates;
       EXPECT_EQ(pattern.node.size(), static_cast<std::size_t>(pattern.n));
-      EXPECT_EQ(pattern.n,
-                kind == MatrixKind::kinematic ? std::max(problem->nv(), problem->nc()) : problem->nv() + problem->nc());
+      EXPECT_EQ(pattern.n, rows_only ? std::max(problem->nv(), problem->nc()) : problem->nv() + problem->nc());
       for (const Block& block : pattern.blocks) {
         EXPECT_TRUE(block.row >= 0 && block.col >= 0 && block.rows > 0 && block.cols > 0);
         EXPECT_TRUE(block.row + block.rows <= pattern.n && block.col + block.cols <= pattern.n);

@@ -23,7 +23,7 @@ class Derivatives : public DualFixture<F> {
   using typename Base::D;
   using typename Base::Duals;
 
-  // G = ∂Φ/∂q, ν = −∂Φ/∂t, γ from d/dt (G v − ν) = G a − γ.
+  // G = ∂Φ/∂q, ∂(G v − ν)/∂q, ν = −∂Φ/∂t, γ from d/dt (G v − ν) = G a − γ.
   static void check_rows(const Model& model, Random& random) {
     const auto problem = make_problem(F::name, model);
     Point at = random_point(random, *problem);
@@ -44,6 +44,10 @@ class Derivatives : public DualFixture<F> {
     const VectorX direction = random.vector(problem.nv());
     duals.stand(at.t, at.q, dual(none, direction), constant(at.v));
     EXPECT_LT(difference(holonomic(G * direction), duals.position_rate(), 1), kRounding) << "gradient";
+    const MatrixX rates = assemble(problem, MatrixKind::rates, {}, VectorX(), VectorX(), VectorX());
+    EXPECT_LT(difference(rates.topLeftCorner(problem.nc(), problem.nv()) * direction, duals.velocity_rate(), 1),
+              kRounding)
+        << "variation of the velocity constraints";
     duals.stand(at.t, at.q, constant(none), dual(at.v, direction));
     EXPECT_LT(difference(G * direction, duals.velocity_rate(), 1), kRounding) << "coefficients of the velocity";
 

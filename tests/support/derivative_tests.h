@@ -136,6 +136,9 @@ TYPED_TEST_P(Derivatives, OfTheConsistentSystem) {
     EXPECT_LT((matrix - matrix.transpose()).norm(), kRounding * matrix.norm());
     EXPECT_EQ((matrix.bottomLeftCorner(nc, nv) - gradient(*problem)).norm(), 0);
     EXPECT_EQ(matrix.bottomRightCorner(nc, nc).norm(), 0);
+    VectorX forces(nv);
+    problem->constraint_forces(view(at.lambda), view(forces));
+    EXPECT_LT(difference(forces, matrix.topRightCorner(nv, nc) * at.lambda, 1), kRounding);
     VectorX momentum(nv);
     problem->momentum(view(at.a), view(momentum));
     EXPECT_LT(difference(momentum, matrix.topLeftCorner(nv, nv) * at.a, 1), kRounding);
