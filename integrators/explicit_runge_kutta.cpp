@@ -9,6 +9,7 @@
 #include "integrators/explicit_stepper.h"
 #include "integrators/observe.h"
 #include "integrators/sample_times.h"
+#include "integrators/vectors.h"
 
 namespace poinsot {
 namespace {
@@ -29,9 +30,9 @@ class ExplicitRungeKutta final : public Integrator {
     PhaseClock clock;
     ExplicitStepper stepper(pair_, problem, solver, settings.rtol, settings.atol, statistics, clock);
     if (Status status = stepper.prepare(); !status.ok()) return status;
-    const auto give_out = [&](const ExplicitStepper::Point& at) {
+    const auto give_out = [&](const Point& at) {
       clock.lap(Phase::other);
-      sample(observe, problem, at.t, stepper.span(at.q), stepper.span(at.v), stepper.a(at), stepper.lambda(at),
+      sample(observe, problem, at.t, span(at.q), span(at.v), stepper.points().a(at), stepper.points().lambda(at),
              statistics);
       clock.skip();
     };
@@ -41,11 +42,7 @@ class ExplicitRungeKutta final : public Integrator {
     Status status = integrate(stepper, settings, give_out, statistics);
     finish(clock, statistics);
 
-    const ExplicitStepper::Point& at = stepper.state();
-    state.q.assign(at.q.begin(), at.q.end());
-    state.v.assign(at.v.begin(), at.v.end());
-    std::ranges::copy(stepper.a(at), state.a.begin());
-    std::ranges::copy(stepper.lambda(at), state.lambda.begin());
+    stepper.points().give(stepper.state(), state);
     return status;
   }
 

@@ -1,22 +1,12 @@
 #include "integrators/explicit_stepper.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "integrators/vectors.h"
+
 namespace poinsot {
 namespace {
-
-constexpr int kCorrections = 6;
-constexpr double kRounding = 1e-15;    // product of two corrections that leaves nothing to correct
-constexpr double kNegligible = 1e-14;  // a correction of this size is the rounding of the coordinates
-
-double largest(std::span<const double> x) {
-  double m = 0;
-  for (double e : x) m = std::isfinite(e) ? std::max(m, std::abs(e)) : HUGE_VAL;
-  return m;
-}
 
 Eigen::Index columns(const RungeKuttaPair& pair) {
   return static_cast<Eigen::Index>(pair.stages.size() + 1 + pair.dense_stages.size());
@@ -28,48 +18,32 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
                                  double atol, Statistics& statistics, PhaseClock& clock)
     : pair_(pair),
       problem_(problem),
-      system_(problem, solver, MatrixKind::consistent, statistics, clock),
+      points_(problem, solver, statistics, clock),
       rtol_(rtol),
       atol_(atol),
       nv_(static_cast<std::size_t>(problem.nv())),
-      nc_(static_cast<std::size_t>(problem.nc())),
       last_(static_cast<Eigen::Index>(pair.stages.size())),
       error_needs_last_(std::ranges::any_of(pair.error, [&](const Term& term) { return term.stage == last_; })) {
-  const Eigen::Index nq = problem.nq(), nv = problem.nv(), nc = problem.nc();
-  for (Point* point : {&state_, &next_, &sample_}) {
-    point->q.setZero(nq);
-    point->v.setZero(nv);
-    point->z.setZero(nv + nc);
-  }
-  for (Vector* x : {&q_n_, &q_moved_}) x->setZero(nq);
+  const Eigen::Index nv = problem.nv();
+  for (Point* point : {&state_, &next_, &sample_}) *point = points_.make();
+  q_n_.setZero(problem.nq());
   for (Vector* x : {&y_n_, &y_, &sizes_, &sizes_next_, &scale_, &combined_}) x->setZero(2 * nv);
-  for (Vector* x : {&rhs_, &zeros_}) x->setZero(nv + nc);
-  rows_.setZero(nc);
   k_.setZero(2 * nv, columns(pair));
   r_.setZero(2 * nv, static_cast<Eigen::Index>(3 + pair.dense.size()));
 }
 
 void ExplicitStepper::start(double t, const State& state) {
-  state_.t = t;
-  std::ranges::copy(state.q, state_.q.begin());
-  std::ranges::copy(state.v, state_.v.begin());
-  std::ranges::copy(state.a, state_.z.begin());
-  std::ranges::copy(state.lambda, state_.z.begin() + problem_.nv());
+  state_ = points_.make(t, state);
   elsewhere_ = true;
   settle();
 }
 
-void ExplicitStepper::stand(double t, const Vector& q, const Vector& v) {
-  problem_.set_position(t, span(q));
-  problem_.set_velocity(span(v));
-}
-
 void ExplicitStepper::settle() {
   if (elsewhere_ || problem_.has_discrete_state()) {
-    stand(state_.t, state_.q, state_.v);
+    points_.stand(state_);
     if (problem_.has_discrete_state() &&
         problem_.accept(state_.t, span(state_.q), span(state_.v), span(state_.z).first(nv_))) {
-      stand(state_.t, state_.q, state_.v);
+      points_.stand(state_);
     }
   }
   elsewhere_ = false;
@@ -93,27 +67,16 @@ Status ExplicitStepper::evaluate(Point& at, const Vector& y, Eigen::Index k) {
   const Eigen::Index nv = problem_.nv();
   at.v = y.tail(nv);
   problem_.retract(span(q_n_), span(y).first(nv_), span(at.q));
-  if (Status status = accelerations(at); !status.ok()) return status;
+  if (Status status = points_.accelerations(at); !status.ok()) return status;
   if (project_stages_) {
     bool moved = false;
-    if (Status status = project(at, moved); !status.ok()) return status;
-    if (Status status = accelerations(at); !status.ok()) return status;
+    if (Status status = points_.project(at, moved); !status.ok()) return status;
+    if (Status status = points_.accelerations(at); !status.ok()) return status;
   }
   k_.col(k).head(nv) = at.v;
   problem_.lower(span(y).first(nv_), {k_.col(k).data(), nv_});
   k_.col(k).tail(nv) = at.z.head(nv);
   return {};
-}
-
-Status ExplicitStepper::accelerations(Point& at) {
-  stand(at.t, at.q, at.v);
-  if (Status status = system_.refresh(at.t, {}, {}, span(zeros_).first(nv_), span(zeros_).subspan(nv_)); !status.ok()) {
-    return status;
-  }
-  problem_.equations_of_motion(span(zeros_).first(nv_), span(zeros_).subspan(nv_), span(at.z).first(nv_));
-  at.z.head(problem_.nv()) = -at.z.head(problem_.nv());
-  problem_.gamma(span(at.z).subspan(nv_));
-  return system_.solve(at.t, span(at.z));
 }
 
 Status ExplicitStepper::first_step(double end, double& h) {
@@ -176,66 +139,12 @@ Status ExplicitStepper::complete() {
     if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
   }
   bool moved = false;
-  if (Status status = project(next_, moved); !status.ok()) return status;
+  if (Status status = points_.project(next_, moved); !status.ok()) return status;
   if (moved) {
-    if (Status status = refine(next_); !status.ok()) return status;
+    if (Status status = points_.refine(next_); !status.ok()) return status;
   }
   std::swap(state_, next_);
   elsewhere_ = false;
-  return {};
-}
-
-// With the factorization at hand, which belongs to a point nearby.
-Status ExplicitStepper::project(Point& at, bool& moved) {
-  double first = 0, before = HUGE_VAL;
-  for (int k = 0;; ++k) {
-    rhs_.head(problem_.nv()).setZero();
-    problem_.position_residual(rows());
-    for (double& x : rows()) x = -x;
-    if (Status status = system_.solve(at.t, span(rhs_)); !status.ok()) return status;
-    const double correction = largest(rates());
-    if (k == 0 && correction <= kNegligible) break;
-    if (k == kCorrections || !(correction < before)) {
-      return {
-          Failure::inconsistent_state, at.t,
-          fmt::format("at t = {:.9g} s the step leads too far from the constraints to be projected onto them", at.t)};
-    }
-    problem_.retract(span(at.q), rates(), span(q_moved_));
-    at.q.swap(q_moved_);
-    stand(at.t, at.q, at.v);
-    moved = true;
-    first = std::max(first, correction);
-    if (first * correction <= kRounding) break;
-    before = correction;
-  }
-  for (int k = 0; k < kCorrections; ++k) {
-    rhs_.head(problem_.nv()).setZero();
-    problem_.velocity_residual(rows());
-    for (double& x : rows()) x = -x;
-    if (Status status = system_.solve(at.t, span(rhs_)); !status.ok()) return status;
-    const double correction = largest(rates());
-    if (correction <= kNegligible * std::max(1.0, largest(span(at.v)))) break;
-    at.v += rhs_.head(problem_.nv());
-    problem_.set_velocity(span(at.v));
-    moved = true;
-    if (first * correction <= kRounding) break;
-  }
-  return {};
-}
-
-// (a, λ) of the point the problem stands at, from those of a point nearby and its factorization.
-Status ExplicitStepper::refine(Point& at) {
-  const std::span<const double> a = this->a(at), lambda = this->lambda(at);
-  problem_.equations_of_motion(a, lambda, rates());
-  problem_.set_velocity(a);
-  problem_.velocity_residual(rows());  // G a − ν
-  problem_.set_velocity(span(at.v));
-  problem_.nu(span(rows_));
-  rhs_.tail(problem_.nc()) += rows_;
-  problem_.gamma(span(rows_));
-  rhs_.tail(problem_.nc()) -= rows_;
-  if (Status status = system_.solve(at.t, span(rhs_)); !status.ok()) return status;
-  at.z -= rhs_;
   return {};
 }
 
@@ -269,10 +178,7 @@ Status ExplicitStepper::interpolate(double t) {
   sample_.t = t;
   sample_.v = y_n_.tail(problem_.nv()) + combined_.tail(problem_.nv());
   problem_.retract(span(q_n_), std::span<const double>(span(combined_)).first(nv_), span(sample_.q));
-  if (Status status = accelerations(sample_); !status.ok()) return status;
-  bool moved = false;
-  if (Status status = project(sample_, moved); !status.ok()) return status;
-  return moved ? refine(sample_) : Status{};
+  return points_.complete(sample_);
 }
 
 }  // namespace poinsot

@@ -5,10 +5,8 @@
 //
 //   δq' = T(δq)⁻¹ v,   v' = a,   [M Gᵀ; G 0] [a; λ] = [Q; γ]:   one assembly, factorization and solve a stage
 //
-// f(y_{n+1}) is the first stage of the next step. Its factorization serves the projection onto Φ = 0 and G v = ν as
-// well (mass-orthogonal, simplified Newton: the violation has the size e of the local error, so one correction leaves
-// e²), and one step of iterative refinement makes a and λ belong to the projected state, again up to e². Neither costs
-// a stage or the order.
+// f(y_{n+1}) is the first stage of the next step. Its factorization serves the projection onto the constraints as well
+// (consistent_point.h), which costs neither a stage nor the order.
 //
 // Beside a singular position (where G loses rank, at a distance τ in time) a stage that is off the constraints by e has
 // accelerations wrong by e/τ, and error control would creep up to the point and never pass it. Accelerations of points
@@ -17,27 +15,21 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
 #include <vector>
 
-#include "integrators/integrator.h"
+#include "integrators/consistent_point.h"
 #include "integrators/runge_kutta_pair.h"
-#include "integrators/step_system.h"
 
 namespace poinsot {
 
 class ExplicitStepper {
  public:
   using Vector = Eigen::VectorXd;
-  struct Point {
-    double t = 0;
-    Vector q, v, z;  // z = (a, λ)
-  };
 
   ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, LinearSolver& solver, double rtol, double atol,
                   Statistics& statistics, PhaseClock& clock);
 
-  Status prepare() { return system_.prepare(); }
+  Status prepare() { return points_.prepare(); }
   // The state is consistent at t. The problem stands there afterwards.
   void start(double t, const State& state);
 
@@ -56,30 +48,20 @@ class ExplicitStepper {
 
   const Point& state() const { return state_; }
   const Point& interpolated() const { return sample_; }
-  std::span<const double> a(const Point& at) const { return span(at.z).first(nv_); }
-  std::span<const double> lambda(const Point& at) const { return span(at.z).subspan(nv_); }
-  static std::span<const double> span(const Vector& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
+  const ConsistentPoints& points() const { return points_; }
 
  private:
-  static std::span<double> span(Vector& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
-  std::span<double> rates() { return span(rhs_).first(nv_); }
-  std::span<double> rows() { return span(rhs_).subspan(nv_); }
-
   // y_n + h Σ weight k
   void advance(double h, Terms terms, Vector& y) const;
   double norm(Terms terms);
-  void stand(double t, const Vector& q, const Vector& v);
   Status evaluate(Point& at, const Vector& y, Eigen::Index k);
-  Status accelerations(Point& at);
-  Status project(Point& at, bool& moved);
-  Status refine(Point& at);
   Status prepare_dense();
 
   const RungeKuttaPair& pair_;
   Problem& problem_;
-  StepSystem system_;
+  ConsistentPoints points_;
   const double rtol_, atol_;
-  const std::size_t nv_, nc_;
+  const std::size_t nv_;
   const Eigen::Index last_;  // index of k_{s+1}
   const bool error_needs_last_;
   bool project_stages_ = false;
@@ -90,7 +72,7 @@ class ExplicitStepper {
   Eigen::MatrixXd k_, r_;
   double h_ = 0, t_n_ = 0;
   bool dense_ready_ = false, elsewhere_ = false;
-  Vector sizes_, sizes_next_, scale_, combined_, rhs_, zeros_, rows_, q_moved_;
+  Vector sizes_, sizes_next_, scale_, combined_;
 };
 
 }  // namespace poinsot

@@ -14,15 +14,9 @@
 #include "integrators/integrator.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/step_system.h"
+#include "integrators/vectors.h"
 
 namespace poinsot {
-
-inline std::span<double> span(Eigen::VectorXd& x) {
-  return {x.data(), static_cast<std::size_t>(x.size())};
-}
-inline std::span<double> span(Eigen::VectorXd& x, Eigen::Index first, Eigen::Index count) {
-  return {x.data() + first, static_cast<std::size_t>(count)};
-}
 
 class NewtonLoop {
  public:

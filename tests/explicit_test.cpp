@@ -13,6 +13,7 @@
 #include "integrators/explicit_stepper.h"
 #include "integrators/initial_state.h"
 #include "integrators/sample_times.h"
+#include "integrators/vectors.h"
 #include "tests/support/allocations.h"
 #include "tests/support/simulation.h"
 
@@ -163,11 +164,11 @@ struct Bench {
       check(stepper->complete().ok(), "the step can be projected");
       stepper->settle();
       if (4 * n % steps != 0) continue;
-      const ExplicitStepper::Point& at = stepper->state();
-      problem->set_position(at.t, stepper->span(at.q));
-      problem->set_velocity(stepper->span(at.v));
+      const poinsot::Point& at = stepper->state();
+      problem->set_position(at.t, span(at.q));
+      problem->set_velocity(span(at.v));
       quarters.push_back(
-          snapshot({at.t, *problem, stepper->span(at.q), stepper->span(at.v), stepper->a(at), stepper->lambda(at)}));
+          snapshot({at.t, *problem, span(at.q), span(at.v), stepper->points().a(at), stepper->points().lambda(at)}));
     }
     return quarters;
   }
