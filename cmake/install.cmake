@@ -22,7 +22,7 @@ configure_package_config_file(cmake/poinsotConfig.cmake.in ${PROJECT_BINARY_DIR}
                               INSTALL_DESTINATION ${poinsot_package})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/poinsotConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/poinsotConfig.cmake ${PROJECT_BINARY_DIR}/poinsotConfigVersion.cmake
-              cmake/suitesparse.cmake
+              cmake/suitesparse.cmake cmake/sundials.cmake
         DESTINATION ${poinsot_package})
 install(DIRECTORY models app/plots DESTINATION ${CMAKE_INSTALL_DATADIR}/poinsot PATTERN __pycache__ EXCLUDE)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

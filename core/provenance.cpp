@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <klu.h>
+#include <sundials/sundials_config.h>
 #ifdef POINSOT_UMFPACK
 #include <umfpack.h>
 #endif
@@ -32,6 +33,7 @@ std::vector<Library> libraries() {
 #ifdef POINSOT_UMFPACK
       {"UMFPACK", dotted(UMFPACK_MAIN_VERSION, UMFPACK_SUB_VERSION, UMFPACK_SUBSUB_VERSION)},
 #endif
+      {"SUNDIALS", SUNDIALS_VERSION},
       {"nlohmann-json", dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
       {"fmt", dotted(FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
       {"CLI11", build::cli11},

@@ -5,6 +5,7 @@
 #include "integrators/dopri5.h"
 #include "integrators/generalized_alpha.h"
 #include "integrators/half_implicit.h"
+#include "integrators/ida.h"
 #include "integrators/implicit_euler.h"
 #include "integrators/integrator.h"
 #include "integrators/kinematics.h"
@@ -12,6 +13,9 @@
 
 namespace poinsot {
 namespace {
+
+constexpr std::string_view kWhy = "it needs a vector space of coordinates with their rates as velocities, which is rp";
+constexpr Refusal kVectorSpace[] = {{"rA", kWhy}, {"reps", kWhy}};
 
 constexpr IntegratorEntry kIntegrators[] = {
     {"implicit_euler", "the paper's: index 3, first order, fixed step; any formulation, any linear solver",
@@ -30,6 +34,8 @@ constexpr IntegratorEntry kIntegrators[] = {
      make_dop853,
      {},
      true},
+    {"ida", "SUNDIALS IDA: formulas of order 1 to 5 on the stabilized index-2 form, with error control; a reference",
+     Analysis::dynamics, 0, make_ida, kVectorSpace, true},
     {"half_implicit",
      "half-implicit Euler with the constraints at the new position: first order, fixed step; symplectic in plane "
      "motion",

@@ -1,5 +1,7 @@
 #include "integrators/step_control.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -67,6 +69,15 @@ double first_step(double h0, double f, double second, int order, double end) {
   const double rate = std::max(f, second);
   const double h1 = rate > 1e-15 ? std::pow(0.01 / rate, 1.0 / order) : std::max(1e-6 * end, 1e-3 * h0);
   return std::min({100 * h0, h1, end});
+}
+
+Status step_too_small(double t, double h, const Status& cause) {
+  return {Failure::step_size_too_small, t,
+          fmt::format("at t = {:.9g} s the steps became too small to get on with ({:.3g} s): the motion jumps or grows "
+                      "without bound here, the mechanism comes to a singular position, near which accelerations are "
+                      "lost to rounding, or the tolerances ask for more than the arithmetic has; larger tolerances or "
+                      "an implicit integrator with a fixed step may pass{}",
+                      t, h, cause.ok() ? "" : "; the last attempt: " + cause.message)};
 }
 
 }  // namespace poinsot

@@ -11,6 +11,7 @@
 //   h_new = h · safety · err^(−α) · err_before^β, within [shrink, grow] h; after a rejection no growth.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "formulations/problem.h"
@@ -49,5 +50,27 @@ class StepController {
 // First step, from |y|, |f| and |f(after an Euler step h0) − f|/h0, the second derivative; h0 by first_trial().
 double first_trial(double y, double f, double end);
 double first_step(double h0, double f, double second, int order, double end);
+
+// So many steps in a row that are so much smaller than the longest one do not pass a jump of the forces, which takes a
+// few dozen: they creep towards a singular position, where less and less of the accelerations is more than rounding, or
+// to where the motion grows without bound.
+class Creeping {
+ public:
+  bool tries(double h) {
+    tiny_ = h < kTiny * longest_ ? tiny_ + 1 : 0;
+    return tiny_ > kMost;
+  }
+  void completed(double h) { longest_ = std::max(longest_, h); }
+
+ private:
+  static constexpr int kMost = 100;
+  static constexpr double kTiny = 1e-6;
+
+  double longest_ = 0;
+  int tiny_ = 0;
+};
+
+// Error control has come to an end at time t with steps of length h; `cause` is what the last attempt failed of.
+Status step_too_small(double t, double h, const Status& cause);
 
 }  // namespace poinsot

@@ -4,33 +4,35 @@
 
 namespace poinsot {
 
-StepSystem::StepSystem(Problem& problem, LinearSolver& solver, MatrixKind kind, Statistics& statistics,
-                       PhaseClock& clock)
-    : problem_(problem), solver_(solver), kind_(kind), statistics_(statistics), clock_(clock) {}
+TimedSystem::TimedSystem(const Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock)
+    : problem_(problem), solver_(solver), statistics_(statistics), clock_(clock) {}
 
-Status StepSystem::prepare() {
-  const LinearStatus status = solver_.analyze(problem_.pattern(kind_));
-  return status.ok() ? Status{} : explain(problem_, 0, status);
+Status TimedSystem::prepare(const Pattern& pattern, std::vector<int> unknowns) {
+  unknowns_ = std::move(unknowns);
+  return explained(0, solver_.analyze(pattern));
 }
 
-Status StepSystem::refresh(double t, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
-                           std::span<const double> lambda) {
-  clock_.lap(Phase::other);
-  problem_.assemble(kind_, scale, dq, a, lambda, solver_.slots(), solver_.values());
+Status TimedSystem::factor(double t) {
   ++statistics_.jacobian_evaluations;
   clock_.lap(Phase::assembly);
-  const LinearStatus status = solver_.factor();
+  LinearStatus status = solver_.factor();
   ++statistics_.factorizations;
   clock_.lap(Phase::factor);
-  return status.ok() ? Status{} : explain(problem_, t, status);
+  return explained(t, std::move(status));
 }
 
-Status StepSystem::solve(double t, std::span<double> b) {
+Status TimedSystem::solve(double t, std::span<double> b) {
   clock_.lap(Phase::other);
-  const LinearStatus status = solver_.solve(b);
+  LinearStatus status = solver_.solve(b);
   ++statistics_.solves;
   clock_.lap(Phase::solve);
-  return status.ok() ? Status{} : explain(problem_, t, status);
+  return explained(t, std::move(status));
+}
+
+Status TimedSystem::explained(double t, LinearStatus status) const {
+  if (status.ok()) return {};
+  if (status.unknown >= 0 && !unknowns_.empty()) status.unknown = unknowns_[static_cast<std::size_t>(status.unknown)];
+  return explain(problem_, t, status);
 }
 
 Status explain(const Problem& problem, double t, const LinearStatus& status) {

@@ -1,33 +1,66 @@
 // The linear system of a step: one pattern analysed once, then assemble, factor, solve, each counted and timed.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/phase_clock.h"
 #include "integrators/integrator.h"
 
 namespace poinsot {
 
-class StepSystem {
+// Any system about a problem.
+class TimedSystem {
  public:
-  StepSystem(Problem& problem, LinearSolver& solver, MatrixKind kind, Statistics& statistics, PhaseClock& clock);
+  TimedSystem(const Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock);
 
-  // Analyses the pattern. Call once, before the clock starts.
-  Status prepare();
-  // Assembles at the problem's point and factors. The time up to the call belongs to Phase::other.
-  Status refresh(double t, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
-                 std::span<const double> lambda);
+  // Analyses the pattern. Call once, before the clock starts. unknowns[k]: which of the problem's unknowns the system's
+  // k-th belongs to, for messages; empty: they are the same.
+  Status prepare(const Pattern& pattern, std::vector<int> unknowns = {});
+  // write(slots, values) adds the matrix to zeros; then it is factored. The time up to the call belongs to
+  // Phase::other.
+  template <class Write>
+  Status refresh(double t, Write&& write) {
+    clock_.lap(Phase::other);
+    std::ranges::fill(solver_.values(), 0.0);
+    write(solver_.slots(), solver_.values());
+    return factor(t);
+  }
   // b ← A⁻¹ b.
   Status solve(double t, std::span<double> b);
   bool ready() const { return solver_.state() == LinearSolver::State::factored; }
 
  private:
-  Problem& problem_;
+  Status factor(double t);
+  Status explained(double t, LinearStatus status) const;
+
+  const Problem& problem_;
   LinearSolver& solver_;
-  MatrixKind kind_;
   Statistics& statistics_;
   PhaseClock& clock_;
+  std::vector<int> unknowns_;
+};
+
+// A system of the problem's own matrices.
+class StepSystem : public TimedSystem {
+ public:
+  StepSystem(Problem& problem, LinearSolver& solver, MatrixKind kind, Statistics& statistics, PhaseClock& clock)
+      : TimedSystem(problem, solver, statistics, clock), problem_(problem), kind_(kind) {}
+
+  Status prepare() { return TimedSystem::prepare(problem_.pattern(kind_)); }
+  // Assembles at the problem's point and factors.
+  Status refresh(double t, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
+                 std::span<const double> lambda) {
+    return TimedSystem::refresh(t, [&](std::span<const int> slots, std::span<double> values) {
+      problem_.assemble(kind_, scale, dq, a, lambda, slots, values);
+    });
+  }
+
+ private:
+  Problem& problem_;
+  MatrixKind kind_;
 };
 
 // What a linear solver's failure means for the mechanism: which body or constraint, what to try.

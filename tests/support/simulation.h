@@ -83,6 +83,19 @@ inline Settings dynamics(std::string_view formulation, double step, double end, 
   return s;
 }
 
+// Integrators with error control.
+inline Settings controlled(std::string_view integrator, std::string_view formulation, double rtol, double end,
+                           double every = 0) {
+  Settings s;
+  s.integrator = integrator;
+  s.formulation = formulation;
+  s.rtol = rtol;
+  s.atol = 1e-2 * rtol;
+  s.end = end;
+  s.every = every;
+  return s;
+}
+
 // Largest distance of each quantity over times, bodies and components, relative to its largest value.
 struct Distance {
   double r = 0, A = 0, rd = 0, w = 0, rdd = 0, wd = 0;

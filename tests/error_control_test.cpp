@@ -1,0 +1,252 @@
+// The integrators that control their error: digits of public benchmark problems, errors along with the tolerance,
+// samples between the steps, failures.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "core/so3.h"
+#include "integrators/sample_times.h"
+#include "integrators/step_control.h"
+#include "tests/support/allocations.h"
+#include "tests/support/forced_scene.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+// How exact a method can be, and how far its error at the end may be from the tolerance.
+struct Precision {
+  std::string_view integrator;
+  double rtol, bound;  // the tightest tolerance it is asked for, and what it then has to reach
+  double growth;       // errors at the end in units of the tolerance
+};
+constexpr Precision kPrecision[] = {
+    {"dopri5", 1e-12, 4e-9, 50}, {"dop853", 1e-12, 1e-9, 50}, {"ida", 1e-12, 1e-9, 200}};
+
+// Every integrator with error control in every formulation it does not refuse.
+struct Method {
+  Precision of;
+  std::string formulation;
+};
+std::vector<Method> methods() {
+  std::vector<Method> all;
+  for (const IntegratorEntry& entry : integrators()) {
+    if (!entry.controls_error) continue;
+    const auto of = std::ranges::find(kPrecision, entry.name, &Precision::integrator);
+    check(of != std::end(kPrecision), "it is known how exact an integrator with error control is");
+    for (const std::string& formulation : formulation_names()) {
+      if (std::ranges::none_of(entry.refuses, [&](const Refusal& r) { return r.formulation == formulation; })) {
+        all.push_back({*of, formulation});
+      }
+    }
+  }
+  return all;
+}
+
+class ErrorControl : public ::testing::TestWithParam<Method> {
+ protected:
+  Settings settings(double rtol, double end, double every = 0) const {
+    return controlled(GetParam().of.integrator, GetParam().formulation, rtol, end, every);
+  }
+  // The bodies at the end of a run that has to reach it, as exactly as the method can.
+  std::vector<BodyState> final_bodies(std::string_view model, double end) const {
+    return motion(scene_of(model), settings(GetParam().of.rtol, end, end)).back().bodies;
+  }
+  double bound() const { return GetParam().of.bound; }
+};
+
+INSTANTIATE_TEST_SUITE_P(All, ErrorControl, ::testing::ValuesIn(methods()), [](const auto& test) {
+  return std::string(test.param.of.integrator) + "_" + test.param.formulation;
+});
+
+// Digits: IFToMM benchmark library, IVP test set, and extrapolation in extended precision; all of them are given.
+TEST_P(ErrorControl, SimplePendulum) {
+  const BodyState body = final_bodies("simple_pendulum", 10)[0];
+  EXPECT_LT((body.r - Vector3(-0.27508746257612, -0.96141920509913, 0)).norm(), bound());
+  EXPECT_LT((body.rd - Vector3(4.17559810095173, -1.19474905456048, 0)).norm(), bound() * body.rd.norm());
+}
+
+TEST_P(ErrorControl, HeavyTop) {
+  const BodyState body = final_bodies("heavy_top", 1)[0];
+  const Matrix3 A = rotation_from_parameters<double>(
+      Vec4<double>(0.73294398067966, -0.27828571933761, 0.53182461133416, -0.32017614273625));
+  EXPECT_LT((body.r - Vector3(0.17334396409839, 0.64008859207057, -0.74849079113358)).norm(), bound());
+  EXPECT_LT((body.A - A).norm(), bound());  // after a turn of 150 rad
+}
+
+TEST_P(ErrorControl, FreeBody) {
+  const BodyState body = final_bodies("free_body", 20)[0];
+  EXPECT_LT((body.w - Vector3(-0.10532100800937, -0.99443877904670, 0.06081259389334)).norm(), bound());
+}
+
+TEST_P(ErrorControl, Andrews) {
+  const std::vector<BodyState> bodies = final_bodies("andrews", 0.03);
+  const double angles[] = {15.81077119515371, 15.81077119515371 - 15.75637105841184, 0.0408222401196456};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_LT((bodies[k].A.col(0) - Vector3(std::cos(angles[k]), std::sin(angles[k]), 0)).norm(), bound()) << k;
+  }
+  EXPECT_NEAR(bodies[0].w.y(), 1139.920302259106, 1139 * bound());
+}
+
+TEST_P(ErrorControl, DoublePendulum) {
+  const auto samples = motion(scene_of("double_pendulum"), settings(GetParam().of.rtol, 5, 0.1));
+  const auto reference = reference_motion("ode_double_pendulum");
+  ASSERT_EQ(samples.size(), reference.size());
+  EXPECT_LT(distance(samples, reference).largest(), bound());
+  const std::vector<BodyState>& bodies = samples.back().bodies;
+  EXPECT_LT((bodies[0].r - Vector3(0, 1.786577045777, -0.898967440736)).norm(), bound());
+  EXPECT_LT((bodies[1].r - Vector3(0, 4.572906435978, -1.775680672486)).norm(), bound());
+}
+
+// A row that constrains velocities only.
+TEST_P(ErrorControl, KnifeEdge) {
+  const double c = 9.81 / 2, w = 2;
+  const BodyState body = final_bodies("knife_edge", 1)[0];
+  const Vector3 r(c * std::pow(std::sin(w), 2) / (2 * w * w), c * (w - std::sin(2 * w) / 2) / (2 * w * w), 0);
+  EXPECT_LT((body.r - r).norm(), bound());
+}
+
+// Or says that the solver refuses its matrix.
+TEST_P(ErrorControl, TakesEveryLinearSolver) {
+  Settings s = settings(1e-7, 0.5, 0.5);
+  const auto expected = motion(forced(), s);
+  for (const LinearSolverEntry& solver : linear_solvers()) {
+    s.linear_solver = solver.name;
+    const Recorded r = run(forced(), s);
+    if (r.outcome.status.ok()) {
+      EXPECT_LT(distance(r.samples, expected).largest(), 1e-5) << solver.name;
+    } else {
+      EXPECT_EQ(solver.name, "schur");
+      EXPECT_THAT(r.outcome.status.message, HasSubstr("linear solver schur needs"));
+    }
+  }
+}
+
+TEST_P(ErrorControl, ErrorsFollowTheTolerance) {
+  const Scene scene = forced();
+  const double end = 2;
+  const auto exact = motion(scene, controlled("dop853", "rA", 1e-13, end, end));
+  std::int64_t before = 0;
+  for (const double rtol : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    const Recorded r = run(scene, settings(rtol, end, end));
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    EXPECT_LT(distance(r.samples, exact).largest(), GetParam().of.growth * rtol) << rtol;
+    EXPECT_GT(r.outcome.statistics.steps, before);
+    EXPECT_LT(r.outcome.statistics.rejected_steps, r.outcome.statistics.steps / 4 + 4);
+    before = r.outcome.statistics.steps;
+  }
+}
+
+// Between the steps as good as at them; and on the constraints.
+TEST_P(ErrorControl, SamplesByDenseOutput) {
+  const Scene scene = forced();
+  const double end = 2, every = 0.013;
+  const auto exact = motion(scene, controlled("dop853", "rA", 1e-13, end, every));
+  for (const double rtol : {1e-6, 1e-9}) {
+    const Recorded r = run(scene, settings(rtol, end, every));
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    EXPECT_LT(distance(r.samples, exact).largest(), 2 * GetParam().of.growth * rtol) << rtol;
+    EXPECT_LT(r.outcome.statistics.violation.position, 1e-13) << rtol;
+    EXPECT_LT(r.outcome.statistics.violation.velocity, 1e-12) << rtol;
+
+    const Recorded ends = run(scene, settings(rtol, end, end));  // sampling does not change the motion
+    EXPECT_EQ(ends.outcome.statistics.steps, r.outcome.statistics.steps);
+    EXPECT_LT(distance({ends.samples.back()}, {r.samples.back()}).largest(), 1e-11);
+  }
+}
+
+TEST_P(ErrorControl, SamplesAreMultiplesAndTheEnd) {
+  const Scene scene = scene_of("double_pendulum");
+  const auto times = [&](double end, double every) {
+    std::vector<double> t;
+    for (const Snapshot& sample : motion(scene, settings(1e-7, end, every))) t.push_back(sample.t);
+    return t;
+  };
+  EXPECT_THAT(times(1, 0.25), ::testing::ElementsAre(0, 0.25, 0.5, 0.75, 1));
+  EXPECT_THAT(times(1, 0.3), ::testing::ElementsAre(0, 0.3, 2 * 0.3, 3 * 0.3, 1));
+  EXPECT_THAT(times(0.1, 2), ::testing::ElementsAre(0, 0.1));
+  const std::vector<double> tenths = times(0.7, 0.1);
+  ASSERT_EQ(tenths.size(), 8u);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(tenths[k], k == 7 ? 0.7 : 0.7 * (static_cast<double>(k) / 7));
+
+  const Recorded all = run(scene, settings(1e-7, 1));
+  EXPECT_EQ(all.samples.size(), static_cast<std::size_t>(all.outcome.statistics.steps) + 1);
+  EXPECT_EQ(all.samples.back().t, 1);
+}
+
+TEST_P(ErrorControl, IsDeterministic) {
+  const Settings s = settings(1e-8, 2, 0.01);
+  const auto once = motion(forced(), s), again = motion(forced(), s);
+  ASSERT_EQ(once.size(), again.size());
+  for (std::size_t n = 0; n < once.size(); ++n) {
+    EXPECT_EQ(once[n].lambda, again[n].lambda) << n;
+    for (std::size_t b = 0; b < once[n].bodies.size(); ++b) EXPECT_EQ(once[n].bodies[b].A, again[n].bodies[b].A) << n;
+  }
+}
+
+// Nor do samples between the steps, changes of chart and rejected steps.
+TEST_P(ErrorControl, StepsAllocateNothing) {
+  for (const Scene& scene : {forced(), scene_of("heavy_top"), scene_of("double_pendulum")}) {
+    for (const double every : {0.0, 0.003}) {
+      Settings s = settings(1e-7, 0.3, every);
+      s.linear_solver = "dense";  // klu allocates fresh pivots
+      long samples = 0, allocated = 0;
+      const Outcome outcome = simulate(scene, s, [&](const Sample&) {
+        const long now = allocations();
+        EXPECT_TRUE(++samples <= 3 || now == allocated) << now - allocated << " before sample " << samples;
+        allocated = now;
+      });
+      EXPECT_TRUE(outcome.status.ok()) << outcome.status.message;
+      EXPECT_GT(samples, 5);
+    }
+  }
+}
+
+TEST_P(ErrorControl, StopsWhereAForceGrowsWithoutBound) {
+  Scene scene = scene_of("double_pendulum");
+  Torque torque;
+  torque.body = 0;
+  torque.torque[2] = Expression::parse("100/(0.5-t)^3");
+  scene.forces.emplace_back(torque);
+  const Recorded r = run(scene, settings(1e-8, 1));
+  EXPECT_EQ(r.outcome.status.failure, Failure::step_size_too_small);
+  EXPECT_NEAR(r.outcome.status.time, 0.5, 0.01);
+  EXPECT_THAT(r.outcome.status.message, HasSubstr("grows without bound"));
+  ASSERT_GT(r.samples.size(), 2u);  // those before are good
+  EXPECT_LE(r.samples.back().t, r.outcome.status.time);
+  EXPECT_TRUE(r.samples.back().bodies[0].A.allFinite());
+}
+
+TEST_P(ErrorControl, StopsAtASingularStart) {
+  Scene scene = scene_of("double_pendulum");
+  scene.bodies[1].mass = 0;
+  scene.bodies[1].inertia.setZero();
+  const Outcome outcome = simulate(scene, settings(1e-8, 1), {});
+  EXPECT_EQ(outcome.status.failure, Failure::singular_matrix);
+  EXPECT_EQ(outcome.statistics.steps, 0);
+}
+
+TEST(SampleTimes, AreThoseOfFixedSteps) {
+  SampleTimes times(0.1, 1);
+  for (int k = 1; k <= 12; ++k, times.pass()) EXPECT_EQ(times.next(), k >= 10 ? 1 : k / 10.0);
+  SampleTimes none(0, 3);
+  EXPECT_EQ(none.next(), 3);
+}
+
+TEST(StepController, KeepsWithinItsBounds) {
+  const StepRule rule{0.9, 0.2, 0.0, 0.2, 5};
+  StepController c(rule);
+  EXPECT_DOUBLE_EQ(c.accepted(1, 1), 0.9);
+  EXPECT_DOUBLE_EQ(c.accepted(1, 0), 5);
+  EXPECT_DOUBLE_EQ(c.accepted(1, std::pow(0.9 / 2, 5)), 2);
+  EXPECT_DOUBLE_EQ(c.rejected(1, 32), 0.45);
+  EXPECT_DOUBLE_EQ(c.accepted(1, 1e-8), 1);  // no growth after a rejection
+  EXPECT_DOUBLE_EQ(c.accepted(1, 1e-8), 5);
+  EXPECT_DOUBLE_EQ(c.rejected(1, 1e30), 0.2);
+  EXPECT_DOUBLE_EQ(c.failed(1), 0.2);
+}
+
+}  // namespace
+}  // namespace poinsot::test
