@@ -64,6 +64,14 @@ TEST_F(Help, ListHasALineForEveryEntryOfEveryRegistry) {
   listed("integrators", integrators());
   listed("linear solvers", linear_solvers());
   listed("jacobians", jacobians());
+  for (const IntegratorEntry& entry : integrators()) {
+    for (const Refusal& refusal : entry.refuses) {
+      ++expected;
+      EXPECT_TRUE(std::any_of(list.begin(), list.end(), [&](const std::string& line) {
+        return line.ends_with(fmt::format("refuses {}: {}", refusal.formulation, refusal.why));
+      })) << entry.name;
+    }
+  }
   EXPECT_EQ(list.size(), expected);
 }
 
