@@ -35,7 +35,7 @@ constexpr IntegratorEntry kIntegrators[] = {
      {},
      true},
     {"ida", "SUNDIALS IDA: formulas of order 1 to 5 on the stabilized index-2 form, with error control; a reference",
-     Analysis::dynamics, make_ida, kVectorSpace, true},
+     Analysis::dynamics, 0, make_ida, kVectorSpace, true},
     {"half_implicit", "symplectic Euler with the constraints at the new position: first order, fixed step",
      Analysis::dynamics, 1, make_half_implicit},
     {"rattle",
