@@ -36,7 +36,9 @@ constexpr IntegratorEntry kIntegrators[] = {
      true},
     {"ida", "SUNDIALS IDA: formulas of order 1 to 5 on the stabilized index-2 form, with error control; a reference",
      Analysis::dynamics, 0, make_ida, kVectorSpace, true},
-    {"half_implicit", "symplectic Euler with the constraints at the new position: first order, fixed step",
+    {"half_implicit",
+     "half-implicit Euler with the constraints at the new position: first order, fixed step; symplectic in plane "
+     "motion",
      Analysis::dynamics, 1, make_half_implicit},
     {"rattle",
      "second order, fixed step, constraints kept in positions and velocities; symplectic in rA and rp: for long runs",
