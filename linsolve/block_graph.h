@@ -12,26 +12,22 @@
 #include <vector>
 
 #include "linsolve/csc_layout.h"
+#include "linsolve/lists.h"
 
 namespace poinsot {
 
-struct Atom {
-  std::vector<int> unknowns;
-  std::vector<int> neighbours;  // atoms, sorted
-  bool constraint = false;
-  int node = 0;
-};
-
 struct BlockGraph {
-  std::vector<Atom> atoms;
-  std::vector<int> atom_of;              // by unknown
-  std::vector<std::vector<int>> bodies;  // by node of constraints: the nodes of bodies it acts on
-  std::vector<std::vector<int>> groups;  // by node of a body: the nodes of constraints on it, those fused with it last
-  std::vector<int> body_atoms;           // by node: how many atoms of bodies it has
-  std::vector<int> fused_with;           // by node of constraints: the body it is fused with, or −1
+  Lists unknowns, neighbours;    // by atom
+  std::vector<char> constraint;  // by atom
+  std::vector<int> node;         // by atom
+  Lists bodies;                  // by node of constraints: the nodes of bodies it acts on
+  Lists groups;                  // by node of a body: the nodes of constraints on it
+  std::vector<int> body_atoms;   // by node: how many atoms of bodies it has
+  std::vector<int> fused_with;   // by node of constraints: the body it is fused with, or −1
 
+  int atoms() const { return unknowns.size(); }
   // `fused[g]` is the body node that takes in node g, or −1.
-  void build(const CscLayout& layout, std::span<const int> node, std::span<const int> fused);
+  void build(const CscLayout& layout, std::span<const int> node_of, std::span<const int> fused);
 };
 
 // Share of the entries (i, j) of a pattern that have a mirror entry (j, i).

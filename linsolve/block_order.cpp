@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <numeric>
 #include <queue>
+#include <span>
 #include <tuple>
+#include <utility>
+
+#include "core/check.h"
 
 namespace poinsot {
 namespace {
@@ -25,28 +29,28 @@ class Eliminated {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
 
-  void add(const Atom& atom) {
-    if (atom.constraint) return add_group(atom.node);
-    if (--left_[at(atom.node)] > 0) return;
-    const int body = atom.node;
+  void add(int atom) {
+    const int body = graph_.node[at(atom)];
+    if (graph_.constraint[at(atom)]) return add_group(body);
+    if (--left_[at(body)] > 0) return;
     in_[at(body)] = 1;
-    for (const int g : graph_.groups[at(body)])
+    for (const int g : graph_.groups[body])
       if (in_[at(g)]) {
-        for (const int other : graph_.bodies[at(g)])
+        for (const int other : graph_.bodies[g])
           if (other != body && in_[at(other)]) {
             join(body, other);
             break;
           }
         if (--missing_[at(g)] == 0) --component_[at(find(body))].half;
       }
-    for (const int g : graph_.groups[at(body)])
+    for (const int g : graph_.groups[body])
       if (graph_.fused_with[at(g)] == body) add_group(g);
   }
 
-  bool may_be_pivot(const Atom& atom) {
-    if (!atom.constraint) return true;
-    const int g = atom.node;
-    const auto& bodies = graph_.bodies[at(g)];
+  bool may_be_pivot(int atom) {
+    if (!graph_.constraint[at(atom)]) return true;
+    const int g = graph_.node[at(atom)];
+    const std::span<const int> bodies = graph_.bodies[g];
     const bool half = in_[at(g)] && missing_[at(g)] > 0;
     bool some = false, whole = true, floating = true;
     for (const int b : bodies) {
@@ -88,7 +92,7 @@ class Eliminated {
   void add_group(int g) {
     if (in_[at(g)]) return;
     in_[at(g)] = 1;
-    const auto& bodies = graph_.bodies[at(g)];
+    const std::span<const int> bodies = graph_.bodies[g];
     int first = -1;
     for (const int b : bodies) {
       if (!in_[at(b)])
@@ -110,30 +114,29 @@ class Eliminated {
   std::vector<Component> component_;
 };
 
-// Quotient graph: what was eliminated is kept as elements, each the set of atoms its elimination coupled.
+// Quotient graph: what was eliminated is kept as elements, each the set of atoms its elimination coupled. An atom's
+// neighbours and elements share the room its neighbours had at first, from both ends: an element takes the place of the
+// neighbour that became it, or of an element that went into it.
 class MinimumDegree {
  public:
   explicit MinimumDegree(const BlockGraph& graph)
-      : graph_(graph),
-        eliminated_(graph),
-        neighbours_(graph.atoms.size()),
-        elements_(graph.atoms.size()),
-        members_(graph.atoms.size()),
-        weight_(graph.atoms.size()),
-        degree_(graph.atoms.size(), -1),
-        mark_(graph.atoms.size(), 0),
-        done_(graph.atoms.size(), 0) {
-    for (std::size_t a = 0; a < weight_.size(); ++a) {
-      neighbours_[a] = graph.atoms[a].neighbours;
-      weight_[a] = static_cast<int>(graph.atoms[a].unknowns.size());
+      : graph_(graph), eliminated_(graph), begin_(1, 0), atoms_(at(graph.atoms())) {
+    int top = 0;
+    for (int a = 0; a < graph.atoms(); ++a) {
+      const std::span<const int> neighbours = graph.neighbours[a];
+      list_.insert(list_.end(), neighbours.begin(), neighbours.end());
+      top += static_cast<int>(neighbours.size());
+      begin_.push_back(top);
+      atoms_[at(a)].neighbours = static_cast<int>(neighbours.size());
+      atoms_[at(a)].weight = static_cast<int>(graph.unknowns[a].size());
     }
-    for (std::size_t a = 0; a < weight_.size(); ++a) push(static_cast<int>(a));
+    for (int a = 0; a < graph.atoms(); ++a) push(a);
   }
 
   std::vector<int> order() {
     std::vector<int> result;
-    result.reserve(done_.size());
-    while (result.size() < done_.size()) {
+    result.reserve(atoms_.size());
+    while (result.size() < atoms_.size()) {
       const int a = next();
       eliminate(a);
       result.push_back(a);
@@ -143,38 +146,49 @@ class MinimumDegree {
 
  private:
   using Entry = std::tuple<int, int>;  // degree, atom
-  static constexpr std::size_t kHub = 256;
+  static constexpr int kHub = 256;
+
+  struct State {
+    int neighbours = 0, elements = 0;  // lengths
+    int members = 0, member = 0;       // of the element it became: length and start; none once it went into another
+    int weight = 0, degree = -1, mark = 0;
+    bool done = false;
+  };
+
+  std::span<const int> neighbours(int a) const { return {list_.data() + begin_[at(a)], at(atoms_[at(a)].neighbours)}; }
+  std::span<const int> elements(int a) const {
+    return {list_.data() + begin_[at(a) + 1] - atoms_[at(a)].elements, at(atoms_[at(a)].elements)};
+  }
+  std::span<const int> members(int e) const { return {pool_.data() + atoms_[at(e)].member, at(atoms_[at(e)].members)}; }
+
+  // True the first time in a sweep, which begins with ++stamp_.
+  bool mark(int a) { return std::exchange(atoms_[at(a)].mark, stamp_) != stamp_; }
 
   void push(int a) {
-    degree_[at(a)] = degree(a);
-    queue_.push({degree_[at(a)], a});
+    atoms_[at(a)].degree = degree(a);
+    queue_.push({atoms_[at(a)].degree, a});
   }
 
   // Unknowns outside a that its elimination couples. Exact while a sees little, an upper bound for hubs.
   int degree(int a) {
-    constexpr std::size_t kExact = 64;
+    constexpr int kExact = 64;
+    const State& state = atoms_[at(a)];
     // What a hub saw at first has only become less; its list is not searched again and again.
-    if (neighbours_[at(a)].size() > kHub && degree_[at(a)] >= 0) return degree_[at(a)];
+    if (state.neighbours > kHub && state.degree >= 0) return state.degree;
     ++stamp_;
-    mark_[at(a)] = stamp_;
+    mark(a);
     int sum = 0;
-    for (const int b : neighbours_[at(a)])
-      if (!done_[at(b)] && mark_[at(b)] != stamp_) mark_[at(b)] = stamp_, sum += weight_[at(b)];
-    const bool exact = elements_[at(a)].size() <= kExact;
-    for (const int e : elements_[at(a)]) {
-      if (exact) {
-        for (const int b : members_[at(e)])
-          if (mark_[at(b)] != stamp_) mark_[at(b)] = stamp_, sum += weight_[at(b)];
+    for (const int b : neighbours(a))
+      if (!atoms_[at(b)].done && mark(b)) sum += atoms_[at(b)].weight;
+    for (const int e : elements(a)) {
+      if (state.elements <= kExact) {
+        for (const int b : members(e))
+          if (mark(b)) sum += atoms_[at(b)].weight;
       } else {
-        sum += size_of(e) - weight_[at(a)];
+        for (const int b : members(e)) sum += atoms_[at(b)].weight;
+        sum -= state.weight;
       }
     }
-    return sum;
-  }
-
-  int size_of(int element) const {
-    int sum = 0;
-    for (const int b : members_[at(element)]) sum += weight_[at(b)];
     return sum;
   }
 
@@ -182,50 +196,66 @@ class MinimumDegree {
     while (!queue_.empty()) {
       const auto [degree, a] = queue_.top();
       queue_.pop();
-      if (done_[at(a)] || degree != degree_[at(a)]) continue;
-      if (eliminated_.may_be_pivot(graph_.atoms[at(a)])) return a;
-      degree_[at(a)] = -1;  // comes back when something next to it is eliminated
+      if (atoms_[at(a)].done || degree != atoms_[at(a)].degree) continue;
+      if (eliminated_.may_be_pivot(a)) return a;
+      atoms_[at(a)].degree = -1;  // comes back when something next to it is eliminated
     }
     // Constraints on nothing but constraints: numbers will tell.
-    return static_cast<int>(std::ranges::find(done_, 0) - done_.begin());
+    return static_cast<int>(std::ranges::find(atoms_, false, &State::done) - atoms_.begin());
   }
 
   void eliminate(int a) {
     ++stamp_;
-    mark_[at(a)] = stamp_;
-    std::vector<int>& front = members_[at(a)];
+    mark(a);
+    front_.clear();
     const auto take = [&](int b) {
-      if (!done_[at(b)] && mark_[at(b)] != stamp_) mark_[at(b)] = stamp_, front.push_back(b);
+      if (!atoms_[at(b)].done && mark(b)) front_.push_back(b);
     };
-    for (const int b : neighbours_[at(a)]) take(b);
-    for (const int e : elements_[at(a)])
-      for (const int b : members_[at(e)]) take(b);
-    for (const int e : elements_[at(a)]) std::vector<int>().swap(members_[at(e)]);
-    done_[at(a)] = 1;
-    eliminated_.add(graph_.atoms[at(a)]);
+    for (const int b : neighbours(a)) take(b);
+    for (const int e : elements(a))
+      for (const int b : members(e)) take(b);
+    for (const int e : elements(a)) atoms_[at(e)].members = 0;
+    State& state = atoms_[at(a)];
+    state.done = true;
+    state.member = static_cast<int>(pool_.size());
+    state.members = static_cast<int>(front_.size());
+    pool_.insert(pool_.end(), front_.begin(), front_.end());
+    eliminated_.add(a);
 
-    for (const int b : front) {
-      auto& elements = elements_[at(b)];
-      std::erase_if(elements, [&](int e) { return members_[at(e)].empty(); });
-      elements.push_back(a);
-      auto& neighbours = neighbours_[at(b)];
-      if (neighbours.size() <= kHub)
-        std::erase_if(neighbours, [&](int c) { return done_[at(c)] || mark_[at(c)] == stamp_; });
+    for (const int b : front_) {
+      drop_elements(b);
+      if (atoms_[at(b)].neighbours <= kHub || full(b)) drop_neighbours(b);
+      if (front_.size() == 1) continue;  // couples nothing any more, only its atom may have become free to go
+      check(!full(b), "a new element has the place of a neighbour or an element");
+      list_[at(begin_[at(b) + 1] - ++atoms_[at(b)].elements)] = a;
     }
-    std::vector<int>().swap(neighbours_[at(a)]);
-    std::vector<int>().swap(elements_[at(a)]);
-    if (front.size() == 1) {  // couples nothing any more, only its atom may have become free to go
-      std::erase(elements_[at(front[0])], a);
-    }
-    const std::vector<int> touched = front;
-    for (const int b : touched) push(b);
+    state.neighbours = state.elements = 0;
+    for (const int b : front_) push(b);
+  }
+
+  bool full(int b) const {
+    return atoms_[at(b)].neighbours + atoms_[at(b)].elements == begin_[at(b) + 1] - begin_[at(b)];
+  }
+
+  // Elements that went into others.
+  void drop_elements(int b) {
+    int kept = 0;
+    for (int k = begin_[at(b) + 1] - 1, n = atoms_[at(b)].elements; n > 0; --k, --n)
+      if (atoms_[at(list_[at(k)])].members > 0) list_[at(begin_[at(b) + 1] - ++kept)] = list_[at(k)];
+    atoms_[at(b)].elements = kept;
+  }
+
+  // Neighbours that are eliminated, or in the new element like b itself.
+  void drop_neighbours(int b) {
+    const auto first = list_.begin() + begin_[at(b)], last = first + atoms_[at(b)].neighbours;
+    const auto gone = [&](int c) { return atoms_[at(c)].done || atoms_[at(c)].mark == stamp_; };
+    atoms_[at(b)].neighbours = static_cast<int>(std::remove_if(first, last, gone) - first);
   }
 
   const BlockGraph& graph_;
   Eliminated eliminated_;
-  std::vector<std::vector<int>> neighbours_, elements_, members_;
-  std::vector<int> weight_, degree_, mark_;
-  std::vector<char> done_;
+  std::vector<int> list_, begin_, pool_, front_;
+  std::vector<State> atoms_;
   int stamp_ = 0;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };

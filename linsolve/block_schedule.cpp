@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace poinsot {
 namespace {
@@ -13,10 +14,13 @@ int count(const std::vector<int>& v) {
   return static_cast<int>(v.size());
 }
 
-// A front while the tree is built; unknowns by their place in the order of atoms.
+// A front while the tree is built, one for each atom at first; unknowns by their place in the order of atoms. Fronts
+// that went into others have no pivots.
 struct Node {
-  std::vector<int> pivots, others;
-  int parent = -1;
+  int first = 0, pivots = 0;  // its own pivots come last, those of fronts that went into it before
+  int others = 0, list = 0;   // number and start of its other unknowns
+  int parent = -1, child = -1, last_child = -1, sibling = -1;
+  int head = -1, next = -1;  // of the chain of fronts whose pivots are its own, and the one after this one there
 };
 
 // Estimated cycles of a front: a fixed part, its arithmetic, the traffic of its update matrix.
@@ -30,14 +34,16 @@ class Builder {
  public:
   Builder(const CscLayout& layout, const BlockGraph& graph, std::span<const int> order)
       : layout_(layout), nodes_(order.size()), place_(at(layout.n)), owner_(at(layout.n)) {
-    int next = 0;
-    for (std::size_t k = 0; k < order.size(); ++k)
-      for (const int u : graph.atoms[at(order[k])].unknowns) {
+    unknown_.reserve(place_.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      nodes_[k].first = count(unknown_);
+      for (const int u : graph.unknowns[order[k]]) {
+        place_[at(u)] = count(unknown_);
+        owner_[at(count(unknown_))] = static_cast<int>(k);
         unknown_.push_back(u);
-        owner_[at(next)] = static_cast<int>(k);
-        nodes_[k].pivots.push_back(next);
-        place_[at(u)] = next++;
       }
+      nodes_[k].pivots = count(unknown_) - nodes_[k].first;
+    }
   }
 
   bool build(Schedule& schedule) {
@@ -52,58 +58,79 @@ class Builder {
  private:
   // The others of every node: entries of the matrix beside its pivots, and what its children leave to it.
   void find_structure() {
-    for (int j = 0; j < layout_.n; ++j)
-      for (int k = layout_.start[at(j)]; k < layout_.start[at(j) + 1]; ++k) {
-        const auto [first, second] = std::minmax(place_[at(j)], place_[at(layout_.row[at(k)])]);
-        if (owner_[at(first)] != owner_[at(second)]) nodes_[at(owner_[at(first)])].others.push_back(second);
-      }
-    for (Node& node : nodes_) {
-      std::ranges::sort(node.others);
-      node.others.erase(std::unique(node.others.begin(), node.others.end()), node.others.end());
-      if (node.others.empty()) continue;
-      node.parent = owner_[at(node.others[0])];
-      Node& parent = nodes_[at(node.parent)];
-      for (const int k : node.others)
-        if (owner_[at(k)] != node.parent) parent.others.push_back(k);
-      node.others.shrink_to_fit();
+    const Lists beside = Lists::collect(count_nodes(), [&](auto&& emit) {
+      int last_owner = -1, last_place = -1;
+      for (int j = 0; j < layout_.n; ++j)
+        for (int k = layout_.start[at(j)]; k < layout_.start[at(j) + 1]; ++k) {
+          const auto [first, second] = std::minmax(place_[at(j)], place_[at(layout_.row[at(k)])]);
+          const int owner = owner_[at(first)];
+          if (owner == owner_[at(second)] || (owner == last_owner && second == last_place)) continue;
+          last_owner = owner, last_place = second;
+          emit(owner, second);
+        }
+    });
+    std::vector<int> all;
+    for (int k = 0; k < count_nodes(); ++k) {
+      Node& node = nodes_[at(k)];
+      all.assign(beside[k].begin(), beside[k].end());
+      for (int c = node.child; c >= 0; c = nodes_[at(c)].sibling)
+        for (const int place : others(nodes_[at(c)]))
+          if (owner_[at(place)] != k) all.push_back(place);
+      std::ranges::sort(all);
+      all.erase(std::unique(all.begin(), all.end()), all.end());
+      node.list = count(other_), node.others = count(all);
+      other_.insert(other_.end(), all.begin(), all.end());
+      node.head = k;
+      if (all.empty()) continue;
+      node.parent = owner_[at(all[0])];
+      adopt(nodes_[at(node.parent)], k, k);
     }
+  }
+
+  int count_nodes() const { return static_cast<int>(nodes_.size()); }
+  std::span<const int> others(const Node& node) const { return {other_.data() + node.list, at(node.others)}; }
+
+  // Appends the siblings `first` to `last` to the children.
+  void adopt(Node& parent, int first, int last) {
+    (parent.child < 0 ? parent.child : nodes_[at(parent.last_child)].sibling) = first;
+    parent.last_child = last;
   }
 
   // A child goes into its parent where one larger front is cheaper than two.
   void amalgamate() {
     constexpr int kMostPivots = 8;  // as far as kernels of fixed size go
-    std::vector<std::vector<int>> children(nodes_.size());
-    for (std::size_t k = 0; k < nodes_.size(); ++k) {
-      Node& node = nodes_[k];
-      for (std::size_t c = 0; c < children[k].size(); ++c) {
-        Node& child = nodes_[at(children[k][c])];
-        const int p = count(child.pivots) + count(node.pivots), m = count(node.others);
-        if (p > kMostPivots ||
-            cost(p, m) > cost(count(child.pivots), count(child.others)) + cost(count(node.pivots), m))
+    for (Node& node : nodes_) {
+      int before = -1;
+      for (int c = node.child; c >= 0;) {
+        Node& child = nodes_[at(c)];
+        const int p = child.pivots + node.pivots, m = node.others;
+        if (p > kMostPivots || cost(p, m) > cost(child.pivots, child.others) + cost(node.pivots, m)) {
+          before = std::exchange(c, child.sibling);
           continue;
-        node.pivots.insert(node.pivots.begin(), child.pivots.begin(), child.pivots.end());
-        const int gone = children[k][c];
-        child = Node();
-        children[k].insert(children[k].end(), children[at(gone)].begin(), children[at(gone)].end());
-        children[k].erase(children[k].begin() + static_cast<std::ptrdiff_t>(c--));
-        std::vector<int>().swap(children[at(gone)]);
+        }
+        node.pivots = p;
+        child.next = std::exchange(node.head, child.head);
+        if (child.child >= 0) adopt(node, child.child, child.last_child);
+        c = (before < 0 ? node.child : nodes_[at(before)].sibling) = child.sibling;
+        if (c < 0) node.last_child = before;
+        child.pivots = 0;
       }
-      if (node.parent >= 0) children[at(node.parent)].push_back(static_cast<int>(k));
     }
-    children_ = std::move(children);
   }
 
   // Postorder; positions.
   void number(Schedule& s) {
     std::vector<int> stack;
-    for (std::size_t k = 0; k < nodes_.size(); ++k)
-      if (nodes_[k].parent < 0 && !nodes_[k].pivots.empty()) stack.push_back(static_cast<int>(k));
+    for (int k = 0; k < count_nodes(); ++k)
+      if (nodes_[at(k)].parent < 0 && nodes_[at(k)].pivots > 0) stack.push_back(k);
     std::vector<char> open(nodes_.size(), 0);
     while (!stack.empty()) {
       const int k = stack.back();
       if (!open[at(k)]) {
         open[at(k)] = 1;
-        stack.insert(stack.end(), children_[at(k)].rbegin(), children_[at(k)].rend());
+        const auto size = static_cast<std::ptrdiff_t>(stack.size());
+        for (int c = nodes_[at(k)].child; c >= 0; c = nodes_[at(c)].sibling) stack.push_back(c);
+        std::reverse(stack.begin() + size, stack.end());
         continue;
       }
       stack.pop_back();
@@ -112,12 +139,17 @@ class Builder {
     front_of_.assign(nodes_.size(), -1);
     position_.assign(at(layout_.n), 0);
     s.unknown.clear();
+    s.unknown.reserve(at(layout_.n));
+    std::vector<int> length(nodes_.size());  // of each node's own pivots
+    for (std::size_t k = 0; k < nodes_.size(); ++k)
+      length[k] = (k + 1 < nodes_.size() ? nodes_[k + 1].first : layout_.n) - nodes_[k].first;
     for (std::size_t f = 0; f < postorder_.size(); ++f) {
       front_of_[at(postorder_[f])] = static_cast<int>(f);
-      for (const int k : nodes_[at(postorder_[f])].pivots) {
-        position_[at(unknown_[at(k)])] = static_cast<int>(s.unknown.size());
-        s.unknown.push_back(unknown_[at(k)]);
-      }
+      for (int part = nodes_[at(postorder_[f])].head; part >= 0; part = nodes_[at(part)].next)
+        for (int k = nodes_[at(part)].first, end = k + length[at(part)]; k < end; ++k) {
+          position_[at(unknown_[at(k)])] = count(s.unknown);
+          s.unknown.push_back(unknown_[at(k)]);
+        }
     }
   }
 
@@ -126,17 +158,21 @@ class Builder {
     s.fronts.clear(), s.position.clear(), s.target.clear(), s.children.clear();
     s.store_size = s.stack_size = s.factor_nonzeros = 0;
     s.largest_update = s.largest_pivots = s.largest_rows = 0;
+    std::size_t entries = 0;
+    for (const int k : postorder_) entries += at(nodes_[at(k)].others);
+    s.fronts.reserve(postorder_.size()), s.position.reserve(entries), s.target.reserve(entries);
+    s.children.reserve(postorder_.size());
     std::int64_t top = 0;
     int first = 0;
     for (const int k : postorder_) {
       const Node& node = nodes_[at(k)];
       Front f{};
-      f.pivots = count(node.pivots), f.others = count(node.others), f.rows = padded(f.others);
+      f.pivots = node.pivots, f.others = node.others, f.rows = padded(f.others);
       f.first = first, first += f.pivots;
       f.list = count(s.position);
-      for (const int other : node.others) s.position.push_back(position_[at(unknown_[at(other)])]);
+      for (const int other : others(node)) s.position.push_back(position_[at(unknown_[at(other)])]);
       std::sort(s.position.begin() + f.list, s.position.end());
-      for (const int child : children_[at(k)]) {
+      for (int child = node.child; child >= 0; child = nodes_[at(child)].sibling) {
         s.children.push_back(front_of_[at(child)]);
         const Front& c = s.fronts[at(front_of_[at(child)])];
         top -= std::int64_t{c.rows} * c.others;
@@ -174,7 +210,6 @@ class Builder {
       for (int i = 1; i < f.others; ++i)
         if (i != f.inner && s.target[at(f.list + i)] != s.target[at(f.list + i - 1)] + 1) f.in_a_row = false;
     }
-    s.position.shrink_to_fit(), s.target.shrink_to_fit(), s.fronts.shrink_to_fit();
     return true;
   }
 
@@ -191,11 +226,27 @@ class Builder {
     for (std::size_t f = 0; f < s.fronts.size(); ++f)
       std::fill_n(front_at.begin() + s.fronts[f].first, s.fronts[f].pivots, static_cast<int>(f));
 
-    struct Placed {
-      int front;
-      Run run;
+    // By front; runs of 3 and 4, nearly all there are, first: they are copied without a loop.
+    const auto place_of = [&](int front, const Run& run) {
+      return at(3 * front + (run.length == 3 ? 0 : run.length == 4 ? 1 : 2));
     };
-    std::vector<Placed> placed;
+    std::vector<int> next(3 * s.fronts.size() + 1, 0);
+    visit_runs(s, front_at, [&](int front, const Run& run) { ++next[place_of(front, run) + 1]; });
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (std::size_t f = 0; f < s.fronts.size(); ++f) {
+      s.fronts[f].threes = next[3 * f + 1];
+      s.fronts[f].fours = next[3 * f + 2];
+      s.fronts[f].runs = next[3 * f + 3];
+    }
+    s.runs.assign(at(next.back()), Run{});
+    visit_runs(s, front_at, [&](int front, const Run& run) { s.runs[at(next[place_of(front, run)]++)] = run; });
+  }
+
+  // Calls visit(front, run) for stretches of the values that stay together in the store of a front.
+  template <class Visit>
+  void visit_runs(const Schedule& s, const std::vector<int>& front_at, Visit&& visit) const {
+    int open = -1;  // front of the run at hand
+    Run run{};
     for (int j = 0; j < layout_.n; ++j) {
       const int pj = position_[at(j)];
       for (int k = layout_.start[at(j)]; k < layout_.start[at(j) + 1]; ++k) {
@@ -206,37 +257,25 @@ class Builder {
         int target = lj * p + li;
         if (li >= p) target = p * p + lj * f.rows + li - p;
         if (lj >= p) target = p * (p + f.rows) + (lj - p) * p + li;
-        if (!placed.empty()) {
-          Placed& last = placed.back();
-          const int length = last.run.length;
-          if (last.front == front && last.run.source + length == k &&
-              static_cast<int>(last.run.target) + length == target && length < 255) {
-            last.run.length = static_cast<std::uint8_t>(length + 1);
-            continue;
-          }
+        const int length = run.length;
+        if (open == front && run.source + length == k && static_cast<int>(run.target) + length == target &&
+            length < 255) {
+          run.length = static_cast<std::uint8_t>(length + 1);
+          continue;
         }
-        placed.push_back({front, {k, static_cast<std::uint32_t>(target) & 0xffffffu, 1}});
+        if (open >= 0) visit(open, run);
+        open = front;
+        run = {k, static_cast<std::uint32_t>(target) & 0xffffffu, 1};
       }
     }
-    // By front; runs of 3 and 4, nearly all there are, first: they are copied without a loop.
-    const auto kind = [](const Run& run) { return run.length == 3 ? 0 : run.length == 4 ? 1 : 2; };
-    std::vector<int> next(3 * s.fronts.size() + 1, 0);
-    for (const Placed& p : placed) ++next[at(3 * p.front + kind(p.run)) + 1];
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    for (std::size_t f = 0; f < s.fronts.size(); ++f) {
-      s.fronts[f].threes = next[3 * f + 1];
-      s.fronts[f].fours = next[3 * f + 2];
-      s.fronts[f].runs = next[3 * f + 3];
-    }
-    s.runs.assign(placed.size(), Run{});
-    for (const Placed& p : placed) s.runs[at(next[at(3 * p.front + kind(p.run))]++)] = p.run;
+    if (open >= 0) visit(open, run);
   }
 
   const CscLayout& layout_;
   std::vector<Node> nodes_;
   std::vector<int> unknown_;  // by place
   std::vector<int> place_, owner_;
-  std::vector<std::vector<int>> children_;
+  std::vector<int> other_;  // by node: its other unknowns, ascending
   std::vector<int> postorder_, front_of_, position_;
 };
 

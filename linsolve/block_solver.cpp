@@ -71,9 +71,12 @@ class BlockSolver final : public LinearSolver {
   }
 
   bool order() {
-    BlockGraph graph;
-    graph.build(layout_, node_, fused_);
-    if (!schedule_.build(layout_, graph, elimination_order(graph))) return false;
+    {
+      BlockGraph graph;
+      graph.build(layout_, node_, fused_);
+      schedule_ = {};
+      if (!schedule_.build(layout_, graph, elimination_order(graph))) return false;
+    }
     factor_.resize(schedule_);
     statistics_.factor_nonzeros = schedule_.factor_nonzeros;
     return ordered_ = true;
@@ -176,12 +179,12 @@ class BlockSolver final : public LinearSolver {
       for (int i = f.first; i < f.first + f.pivots; ++i) {
         const int node = node_[at(schedule_.unknown[at(i)])];
         if (graph.body_atoms[at(node)] == 0 && fused_[at(node)] < 0) {
-          const auto& bodies = graph.bodies[at(node)];
+          const std::span<const int> bodies = graph.bodies[node];
           if (bodies.empty()) continue;
           fused_[at(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[at(b)]; });
           any = true;
         } else if (fused_[at(node)] < 0) {
-          for (const int g : graph.groups[at(node)])
+          for (const int g : graph.groups[node])
             if (fused_[at(g)] < 0) {
               fused_[at(g)] = node;
               any = true;
