@@ -96,7 +96,7 @@ std::vector<std::string> notes(const Scene& scene, double end, const Reference& 
       fmt::format("reference: {} in {}, rtol {:g}, {}; it resolves {:.1g} in positions, {:.1g} in "
                   "velocities, {:.1g} in accelerations, {:.1g} in multipliers",
                   r.of().integrator, r.of().formulation, r.of().tight,
-                  r.independent ? "confirmed by another method" : "not confirmed by another method", r.agreement[0],
+                  r.nearest < 0 ? "not confirmed by another method" : "confirmed by another method", r.agreement[0],
                   r.agreement[1], r.agreement[2], r.agreement[3]));
   lines.push_back(fmt::format(
       "time: of the time-stepping loop, median of {} interleaved repetitions after a first run; runs expected to take "

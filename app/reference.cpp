@@ -19,8 +19,7 @@ struct MethodEntry {
   const char *integrator, *formulation;
   double smallest;  // rtol below which rounding rules
 };
-// Unlike each other in the integrator and in the coordinates.
-constexpr MethodEntry kMethods[] = {{"dop853", "rA", 1e-13}, {"dop853", "rp", 1e-13}};
+constexpr MethodEntry kMethods[] = {{"dop853", "rA", 1e-13}, {"dop853", "rp", 1e-13}, {"ida", "rp", 1e-12}};
 constexpr double kApart = 100;  // ratio of a method's two tolerances
 
 Settings settings_of(const Reference::Method& method, double rtol, const ReferenceSettings& asked) {
@@ -62,9 +61,10 @@ void each_number(State& body, const One& one) {
 std::string packed(const Reference& reference) {
   Json json;
   for (const Reference::Method& m : reference.methods)
-    json["methods"].push_back({m.integrator, m.formulation, m.loose, m.tight, m.failure, packed(m.apart)});
+    json["methods"].push_back(
+        {m.integrator, m.formulation, m.loose, m.tight, m.failure, packed(m.apart), packed(m.from_given)});
   json["given"] = reference.given;
-  json["independent"] = reference.independent;
+  json["nearest"] = reference.nearest;
   json["agreement"] = packed(reference.agreement);
   json["t"] = reference.motion.t;
   json["lambda"] = reference.motion.lambda;
@@ -79,9 +79,9 @@ Reference unpacked(const std::string& data, std::size_t bodies) {
   const Json json = Json::parse(data);
   Reference reference;
   for (const Json& m : json.at("methods"))
-    reference.methods.push_back({m.at(0), m.at(1), m.at(2), m.at(3), m.at(4), unpacked(m.at(5))});
+    reference.methods.push_back({m.at(0), m.at(1), m.at(2), m.at(3), m.at(4), unpacked(m.at(5)), unpacked(m.at(6))});
   reference.given = json.at("given");
-  reference.independent = json.at("independent");
+  reference.nearest = json.at("nearest");
   reference.agreement = unpacked(json.at("agreement"));
   reference.motion.t = json.at("t").get<std::vector<double>>();
   reference.motion.lambda = json.at("lambda").get<std::vector<std::vector<double>>>();
@@ -98,7 +98,7 @@ Reference compute(const Scene& scene, const ReferenceSettings& asked) {
   Reference reference;
   std::vector<Motion> tight;
   for (const MethodEntry& entry : kMethods) {
-    Reference::Method method{entry.integrator, entry.formulation, 0, 0, {}, {}};
+    Reference::Method method{entry.integrator, entry.formulation, 0, 0, {}, {}, {}};
     method.tight = std::max(std::pow(10.0, -asked.digits - 1), entry.smallest);
     method.loose = kApart * method.tight;
     MotionRun last = run_motion(scene, settings_of(method, method.tight, asked));
@@ -124,9 +124,12 @@ Reference compute(const Scene& scene, const ReferenceSettings& asked) {
   reference.agreement = reference.of().apart;
   const Sizes scale = sizes(reference.motion, model);
   for (std::size_t m = 0; m < reference.methods.size(); ++m) {
-    if (m == given || !reference.methods[m].failure.empty()) continue;
-    reference.agreement = difference(tight[m], reference.motion, scale, model);
-    reference.independent = true;
+    Reference::Method& other = reference.methods[m];
+    if (m == given || !other.failure.empty()) continue;
+    other.from_given = difference(tight[m], reference.motion, scale, model);
+    if (reference.nearest >= 0 && largest(other.from_given) >= largest(reference.agreement)) continue;
+    reference.nearest = static_cast<int>(m);
+    reference.agreement = other.from_given;
   }
   return reference;
 }

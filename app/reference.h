@@ -1,8 +1,9 @@
-// A reference motion of a scene, and how far it can be trusted: two methods, each at two tolerances.
+// A reference motion of a scene, and how far it can be trusted: several methods, unlike each other in the integrator or
+// in the coordinates, each at two tolerances.
 //
-// How far a method's two tolerances are apart tells what its error control leaves; how far the two methods are apart
-// tells what neither can tell of itself. The motion given is the tighter one of the method whose tolerances are least
-// apart, and `agreement` is how far the other method is from it.
+// How far a method's two tolerances are apart tells what its error control leaves; how far two methods are apart tells
+// what neither can tell of itself. The motion given is the tighter one of the method whose tolerances are least apart.
+// `agreement` is how far the nearest other method is from it: what the reference resolves.
 #pragma once
 
 #include <string>
@@ -25,12 +26,13 @@ struct Reference {
     double loose = 0, tight = 0;  // rtol
     std::string failure;          // of one of its runs; empty where both are good
     PerQuantity apart{};          // its two tolerances
+    PerQuantity from_given{};     // its tighter motion from the one given
   };
 
   std::vector<Method> methods;
-  int given = -1;            // the method of the motion; -1: there is none, each method's failure says why
-  bool independent = false;  // a second method confirms it
-  PerQuantity agreement{};   // with the other method; where there is none, between the tolerances
+  int given = -1;           // the method of the motion; -1: there is none, each method's failure says why
+  int nearest = -1;         // the other method that agrees best; -1: no other confirms it
+  PerQuantity agreement{};  // with that one; where there is none, between the tolerances
   Motion motion;
 
   const Method& of() const { return methods[static_cast<std::size_t>(given)]; }

@@ -41,17 +41,23 @@ void print_agreement(const Scene& scene, const Reference& r, const ReferenceSett
       fmt::print("{}",
                  row(fmt::format("{} in {}, rtol {:.0e} against {:.0e}", m.integrator, m.formulation, m.loose, m.tight),
                      m.apart));
-  for (const Reference::Method& m : r.methods)
-    if (m.failure.empty() && &m != &r.of())
-      fmt::print("{}", row(fmt::format("{} in {} against {} in {}", m.integrator, m.formulation, r.of().integrator,
-                                       r.of().formulation),
-                           r.agreement));
-  fmt::print("  {:<46}", "digits that agree");
+  const auto others = [&](const auto& print) {
+    for (const Reference::Method& m : r.methods)
+      if (m.failure.empty() && &m != &r.of()) print(m);
+  };
+  others([&](const Reference::Method& m) {
+    fmt::print("{}", row(fmt::format("{} in {} against {} in {}", m.integrator, m.formulation, r.of().integrator,
+                                     r.of().formulation),
+                         m.from_given));
+  });
   const std::size_t quantities = kQuantities.size() - r.motion.lambda.front().empty();  // no multipliers, no digits
-  for (std::size_t k = 0; k < quantities; ++k) fmt::print("{:>14.1f}", digits(r.agreement[k]));
-  fmt::print("\n  given is {} in {} with rtol {:.0e}: {}\n", r.of().integrator, r.of().formulation, r.of().tight,
-             r.independent ? "its two tolerances are least apart, and the other method confirms it"
-                           : "no other method confirms it");
+  others([&](const Reference::Method& m) {
+    fmt::print("  {:<46}", fmt::format("digits that agree with {} in {}", m.integrator, m.formulation));
+    for (std::size_t k = 0; k < quantities; ++k) fmt::print("{:>14.1f}", digits(m.from_given[k]));
+    fmt::print("\n");
+  });
+  fmt::print("  given is {} in {} with rtol {:.0e}: {}\n", r.of().integrator, r.of().formulation, r.of().tight,
+             r.nearest < 0 ? "no other method confirms it" : "its two tolerances are least apart");
 }
 
 std::string record(const Scene& scene, const Reference& r, const ReferenceSettings& settings) {
@@ -64,14 +70,15 @@ std::string record(const Scene& scene, const Reference& r, const ReferenceSettin
   json["end"] = settings.end;
   json["every"] = settings.every;
   json["given"] = {{"integrator", r.of().integrator}, {"formulation", r.of().formulation}, {"rtol", r.of().tight}};
-  json["confirmed_by_another_method"] = r.independent;
+  json["confirmed_by_another_method"] = r.nearest >= 0;
   json["agreement"] = named(r.agreement);
   for (const Reference::Method& m : r.methods)
     json["methods"].push_back({{"integrator", m.integrator},
                                {"formulation", m.formulation},
                                {"rtol", {m.loose, m.tight}},
                                {"failure", m.failure},
-                               {"difference_of_tolerances", named(m.apart)}});
+                               {"difference_of_tolerances", named(m.apart)},
+                               {"difference_from_given", named(m.from_given)}});
   add_origin(json);
   json["scene"] = nlohmann::ordered_json::parse(scene.source, nullptr, true, true);
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -142,7 +149,7 @@ void add_reference(CLI::App& app, int& status) {
       ->type_name("DIR");
   command->add_flag("--quiet", options->quiet, "nothing but errors");
   command->footer(
-      "Two methods, each at two tolerances: what they differ by is stated for positions, velocities, accelerations "
+      "Several methods, each at two tolerances: what they differ by is stated for positions, velocities, accelerations "
       "and\n"
       "multipliers. Kept by the content of scene, settings and program, and not computed twice.");
   command->callback([options, &status] { status = run(*options); });

@@ -15,6 +15,10 @@ Eigen::MatrixXd transposed_gradient(Problem& problem) {
   return Gt;
 }
 
+// Pivots below this, of the largest, are those of dependent rows. Rows depend on one another where the constraints
+// hold; in a computed state they do but for an integrator's tolerance.
+constexpr double kDependent = 1e-8;
+
 }  // namespace
 
 Reactions::Reactions(const Problem& problem) : lambda_(problem.model().rows.size()) {
@@ -40,7 +44,10 @@ void Reactions::update(const Sample& sample) {
   const Eigen::MatrixXd Gt = transposed_gradient(*whole_);
   Eigen::VectorXd determined = Eigen::VectorXd::Zero(Gt.cols());
   for (std::size_t k = 0; k < rows.size(); ++k) determined[rows[k]] = sample.lambda[k];
-  const Eigen::VectorXd least = Gt.completeOrthogonalDecomposition().solve(Gt * determined);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  decomposition.setThreshold(kDependent);
+  decomposition.compute(Gt);
+  const Eigen::VectorXd least = decomposition.solve(Gt * determined);
   std::copy(least.begin(), least.end(), lambda_.begin());
 }
 
