@@ -103,9 +103,9 @@ std::vector<std::string> notes(const Scene& scene, double end, const Reference& 
       "over {:g} s (error control: {:g} s) are left out",
       options.extent().repetitions, options.extent().longest, kPatience * options.extent().longest));
   lines.push_back(fmt::format(
-      "front: no other case is as accurate and as fast; errors the reference does not resolve count as equal, errors "
-      "over {:g} not at all",
-      kUseless));
+      "front: no other case is as accurate and as fast; errors below {:g} times what the reference resolves count as "
+      "equal, errors over {:g} not at all",
+      kResolved, kUseless));
   return lines;
 }
 

@@ -34,7 +34,7 @@ class ChartFile {
 
   const ChartRow* find(const Case& one) const;  // nullptr where it has not been measured
   void add(const Case& one, const Measured& measured);
-  // Finds the front, down to the differences `floor` that the reference resolves, and writes the whole file anew.
+  // Finds the front and writes the whole file anew.
   void finish(const Reference& reference);
 
   const std::filesystem::path& path() const { return file_; }

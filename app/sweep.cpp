@@ -137,7 +137,8 @@ std::vector<Measured> Sweep::measure(const std::vector<Case>& batch, int repetit
   return all;
 }
 
-std::vector<bool> front(const std::vector<double>& errors, const std::vector<double>& seconds, double floor) {
+std::vector<bool> front(const std::vector<double>& errors, const std::vector<double>& seconds, double agreement) {
+  const double floor = kResolved * agreement;
   std::vector<bool> on(errors.size());
   for (std::size_t k = 0; k < errors.size(); ++k) {
     if (!(errors[k] <= kUseless)) continue;

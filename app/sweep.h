@@ -73,8 +73,9 @@ class Sweep {
 };
 
 // Whether each point (error, seconds) is on the front of a chart: none is better in one and at least as good in the
-// other. Errors below `floor`, which the reference cannot tell apart, are equal; errors above kUseless do not count.
-std::vector<bool> front(const std::vector<double>& errors, const std::vector<double>& seconds, double floor);
-inline constexpr double kUseless = 0.01;
+// other. Errors below kResolved times `agreement`, how far the reference can be trusted, are equal; errors above
+// kUseless do not count.
+std::vector<bool> front(const std::vector<double>& errors, const std::vector<double>& seconds, double agreement);
+inline constexpr double kResolved = 10, kUseless = 0.01;
 
 }  // namespace poinsot::app

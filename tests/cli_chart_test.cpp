@@ -47,7 +47,7 @@ TEST_F(Chart, MeasuresEveryCaseAndFindsTheFront) {
   ASSERT_EQ(all.size(), 1u + 2 * 5 + 2 * 5);
   EXPECT_EQ(all[0].at("status"), "reference");
   for (const char* quantity : {"position", "velocity", "acceleration", "multiplier"}) {
-    const double floor = std::stod(all[0].at(quantity));
+    const double floor = 10 * std::stod(all[0].at(quantity));
     EXPECT_LT(floor, 1e-10) << quantity;
     const auto error = [&](const Row& row) { return std::max(floor, std::stod(row.at(quantity))); };
     const auto seconds = [](const Row& row) { return std::stod(row.at("seconds")); };
