@@ -107,15 +107,20 @@ Status ConsistentPoints::project(Point& at, bool& moved) {
   return {};
 }
 
-Status ConsistentPoints::refine(Point& at) {
-  problem_.equations_of_motion(a(at), lambda(at), rates());
+void ConsistentPoints::residual(const Point& at, std::span<double> out) {
+  problem_.equations_of_motion(a(at), lambda(at), out.first(nv_));
+  const std::span<double> rows = out.subspan(nv_);
   problem_.set_velocity(a(at));
-  problem_.velocity_residual(rows());  // G a − ν
+  problem_.velocity_residual(rows);  // G a − ν
   problem_.set_velocity(span(at.v));
   problem_.nu(span(rows_));
-  rhs_.tail(problem_.nc()) += rows_;
+  for (std::size_t k = 0; k < nc_; ++k) rows[k] += span(rows_)[k];
   problem_.gamma(span(rows_));
-  rhs_.tail(problem_.nc()) -= rows_;
+  for (std::size_t k = 0; k < nc_; ++k) rows[k] -= span(rows_)[k];
+}
+
+Status ConsistentPoints::refine(Point& at) {
+  residual(at, span(rhs_));
   if (Status status = system_.solve(at.t, span(rhs_)); !status.ok()) return status;
   at.z -= rhs_;
   return {};

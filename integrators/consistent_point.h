@@ -29,6 +29,8 @@ class ConsistentPoints {
   Point make(double t, const State& state) const;
   void stand(const Point& at);
 
+  // M a + Gᵀλ − Q and G a − γ of a point the problem stands at.
+  void residual(const Point& at, std::span<double> out);
   // Makes (a, λ) those of (q, v); the problem stands there and the factorization belongs to it.
   Status accelerations(Point& at);
   // Moves q and v onto the constraints with the factorization at hand, which belongs to a point nearby, and says

@@ -9,6 +9,7 @@
 #include "integrators/implicit_euler.h"
 #include "integrators/integrator.h"
 #include "integrators/kinematics.h"
+#include "integrators/radau5.h"
 #include "integrators/rattle.h"
 
 namespace poinsot {
@@ -32,6 +33,13 @@ constexpr IntegratorEntry kIntegrators[] = {
      Analysis::dynamics,
      8,
      make_dop853,
+     {},
+     true},
+    {"radau5",
+     "three-stage Radau IIA of order 5 with error control and projection; for stiff scenes; any formulation",
+     Analysis::dynamics,
+     5,
+     make_radau5,
      {},
      true},
     {"ida", "SUNDIALS IDA: formulas of order 1 to 5 on the stabilized index-2 form, with error control; a reference",

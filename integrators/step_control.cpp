@@ -9,6 +9,7 @@ namespace poinsot {
 namespace {
 
 constexpr double kSmallestError = 1e-4;  // below this an error says nothing about the next step
+constexpr double kSmallestPredicted = 1e-2;
 
 double length(std::span<const double> x) {
   double sum = 0;
@@ -42,8 +43,14 @@ double error_norm(std::span<const double> x, std::span<const double> scale) {
 }
 
 double StepController::accepted(double h, double error) {
-  const double factor = rule_.safety * std::pow(error, -rule_.alpha) * std::pow(before_, rule_.beta);
-  before_ = std::max(error, kSmallestError);
+  double factor = rule_.safety * std::pow(error, -rule_.alpha) * std::pow(before_, rule_.beta);
+  if (rule_.predictive) {
+    if (h_before_ > 0) {
+      factor = std::min(factor, rule_.safety * h / h_before_ * std::pow(before_ / (error * error), rule_.alpha));
+    }
+    h_before_ = h;
+  }
+  before_ = std::max(error, rule_.predictive ? kSmallestPredicted : kSmallestError);
   // error 0 makes the factor infinite, which the clamp makes the largest growth
   const double grow = after_rejection_ ? 1.0 : rule_.grow;
   after_rejection_ = false;

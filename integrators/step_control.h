@@ -9,6 +9,8 @@
 // Next step (Hairer, Nørsett, Wanner, "Solving Ordinary Differential Equations I", sec. II.4, and IV.2 for the PI
 // part):
 //   h_new = h · safety · err^(−α) · err_before^β, within [shrink, grow] h; after a rejection no growth.
+// Predictive (Gustafsson; sec. IV.8), for stiff motions: no more than the trend of the last two steps allows,
+//   h_new ≤ h · safety · (h/h_before) (err_before/err²)^α
 #pragma once
 
 #include <algorithm>
@@ -29,6 +31,7 @@ struct StepRule {
   double safety;
   double alpha, beta;  // exponents of this error and of the one before
   double shrink, grow;
+  bool predictive = false;
 };
 
 class StepController {
@@ -43,7 +46,7 @@ class StepController {
 
  private:
   StepRule rule_;
-  double before_ = 1e-4;
+  double before_ = 1e-4, h_before_ = 0;
   bool after_rejection_ = false;
 };
 

@@ -1,0 +1,89 @@
+// One step of the three-stage Radau IIA method after the other, on the acceleration level, with projection.
+//
+// Collocation at c = ((4 − √6)/10, (4 + √6)/10, 1) of δq' = T(δq)⁻¹ v, v' = a in the coordinates δq about the start of
+// the step (explicit_stepper.h), with the stages' accelerations and multipliers as unknowns:
+//
+//   M a_i + Gᵀλ_i − Q = 0,   G a_i − γ = 0   at (q_n ⊞ δq_i, v_i),
+//   v_i = v_n + h Σ A_ij a_j,   δq_i = h Σ A_ij T(δq_j)⁻¹ v_j      (in rA by sweeps, which contract by h |ω̄|)
+//
+// Index 1: no order is lost in the multipliers, as it would be in index 2 or 3, and nothing is scaled by powers of h.
+// The stage at the end of the step is projected onto Φ = 0 and G v = ν (consistent_point.h).
+//
+// Newton's matrix M + h A ⊗ D + h² A² ⊗ K has the exact stiffness and damping of one point and is kept while it
+// converges well. The eigenvalues of A, μ and α ± iβ, take it apart into a real block and a pair of coupled ones:
+//   [M + hμ D + h²μ² K, Gᵀ; G, 0],   the same with α, α² − β² and, between the two, ±(hβ D + 2h²αβ K):
+// one linear system of 3 n unknowns. Error estimate of order 3, filtered by the real block; starting values by
+// extrapolation. E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", sec. IV.8.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "integrators/consistent_point.h"
+#include "integrators/linearization.h"
+
+namespace poinsot {
+
+class RadauStepper {
+ public:
+  using Vector = Eigen::VectorXd;
+
+  // `solver` takes the stages, `point_solver` the consistent points.
+  RadauStepper(Problem& problem, LinearSolver& solver, LinearSolver& point_solver, double rtol, double atol,
+               Statistics& statistics, PhaseClock& clock);
+
+  Status prepare();
+  // The state is consistent at t. The problem stands there afterwards.
+  void start(double t, const State& state);
+
+  // A step whose explicit Euler error is small; no evaluation.
+  double first_step(double end) const;
+  // Stages of a step to time `to`; its error, 1 being the tolerance. The state stays what it is.
+  Status attempt(double to, double& error);
+  // Makes the end of the attempted step the state; fails where it cannot be projected.
+  Status complete();
+  // The motion within the completed step at time t, consistent, in interpolated(): a shorter step from where that one
+  // began, because the collocation polynomial has order 3 only.
+  Status interpolate(double t);
+  // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
+  void settle();
+
+  // Whether steps of the same length are worth their kept matrix.
+  bool converges_fast() const { return fast_; }
+  const Point& state() const { return state_; }
+  const Point& interpolated() const { return sample_; }
+  const ConsistentPoints& points() const { return points_; }
+
+ private:
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+  template <class Sink>
+  void write(double h, Sink&& entry) const;
+  Status refresh(const Point& from, double h);
+  Status stages(const Point& from, double to);
+  Status newton(const Point& from, double to);
+  void predict(const Point& from, double h);
+  void move(const Point& from, double h, int sweeps);
+  void set_scale(const Point& from, const Vector& q, const Vector& v);
+  Status error_of(const Point& from, double h, double& error);
+  void end_of_step(const Point& from, double to, Point& at);
+
+  Problem& problem_;
+  TimedSystem system_;
+  ConsistentPoints points_;
+  Linearization linear_;
+  const double rtol_, atol_;
+  const Eigen::Index nv_, n_;
+  Statistics& statistics_;
+
+  Point state_, next_, sample_, before_, stage_;  // before_: where the completed step began
+  Columns Z_, V_, dQ_;                            // (a, λ), velocity and δq of the stages
+  Columns Z_before_;                              // of the completed step
+  double h_ = 0, h_before_ = 0;                   // h_before_ = 0: nothing to extrapolate
+  Columns R_, W_, V_old_, dQ_old_, rates_;
+  double h_factored_ = 0;
+  bool linear_here_ = false, linear_ready_ = false, fast_ = false;
+  double convergence_ = 1;  // θ/(1 − θ)
+  Vector sizes_, sizes_next_, scale_, change_, e_;
+};
+
+}  // namespace poinsot
