@@ -2,8 +2,8 @@
 // end.
 //
 // A Method is a stepper with: Status attempt(to, rejections, error), Status complete(), Status interpolate(t),
-// interpolated(), settle(), state(), points(); double first_step(end); double retry(h, rejections, completed), the step
-// to try after so many rejections in a row; double adopt(h, wanted), the step after a completed one of length h.
+// interpolated(), settle(), state(), points(); double first_step(end); double retry(h, rejections, usual), the step to
+// try after so many rejections in a row; double adopt(h, wanted), the step after a completed one of length h.
 #pragma once
 
 #include <algorithm>
@@ -21,13 +21,14 @@ namespace poinsot {
 template <class Method, class GiveOut>
 Status controlled_steps(Method& method, const StepRule& rule, const Settings& settings, const GiveOut& give_out,
                         Statistics& statistics) {
+  constexpr double kForgotten = 0.8;
   const double end = settings.end, smallest = 16 * std::numeric_limits<double>::epsilon() * end;
   SampleTimes times(settings.every, end);
   StepController controller(rule);
   Creeping creeping;
   double h = method.first_step(end);
-  double completed = 0;  // the last step
-  int rejections = 0;    // in a row
+  double usual = 0;    // length of the steps so far, those long ago forgotten
+  int rejections = 0;  // in a row
   while (method.state().t < end) {
     const double t = method.state().t;
     const double to = t + 1.01 * h >= end ? end : t + h;
@@ -41,12 +42,12 @@ Status controlled_steps(Method& method, const StepRule& rule, const Settings& se
       ++statistics.rejected_steps;
       h = status.ok() && std::isfinite(error) ? controller.rejected(h, error) : controller.failed(h);
       if (h < smallest) return step_too_small(t, h, status);
-      h = method.retry(h, ++rejections, completed);
+      h = method.retry(h, ++rejections, usual);
       continue;
     }
     ++statistics.steps;
     rejections = 0;
-    completed = h;
+    usual = std::max(h, kForgotten * usual);
     creeping.completed(h);
     h = method.adopt(h, controller.accepted(h, error));
     for (; settings.every > 0 && times.next() < to; times.pass()) {

@@ -8,7 +8,8 @@
 namespace poinsot {
 namespace {
 
-// So many rejections in a row are more than error control needs to find a step: a singular position may be near.
+// So many rejections in a row are more than error control needs to find a step: a singular position may be near,
+// which a step of the usual length passes.
 constexpr int kDifficult = 2;
 
 class Method : public ExplicitStepper {
@@ -23,8 +24,8 @@ class Method : public ExplicitStepper {
   Status attempt(double to, int rejections, double& error) {
     return ExplicitStepper::attempt(to, rejections < kDifficult ? Stages::as_they_come : Stages::projected, error);
   }
-  double retry(double h, int rejections, double completed) const {
-    return rejections == kDifficult ? std::max(h, completed) : h;
+  double retry(double h, int rejections, double usual) const {
+    return rejections == kDifficult ? std::max(h, usual) : h;
   }
   double adopt(double, double wanted) const { return wanted; }
 };

@@ -1,7 +1,5 @@
 #include "integrators/radau_stepper.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
@@ -187,22 +185,22 @@ void RadauStepper::predict(const Point& from, double h) {
     if (h_before_ == 0) {
       Z_.col(i) = from.z;
     } else {
-      Z_.col(i).noalias() = Z_before_ * lagrange((from.t - before_.t + method().c[i] * h) / h_before_);
+      Z_.col(i).noalias() = Z_before_.lazyProduct(lagrange((from.t - before_.t + method().c[i] * h) / h_before_));
     }
     dQ_.col(i) = (method().c[i] * h) * from.v;
   }
   move(from, h, kFirstSweeps);
 }
 
-// v_i and δq_i of the stages' accelerations.
+// v_i and δq_i of the stages' accelerations. (Eigen's other products allocate.)
 void RadauStepper::move(const Point& from, double h, int sweeps) {
   const Matrix hA = h * method().A;
-  V_.noalias() = Z_.topRows(nv_) * hA.transpose();
+  V_.noalias() = Z_.topRows(nv_).lazyProduct(hA.transpose());
   V_.colwise() += from.v;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     rates_ = V_;
     for (Eigen::Index i = 0; i < 3; ++i) problem_.lower(column(dQ_, i), column(rates_, i));
-    dQ_.noalias() = rates_ * hA.transpose();
+    dQ_.noalias() = rates_.lazyProduct(hA.transpose());
   }
 }
 
@@ -243,13 +241,13 @@ Status RadauStepper::newton(const Point& from, double to) {
       points_.stand(stage_);
       points_.residual(stage_, column(R_, i));
     }
-    W_.noalias() = -(R_ * m.T_inverse.transpose());
+    W_.noalias() = R_.lazyProduct(-m.T_inverse.transpose());
     if (Status status = system_.solve(from.t, {W_.data(), static_cast<std::size_t>(W_.size())}); !status.ok()) {
       return status;
     }
     V_old_ = V_;
     dQ_old_ = dQ_;
-    Z_.noalias() += W_ * m.T.transpose();
+    Z_.noalias() += W_.lazyProduct(m.T.transpose());
     move(from, h, kSweeps);
     ++statistics_.newton_iterations;
     double sum = 0;
@@ -275,8 +273,7 @@ Status RadauStepper::newton(const Point& from, double to) {
     }
     before = std::max(change, kEpsilon);
   }
-  return {Failure::not_converged, from.t,
-          fmt::format("at t = {:.9g} s Newton's method did not converge in a step of {:.3g} s", from.t, h)};
+  return {Failure::not_converged, from.t, {}};  // no words: the step is tried again, and words are allocated
 }
 
 Status RadauStepper::attempt(double to, double& error) {
@@ -298,8 +295,8 @@ void RadauStepper::end_of_step(const Point& from, double to, Point& at) {
 Status RadauStepper::error_of(const Point& from, double h, double& error) {
   const Method& m = method();
   const double hmu = h * m.mu;
-  e_.head(nv_) = hmu * from.v + m.mu * (dQ_ * m.e);
-  e_.tail(nv_) = hmu * from.z.head(nv_) + m.mu * (V_ * m.e - m.e.sum() * from.v);
+  e_.head(nv_) = hmu * from.v + m.mu * dQ_.lazyProduct(m.e);
+  e_.tail(nv_) = hmu * from.z.head(nv_) + m.mu * (V_.lazyProduct(m.e) - m.e.sum() * from.v);
   change_.head(nv_) = e_.head(nv_) + hmu * e_.tail(nv_);
   W_.setZero();
   linear_.add_forces(span(e_, nv_, nv_), span(change_, 0, nv_), column(W_, 0));
@@ -328,7 +325,7 @@ Status RadauStepper::interpolate(double t) {
   const Status status = stages(before_, t);
   fast_ = fast;
   convergence_ = convergence;
-  if (!status.ok()) return status;
+  if (!status.ok()) return step_too_small(before_.t, t - before_.t, status);
   end_of_step(before_, t, sample_);
   return points_.complete(sample_);
 }

@@ -79,12 +79,16 @@ double first_step(double h0, double f, double second, int order, double end) {
 }
 
 Status step_too_small(double t, double h, const Status& cause) {
+  std::string last;
+  if (!cause.ok()) {
+    last = "; the last attempt: " + (cause.message.empty() ? "Newton's method did not converge" : cause.message);
+  }
   return {Failure::step_size_too_small, t,
           fmt::format("at t = {:.9g} s the steps became too small to get on with ({:.3g} s): the motion jumps or grows "
                       "without bound here, the mechanism comes to a singular position, near which accelerations are "
                       "lost to rounding, or the tolerances ask for more than the arithmetic has; larger tolerances or "
                       "an implicit integrator with a fixed step may pass{}",
-                      t, h, cause.ok() ? "" : "; the last attempt: " + cause.message)};
+                      t, h, last)};
 }
 
 }  // namespace poinsot

@@ -73,7 +73,8 @@ class Creeping {
   int tiny_ = 0;
 };
 
-// Error control has come to an end at time t with steps of length h; `cause` is what the last attempt failed of.
+// Error control has come to an end at time t with steps of length h; `cause` is what the last attempt failed of;
+// without a message, of Newton's method.
 Status step_too_small(double t, double h, const Status& cause);
 
 }  // namespace poinsot
