@@ -134,24 +134,29 @@ std::string too_long(const Case& one, const std::vector<std::vector<Case>>& leve
   return {};
 }
 
+// The progress counts scenes; this one is the `number`th, from 0.
 void measure_scene(const Sweep& sweep, const std::vector<std::vector<Case>>& levels, ChartFile& file,
-                   const Extent& extent, const std::function<void(double)>& at) {
+                   const Extent& extent, std::size_t number, Progress& progress) {
   double all = 0, done = 0;
   for (const auto& level : levels)
     for (const Case& one : level) all += weight(one, extent) * (1 + extent.repetitions);
   for (const std::vector<Case>& level : levels) {
     std::vector<Case> batch;
     for (const Case& one : level) {
-      const std::string why = file.find(one) ? "measured" : too_long(one, levels, file, extent.longest);
-      if (why.empty())
+      const bool measured = file.find(one);
+      const std::string why = measured ? "" : too_long(one, levels, file, extent.longest);
+      if (!measured && why.empty()) {
         batch.push_back(one);
-      else if (!file.find(one))
-        file.add(one, {why});
-      if (!why.empty()) done += weight(one, extent) * (1 + extent.repetitions);
+        continue;
+      }
+      if (!measured) file.add(one, {why});
+      const double skipped = weight(one, extent) * (1 + extent.repetitions);
+      done += skipped;
+      progress.skip(skipped / all);
     }
     const std::vector<Measured> measured = sweep.measure(batch, extent.repetitions, [&](const Case& one) {
       done += weight(one, extent);
-      at(done / all);
+      progress.at(static_cast<double>(number) + done / all);
     });
     for (std::size_t k = 0; k < batch.size(); ++k) file.add(batch[k], measured[k]);
   }
@@ -205,8 +210,7 @@ int chart(const Options& options) {
     const fs::path stem = fs::path(options.out) / files[k].stem();
     ChartFile file(fs::path(stem).concat(".csv"), notes(scenes[k], end, r, options, plan, core), options.fresh);
     const Sweep sweep(scenes[k], end, r);
-    measure_scene(sweep, sweep.cases(plan), file, options.extent(),
-                  [&](double share) { progress.at(static_cast<double>(k) + share); });
+    measure_scene(sweep, sweep.cases(plan), file, options.extent(), k, progress);
     file.finish(r);
     charts.push_back(file.rows());
     plots.push_back({file.path(), stem});

@@ -26,13 +26,13 @@ Progress::Progress(double end, std::string_view unit, bool wanted)
     : end_(end), unit_(unit), enabled_(wanted && stderr_is_terminal()), next_(start_ + kFirst) {}
 
 void Progress::at(double done) {
-  if (!enabled_ || done <= 0) return;
+  if (!enabled_ || done <= skipped_) return;
   const auto now = Clock::now();
   if (now < next_) return;
   next_ = now + kBetween;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   fmt::print(stderr, "\r\x1b[K{:3.0f} %  {:.6g} of {:.6g} {}, {} left", 100 * done / end_, done, end_, unit_,
-             duration(elapsed * (end_ - done) / done));
+             duration(elapsed * (end_ - done) / (done - skipped_)));
   std::fflush(stderr);
   drawn_ = true;
 }

@@ -15,12 +15,13 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void at(double done);
+  void skip(double amount) { skipped_ += amount; }  // of `done`, what took no time: found done already
   void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  double end_;
+  double end_, skipped_ = 0;
   std::string_view unit_;
   bool enabled_, drawn_ = false;
   Clock::time_point start_ = Clock::now(), next_;
