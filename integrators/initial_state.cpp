@@ -89,7 +89,11 @@ class Assembler {
     }
     std::vector<double> a(v.size()), lambda(static_cast<std::size_t>(problem->nc()));
     if (Status status = consistent.accelerations(*problem, 0, a, lambda); !status.ok()) return status;
-    if (off_velocity() || off_position()) problem->to_bodies(a, result_.bodies);
+    if (off_velocity() || off_position()) {
+      problem->to_bodies(a, result_.bodies);
+    } else {
+      result_.a = std::move(a), result_.lambda = std::move(lambda);
+    }
     return {};
   }
 

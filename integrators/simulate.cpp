@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "core/check.h"
 #include "core/input_error.h"
@@ -98,15 +99,22 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   state.a.resize(state.v.size());
   state.lambda.resize(static_cast<std::size_t>(problem->nc()));
   outcome.status = problem->from_bodies(start.bodies, state.q, state.v);
+  std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
   if (!outcome.status.ok()) return outcome;
   if (settings.analysis == Analysis::dynamics) {
     problem->set_position(0, state.q);
     problem->set_velocity(state.v);
+    const bool known = formulation.name == "rA" && !start.a.empty() && !problem->has_discrete_state();
     if (problem->has_discrete_state()) problem->accept(0, state.q, state.v, state.a);
     problem->set_position(0, state.q);
     problem->set_velocity(state.v);
-    outcome.status = Consistent(*problem, linear_solver.name).accelerations(*problem, 0, state.a, state.lambda);
-    if (!outcome.status.ok()) return outcome;
+    if (known) {
+      state.a = std::move(start.a);
+      state.lambda = std::move(start.lambda);
+    } else {
+      outcome.status = Consistent(*problem, linear_solver.name).accelerations(*problem, 0, state.a, state.lambda);
+      if (!outcome.status.ok()) return outcome;
+    }
   }
   const std::unique_ptr<LinearSolver> solver = linear_solver.make();
   outcome.status = integrator.make()->run(*problem, *solver, settings, state, observe, outcome.statistics);

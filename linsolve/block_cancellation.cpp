@@ -71,7 +71,7 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
     const Front& f = s.fronts[k];
     const int p = f.pivots, m = f.others, n = p + m;
     Square a(n);
-    for (const Run* end = s.runs.data() + f.runs; run != end; ++run)
+    for (const Run* end = s.runs.data() + f.runs.back(); run != end; ++run)
       for (unsigned i = 0; i < run->length; ++i) {
         // Back from the store of D, L and U to rows and columns.
         const int t = static_cast<int>(run->target + i), l = t - p * p, u = l - p * f.rows;
@@ -82,7 +82,13 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
       }
     for (const int* end = s.children.data() + f.children; child != end; ++child) {
       const Front& c = s.fronts[at(*child)];
-      const auto place = [&](int i) { return s.target[at(c.list + i)] + (i < c.inner ? 0 : p); };
+      std::vector<int> places(at(c.others));
+      for (int r = c.first_stretch; r < c.last_stretch; ++r) {
+        const Stretch& stretch = s.stretches[at(r)];
+        for (int i = 0; i < stretch.length; ++i)
+          places[at(stretch.from + i)] = stretch.to + i + (r < c.first_outer_stretch ? 0 : p);
+      }
+      const auto place = [&](int i) { return places[at(i)]; };
       const std::vector<Sized>& update = updates[at(*child)];
       for (int j = 0; j < c.others; ++j)
         for (int i = 0; i < c.others; ++i) {

@@ -35,35 +35,29 @@ void with_size(int pivots, Work&& work) {
   }
 }
 
-// to[0 … n) += from[0 … n)
+// to[0 … n) += from[0 … n), n being small.
 inline void add(double* to, const double* from, int n) {
-  for (int i = 0; i < n; ++i) to[i] += from[i];
+  int i = 0;
+  for (; i + block::kPair <= n; i += block::kPair)
+    block::store_pair(to + i, block::load_pair(to + i) + block::load_pair(from + i));
+  if (i < n) to[i] += from[i];
 }
 
 // Adds a child's update matrix to the parent's D, L, U and W.
-inline void extend_add(const Front& child, const double* from, const int* target, const Front& parent, double* D,
-                       double* W) {
-  const int p = parent.pivots, rows = parent.rows, inner = child.inner, rest = child.others - inner;
+inline void extend_add(const Front& child, const double* update, const Stretch* stretches, const Front& parent,
+                       double* D, double* W) {
+  const int p = parent.pivots, rows = parent.rows;
   double *L = D + p * p, *U = L + p * rows;
-  if (child.in_a_row) {
-    D += target[0], L += rest > 0 ? target[inner] : 0;
-    for (int j = 0; j < inner; ++j, from += child.rows) {
-      add(D + target[j] * p, from, inner);
-      add(L + target[j] * rows, from + inner, rest);
+  const Stretch *first = stretches + child.first_stretch, *outer = stretches + child.first_outer_stretch,
+                *last = stretches + child.last_stretch;
+  for (const Stretch* across = first; across != last; ++across) {
+    double* top = (across < outer ? D : U) + across->to * p;
+    double* bottom = (across < outer ? L : W) + across->to * rows;
+    const double* from = update + across->from * child.rows;
+    for (int j = 0; j < across->length; ++j, top += p, bottom += rows, from += child.rows) {
+      for (const Stretch* down = first; down != outer; ++down) add(top + down->to, from + down->from, down->length);
+      for (const Stretch* down = outer; down != last; ++down) add(bottom + down->to, from + down->from, down->length);
     }
-    U += target[0], W += rest > 0 ? target[inner] : 0;
-    for (int j = inner; j < child.others; ++j, from += child.rows) {
-      add(U + target[j] * p, from, inner);
-      add(W + target[j] * rows, from + inner, rest);
-    }
-    return;
-  }
-  for (int j = 0; j < child.others; ++j, from += child.rows) {
-    const bool pivot = j < inner;
-    double* top = pivot ? D + target[j] * p : U + target[j] * p;
-    double* bottom = pivot ? L + target[j] * rows : W + target[j] * rows;
-    for (int i = 0; i < inner; ++i) top[target[i]] += from[i];
-    for (int i = inner; i < child.others; ++i) bottom[target[i]] += from[i];
   }
 }
 
@@ -95,15 +89,17 @@ block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> valu
     const Front& f = s.fronts[k];
     double* D = store_.data() + f.store;
     std::fill_n(D, f.pivots * (f.pivots + f.rows + f.others), 0.0);
-    run = copy_runs<3>(run, s.runs.data() + f.threes, values.data(), D);
-    run = copy_runs<4>(run, s.runs.data() + f.fours, values.data(), D);
-    for (const Run* end = s.runs.data() + f.runs; run != end; ++run)
+    run = copy_runs<1>(run, s.runs.data() + f.runs[0], values.data(), D);
+    run = copy_runs<2>(run, s.runs.data() + f.runs[1], values.data(), D);
+    run = copy_runs<3>(run, s.runs.data() + f.runs[2], values.data(), D);
+    run = copy_runs<4>(run, s.runs.data() + f.runs[3], values.data(), D);
+    for (const Run* end = s.runs.data() + f.runs[4]; run != end; ++run)
       for (unsigned i = 0; i < run->length; ++i) D[run->target + i] = values[at(run->source) + i];
     double* W = update_.data();
     std::fill_n(W, f.rows * f.others, 0.0);
     for (const int* end = s.children.data() + f.children; child != end; ++child) {
       const Front& c = s.fronts[at(*child)];
-      extend_add(c, stack_.data() + c.update, s.target.data() + c.list, f, D, W);
+      extend_add(c, stack_.data() + c.update, s.stretches.data(), f, D, W);
     }
     block::Choice choice{order_.data() + f.first, weight_.data() + f.first, then_.data() + f.first, moved_[k] != 0,
                          keep_order};

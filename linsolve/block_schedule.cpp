@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 namespace poinsot {
@@ -155,12 +156,12 @@ class Builder {
 
   bool lay_out(Schedule& s) {
     s.n = layout_.n;
-    s.fronts.clear(), s.position.clear(), s.target.clear(), s.children.clear();
+    s.fronts.clear(), s.position.clear(), s.stretches.clear(), s.children.clear();
     s.store_size = s.stack_size = s.factor_nonzeros = 0;
     s.largest_update = s.largest_pivots = s.largest_rows = 0;
     std::size_t entries = 0;
     for (const int k : postorder_) entries += at(nodes_[at(k)].others);
-    s.fronts.reserve(postorder_.size()), s.position.reserve(entries), s.target.reserve(entries);
+    s.fronts.reserve(postorder_.size()), s.position.reserve(entries);
     s.children.reserve(postorder_.size());
     std::int64_t top = 0;
     int first = 0;
@@ -194,22 +195,28 @@ class Builder {
     std::vector<int> parent_of(s.fronts.size(), -1);
     for (std::size_t k = 0, c = 0; k < s.fronts.size(); ++k)
       for (; c < at(s.fronts[k].children); ++c) parent_of[at(s.children[c])] = static_cast<int>(k);
-    s.target.resize(s.position.size());
     for (std::size_t k = 0; k < s.fronts.size(); ++k) {
       Front& f = s.fronts[k];
+      f.first_stretch = f.first_outer_stretch = f.last_stretch = static_cast<int>(s.stretches.size());
       if (f.others == 0) continue;
-      const int parent = parent_of[k];
+      const int parent = parent_of[k], pivots = s.fronts[at(parent)].pivots;
+      int before = -2;
       for (int i = 0; i < f.others; ++i) {
-        const int position = s.position[at(f.list + i)];
-        const int place = local(s, parent, position);
-        const int pivots = s.fronts[at(parent)].pivots;
-        if (place < pivots) f.inner = i + 1;
-        s.target[at(f.list + i)] = place < pivots ? place : place - pivots;
+        const int place = local(s, parent, s.position[at(f.list + i)]);
+        const bool outer = place >= pivots;
+        if (place != before + 1 || place == pivots) {
+          s.stretches.push_back(
+              {static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(outer ? place - pivots : place), 0});
+        }
+        ++s.stretches.back().length;
+        before = place;
+        if (outer) continue;
+        f.inner = i + 1;
+        f.first_outer_stretch = static_cast<int>(s.stretches.size());
       }
-      f.in_a_row = true;
-      for (int i = 1; i < f.others; ++i)
-        if (i != f.inner && s.target[at(f.list + i)] != s.target[at(f.list + i - 1)] + 1) f.in_a_row = false;
+      f.last_stretch = static_cast<int>(s.stretches.size());
     }
+    s.stretches.shrink_to_fit();
     return true;
   }
 
@@ -226,18 +233,16 @@ class Builder {
     for (std::size_t f = 0; f < s.fronts.size(); ++f)
       std::fill_n(front_at.begin() + s.fronts[f].first, s.fronts[f].pivots, static_cast<int>(f));
 
-    // By front; runs of 3 and 4, nearly all there are, first: they are copied without a loop.
+    // By front; short runs, nearly all there are, by their length: they are copied without a loop.
+    constexpr int kKinds = std::tuple_size_v<decltype(Front::runs)>;
     const auto place_of = [&](int front, const Run& run) {
-      return at(3 * front + (run.length == 3 ? 0 : run.length == 4 ? 1 : 2));
+      return at(kKinds * front + std::min<int>(run.length, kKinds) - 1);
     };
-    std::vector<int> next(3 * s.fronts.size() + 1, 0);
+    std::vector<int> next(kKinds * s.fronts.size() + 1, 0);
     visit_runs(s, front_at, [&](int front, const Run& run) { ++next[place_of(front, run) + 1]; });
     std::partial_sum(next.begin(), next.end(), next.begin());
-    for (std::size_t f = 0; f < s.fronts.size(); ++f) {
-      s.fronts[f].threes = next[3 * f + 1];
-      s.fronts[f].fours = next[3 * f + 2];
-      s.fronts[f].runs = next[3 * f + 3];
-    }
+    for (std::size_t f = 0; f < s.fronts.size(); ++f)
+      std::copy_n(next.begin() + static_cast<std::ptrdiff_t>(kKinds * f + 1), kKinds, s.fronts[f].runs.begin());
     s.runs.assign(at(next.back()), Run{});
     visit_runs(s, front_at, [&](int front, const Run& run) { s.runs[at(next[place_of(front, run)]++)] = run; });
   }

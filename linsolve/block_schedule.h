@@ -10,6 +10,7 @@
 // × m and waits at a fixed place of a stack.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,10 +37,10 @@ struct Front {
   int first;                 // position of the first pivot in the order of elimination
   int list;                  // where its m entries of `position` and `target` start
   int inner;                 // how many of the m unknowns are pivots of the parent: they come first
-  int threes, fours,
-      runs;             // ends of its runs of length 3, 4 and others; they start where those of the front before end
+  int first_stretch, first_outer_stretch, last_stretch;  // of its update in the parent: pivots there, others there, end
+  // Ends of its runs of length 1, 2, 3, 4 and others; they start where those of the front before end.
+  std::array<int, 5> runs;
   int children;         // end of its children, likewise
-  bool in_a_row;        // targets of the `inner` follow one after the other, and so do those of the rest
   std::int64_t store;   // of D, in doubles
   std::int64_t update;  // of W on the stack
 };
@@ -51,12 +52,18 @@ struct Run {
 };
 static_assert(sizeof(Run) == 8);
 
+// `length` of a front's other unknowns from `from` on follow one after the other in the parent, too: from `to` on among
+// its pivots or among its others.
+struct Stretch {
+  std::uint16_t from, to, length;
+};
+
 struct Schedule {
   int n = 0;
   std::vector<Front> fronts;
   std::vector<int> unknown;   // by position
   std::vector<int> position;  // of the m other unknowns of each front, ascending
-  std::vector<int> target;    // their places in the parent: first `inner` among its pivots, the rest among its others
+  std::vector<Stretch> stretches;
   std::vector<Run> runs;
   std::vector<int> children;
   std::int64_t store_size = 0, stack_size = 0, factor_nonzeros = 0;

@@ -35,8 +35,9 @@ namespace {
 constexpr double kSymmetric = 0.9;        // share of mirrored entries that makes a saddle point
 constexpr int kSingleBody = 16;           // unknowns: two dense blocks, nothing gained by taking G out
 constexpr double kNear = 10, kFar = 1e3;  // drift of pivots that is trusted unseen, and with a look at residuals
-constexpr double kSmallResidual = 2e-15;  // relative; above, a solution is refined once
-constexpr double kFairResidual = 1e-12;   // above, other pivots are tried, and a refined solution is looked at again
+constexpr double kSmallResidual = 2e-15;  // relative; above, residuals of later solutions are looked at
+constexpr double kGoodResidual = 5e-15;   // above, a solution is refined; some ten times klu's where that has good ones
+constexpr double kFairResidual = 1e-12;   // above, other pivots are tried
 constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not accepted
 constexpr double kCancelled = 1e-6;       // part of its size that is left of a pivot: worth another order
 constexpr double kRounding = 1e-10;       // the same: little but rounding
@@ -113,12 +114,15 @@ class BlockSolver final : public LinearSolver {
     if (!std::ranges::all_of(values_, [](double x) { return std::isfinite(x); }))
       return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
     ++statistics_.factorizations;
-    Equilibration equilibration;
-    equilibration.resize(layout_.n);
-    (void)equilibration.find(layout_, values_);
+    {
+      Equilibration equilibration;
+      equilibration.resize(layout_.n);
+      (void)equilibration.find(layout_, values_);
+      residual_.measure_by(equilibration.row(), equilibration.col());
+    }
     examined_ = false;
-    for (int repairs = 0; !trustworthy(equilibration); ++repairs) {
-      const auto bad = cancelled_pivots(schedule_, values_, equilibration.row(), kCancelled);
+    for (int repairs = 0; !trustworthy(); ++repairs) {
+      const auto bad = cancelled_pivots(schedule_, values_, residual_.rows(), kCancelled);
       if (repairs == kRepairs || !fuse(bad) || !order()) return factor_by_klu();
     }
     // A pivot that is rounding may still pass for one in a system of very different masses; klu sees it at its own
@@ -134,13 +138,12 @@ class BlockSolver final : public LinearSolver {
 
   // Factorizes with pivots chosen in the units of the equilibrated matrix and, where that does not serve, in those the
   // condition estimate finds. Finds out whether solutions need refinement.
-  bool trustworthy(const Equilibration& equilibration) {
-    const auto rows = equilibration.row(), columns = equilibration.col();
-    residual_.measure_by(rows, columns);
+  bool trustworthy() {
+    const auto rows = residual_.rows(), columns = residual_.columns();
     weight_.assign(rows.begin(), rows.end());
     Condition condition;
     condition.resize(layout_.n);
-    std::vector<double> scale(columns.begin(), columns.end()), x(rows.size());
+    std::vector<double> found, x(rows.size());
     double size = 0;
     const auto solve = [&](std::span<double> b) {
       b_.assign(b.begin(), b.end());
@@ -151,17 +154,17 @@ class BlockSolver final : public LinearSolver {
       factor_.weigh_rows(schedule_, weight_);
       (void)factor_.factor(schedule_, values_, false);
       size = 0;
-      const double estimate = condition.estimate(layout_, values_, solve, scale);
+      const double estimate =
+          condition.estimate(layout_, values_, solve, last ? std::span<const double>(found) : columns);
       statistics_.reciprocal_condition = 1 / estimate;
       if (!std::isfinite(estimate)) return false;
       std::ranges::transform(rows, x.begin(), [](double row) { return 1 / row; });
       solve(x);
-      refined_ = size > kSmallResidual;
-      watched_ = size > kFairResidual;
+      watched_ = size > kSmallResidual;
       if (estimate < kSingularCondition && (size <= kFairResidual || (last && refine(x) <= kLargeResidual)))
         return true;
       std::ranges::transform(condition.rows(), weight_.begin(), [](double w) { return 1 / w; });
-      scale.assign(condition.columns().begin(), condition.columns().end());
+      found.assign(condition.columns().begin(), condition.columns().end());
     }
     return false;
   }
@@ -199,18 +202,13 @@ class BlockSolver final : public LinearSolver {
   LinearStatus do_solve(std::span<double> b) override {
     if (determined_fits_) return determined_->solve(layout_, values_, b);
     if (by_klu_) return klu_->solve(b);
-    if (!refined_ && !drifted_) {
+    if (!drifted_) {
       factor_.solve(schedule_, b);
       return {};
     }
     b_.assign(b.begin(), b.end());
     factor_.solve(schedule_, b);
-    if (!drifted_) {
-      residual_.find(layout_, values_, b_, b);
-      correct(b);
-      return {};
-    }
-    if (residual(b_, b) <= kSmallResidual || refine(b) <= kLargeResidual) return {};
+    if (residual(b_, b) <= kGoodResidual || refine(b) <= kLargeResidual) return {};
     std::ranges::copy(b_, b.begin());
     if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
     return klu_->solve(b);
@@ -219,7 +217,7 @@ class BlockSolver final : public LinearSolver {
   // Corrects x, whose residual for b_ was found, until the residual is small, a few times at most; the residual.
   double refine(std::span<double> x) {
     double size = HUGE_VAL;
-    for (int step = 0; step < kRefinements && !(size <= kSmallResidual); ++step) {
+    for (int step = 0; step < kRefinements && !(size <= kGoodResidual); ++step) {
       correct(x);
       size = residual(b_, x);
     }
@@ -266,8 +264,7 @@ class BlockSolver final : public LinearSolver {
   std::vector<double> b_;
   std::vector<double> weight_;  // of rows in the choice of pivots
   bool ordered_ = false, examined_ = false, determined_fits_ = false;
-  bool refined_ = false;  // the last fresh factorization solved well only with refinement: every solution gets it
-  bool watched_ = false;  // not so well, or with much cancellation: every residual is looked at
+  bool watched_ = false;  // the last fresh factorization left larger residuals or cancelled much: all are looked at
   bool drifted_ = false;  // that, or pivots left those of the last fresh factorization
   bool by_klu_ = false, only_klu_ = false;
   int helped_ = 0;

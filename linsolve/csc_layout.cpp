@@ -13,8 +13,8 @@ LinearStatus CscLayout::build(const Pattern& pattern) {
   const auto size = [](int k) { return static_cast<std::size_t>(k); };
   n = pattern.n;
 
-  std::int64_t block_columns = 0;
-  for (const Block& b : pattern.blocks) block_columns += b.cols;
+  std::int64_t block_columns = 0, entries = 0;
+  for (const Block& b : pattern.blocks) block_columns += b.cols, entries += std::int64_t{b.rows} * b.cols;
   const LinearStatus too_large{LinearFailure::refused, -1, "the matrix has more entries than 32-bit indices can count"};
   if (block_columns > std::numeric_limits<int>::max()) return too_large;
 
@@ -31,6 +31,7 @@ LinearStatus CscLayout::build(const Pattern& pattern) {
   start.assign(1, 0);
   start.reserve(size(n) + 1);
   row.clear();
+  row.reserve(static_cast<std::size_t>(entries));  // more where blocks overlap, given back below
   for (int j = 0; j < n; ++j) {
     const auto first = interval.begin() + begin[size(j)], last = interval.begin() + begin[size(j) + 1];
     std::sort(first, last);
