@@ -2,7 +2,6 @@
 
 #include "integrators/controlled_run.h"
 #include "integrators/radau_stepper.h"
-#include "linsolve/registry.h"
 
 namespace poinsot {
 namespace {
@@ -26,8 +25,7 @@ class Radau5 final : public Integrator {
   Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
     PhaseClock clock;
-    const std::unique_ptr<LinearSolver> point_solver = find_linear_solver(settings.linear_solver)->make();
-    Method method(problem, solver, *point_solver, settings.rtol, settings.atol, statistics, clock);
+    Method method(problem, solver, settings.linear_solver, settings.rtol, settings.atol, statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
     method.start(0, state);
     return controlled_run(method, kRule, problem, settings, state, observe, statistics, clock);

@@ -1,13 +1,12 @@
 #include "integrators/radau_stepper.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "integrators/step_control.h"
 #include "integrators/vectors.h"
+#include "linsolve/registry.h"
 
 namespace poinsot {
 namespace {
@@ -15,16 +14,16 @@ namespace {
 using Matrix = Eigen::Matrix3d;
 
 constexpr int kIterations = 10;
-constexpr int kSweeps = 3;       // of δq in a Newton iteration
-constexpr int kFirstSweeps = 8;  // from the predicted stages
-constexpr double kFast = 0.03;   // rate of convergence up to which a matrix is kept
+constexpr int kSweeps = 3;         // of δq in a Newton iteration
+constexpr int kFirstSweeps = 8;    // from the predicted stages
+constexpr double kFast = 0.03;     // rate of convergence up to which a matrix is kept
+constexpr double kTrusted = 0.05;  // θ/(1 − θ) of the last step below which this step's is not trusted to be
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 struct Method {
   Matrix A;
   Vector3 c, e;  // e: weights of the stages in the error estimate, in units of μ
-  double mu, alpha, beta;
-  Matrix T, T_inverse;  // A T = T Λ, Λ = diag(μ, [α β; −β α])
+  double mu;     // real eigenvalue of A
 };
 
 Method make_method() {
@@ -35,18 +34,7 @@ Method make_method() {
       (16 - s) / 36, (16 + s) / 36, 1.0 / 9;
   m.c << (4 - s) / 10, (4 + s) / 10, 1;
   m.e << -(13 + 7 * s) / 3, (-13 + 7 * s) / 3, -1.0 / 3;
-  const Eigen::EigenSolver<Matrix> eigen(m.A);
-  int real = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (std::abs(eigen.eigenvalues()[k].imag()) < std::abs(eigen.eigenvalues()[real].imag())) real = k;
-  }
-  const int pair = real == 0 ? 1 : 0;
-  m.mu = eigen.eigenvalues()[real].real();
-  m.alpha = eigen.eigenvalues()[pair].real();
-  m.beta = eigen.eigenvalues()[pair].imag();
-  m.T << eigen.eigenvectors().col(real).real(), eigen.eigenvectors().col(pair).real(),
-      eigen.eigenvectors().col(pair).imag();
-  m.T_inverse = m.T.inverse();
+  m.mu = (6 + std::cbrt(81.0) - std::cbrt(9.0)) / 30;
   return m;
 }
 
@@ -74,66 +62,74 @@ std::span<double> column(Eigen::Matrix<double, Eigen::Dynamic, 3>& m, Eigen::Ind
 
 // The error estimate has order 3, the method 5: with the same tolerance for both, errors would be far smaller than
 // asked for. Hairer's code asks the estimate for 0.1 rtol^(2/3).
-RadauStepper::RadauStepper(Problem& problem, LinearSolver& solver, LinearSolver& point_solver, double rtol, double atol,
-                           Statistics& statistics, PhaseClock& clock)
+RadauStepper::RadauStepper(Problem& problem, LinearSolver& solver, std::string_view linear_solver, double rtol,
+                           double atol, Statistics& statistics, PhaseClock& clock)
     : problem_(problem),
+      filter_solver_(find_linear_solver(linear_solver)->make()),
+      point_solver_(find_linear_solver(linear_solver)->make()),
       system_(problem, solver, statistics, clock),
-      points_(problem, point_solver, statistics, clock),
-      linear_(problem),
+      filter_(problem, *filter_solver_, statistics, clock),
+      points_(problem, *point_solver_, statistics, clock),
+      step_(problem),
+      within_(problem),
       rtol_(0.1 * std::pow(rtol, 2.0 / 3)),
       atol_(atol / rtol * rtol_),
       nv_(problem.nv()),
       n_(problem.nv() + problem.nc()),
       statistics_(statistics) {
   for (Point* point : {&state_, &next_, &sample_, &before_, &stage_}) *point = points_.make();
-  for (Columns* x : {&Z_, &Z_before_, &R_, &W_}) x->setZero(n_, 3);
+  for (Columns* x : {&Z_, &Z_before_, &R_}) x->setZero(n_, 3);
   for (Columns* x : {&V_, &dQ_, &V_old_, &dQ_old_, &rates_}) x->setZero(nv_, 3);
   for (Vector* x : {&sizes_, &sizes_next_, &scale_, &change_, &e_}) x->setZero(2 * nv_);
+  filtered_.setZero(n_);
 }
 
 Status RadauStepper::prepare() {
   const std::vector<int> node = problem_.pattern(MatrixKind::consistent).node;
   const int n = static_cast<int>(n_);
-  Pattern pattern;
-  pattern.n = 3 * n;
+  Pattern stages{3 * n, {}, {}}, filter{n, {}, node};
   std::vector<int> unknowns;
   for (int k = 0; k < 3 * n; ++k) {
     unknowns.push_back(k % n);
-    pattern.node.push_back(node[static_cast<std::size_t>(k % n)]);
+    stages.node.push_back(node[static_cast<std::size_t>(k % n)]);
   }
-  write(1, EntryRecorder{pattern.blocks});
-  if (Status status = system_.prepare(pattern, std::move(unknowns)); !status.ok()) return status;
+  write_stages(step_, 1, n, problem_.nv(), EntryRecorder{stages.blocks});
+  write_filter(step_, 1, problem_.nv(), EntryRecorder{filter.blocks});
+  if (Status status = system_.prepare(stages, std::move(unknowns)); !status.ok()) return status;
+  if (Status status = filter_.prepare(filter); !status.ok()) return status;
   return points_.prepare();
 }
 
 template <class Sink>
-void RadauStepper::write(double h, Sink&& entry) const {
-  const Method& m = method();
-  const int n = static_cast<int>(n_), nv = static_cast<int>(nv_);
-  const double real_D = h * m.mu, real_K = real_D * real_D;
-  const double on_D = h * m.alpha, on_K = h * h * (m.alpha * m.alpha - m.beta * m.beta);
-  const double off_D = h * m.beta, off_K = 2 * h * h * m.alpha * m.beta;
-  linear_.visit(
-      [&](int i, int j, double M, double D, double K) {
-        entry(i, j, M + real_D * D + real_K * K);
-        const double on = M + on_D * D + on_K * K, off = off_D * D + off_K * K;
-        entry(n + i, n + j, on);
-        entry(n + i, 2 * n + j, off);
-        entry(2 * n + i, n + j, -off);
-        entry(2 * n + i, 2 * n + j, on);
-      },
-      [&](int row, int j, double G) {
-        for (int block = 0; block < 3 * n; block += n) {
-          entry(block + nv + row, block + j, G);
-          entry(block + j, block + nv + row, G);
-        }
-      });
+void RadauStepper::write_stages(const Linearized& linear, double h, int n, int nv, Sink&& entry) {
+  const Matrix on_D = h * method().A, on_K = on_D * on_D;
+  for (int i = 0; i < 3; ++i) {
+    linear.at[static_cast<std::size_t>(i)].visit(
+        [&](int row, int column, double M, double D, double K) {
+          for (int j = 0; j < 3; ++j) {
+            entry(i * n + row, j * n + column, (i == j ? M : 0.0) + on_D(i, j) * D + on_K(i, j) * K);
+          }
+        },
+        [&](int row, int column, double G) {
+          entry(i * n + nv + row, i * n + column, G);
+          entry(i * n + column, i * n + nv + row, G);
+        });
+  }
+}
+
+template <class Sink>
+void RadauStepper::write_filter(const Linearized& linear, double h, int nv, Sink&& entry) {
+  const double hmu = h * method().mu;
+  linear.at[0].visit([&](int i, int j, double M, double D, double K) { entry(i, j, M + hmu * D + hmu * hmu * K); },
+                     [&](int row, int j, double G) {
+                       entry(nv + row, j, G);
+                       entry(j, nv + row, G);
+                     });
 }
 
 void RadauStepper::start(double t, const State& state) {
   state_ = points_.make(t, state);
-  h_before_ = 0;
-  linear_ready_ = false;
+  h_before_ = step_.h = 0;
   settle();
 }
 
@@ -142,11 +138,10 @@ void RadauStepper::settle() {
   if (problem_.has_discrete_state() &&
       problem_.accept(state_.t, span(state_.q), span(state_.v), span(state_.z, 0, nv_))) {
     points_.stand(state_);
-    h_before_ = 0;  // the stages are those of other coordinates
-    linear_ready_ = false;
+    h_before_ = step_.h = 0;  // the stages are those of other coordinates
+    convergence_ = 1;
   }
-  linear_here_ = false;
-  linear_ready_ = linear_ready_ && fast_;
+  if (!fast_) step_.h = 0;
   component_sizes(problem_, span(state_.q), span(state_.v), span(sizes_));
 }
 
@@ -160,23 +155,38 @@ double RadauStepper::first_step(double end) const {
   return first_trial(std::sqrt(y), std::sqrt(f), end - state_.t);
 }
 
-// Linearized where the second stage is about to be, so that the matrix fits the stages before and after it, too.
-Status RadauStepper::refresh(const Point& from, double h) {
+// The problem stands at stage i as it is now, and stage_ says where that is.
+void RadauStepper::stand_at_stage(const Point& from, double to, Eigen::Index i) {
+  stage_.t = i == 2 ? to : from.t + method().c[i] * (to - from.t);
+  stage_.v = V_.col(i);
+  stage_.z = Z_.col(i);
+  problem_.retract(span(from.q), column(dQ_, i), span(stage_.q));
+  points_.stand(stage_);
+}
+
+// The matrix of `linear`, linearized at the stages as they are predicted unless it is kept from a step of this length.
+Status RadauStepper::refresh(const Point& from, double to, Linearized& linear) {
+  const double h = to - from.t;
+  const bool kept = linear.h == h;
+  if (kept && in_solver_ == &linear) return {};
+  in_solver_ = nullptr;
   Status status = system_.refresh(from.t, [&](std::span<const int> slots, std::span<double> values) {
-    if (!linear_ready_) {
-      const double ahead = method().c[1] * h;
-      change_.head(nv_) = ahead * from.v;
-      stage_.t = from.t + ahead;
-      stage_.v = from.v;
-      problem_.retract(span(from.q), span(change_, 0, nv_), span(stage_.q));
-      points_.stand(stage_);
-      linear_.assemble(problem_, points_.a(from), points_.lambda(from));
+    for (Eigen::Index i = 0; i < 3 && !kept; ++i) {
+      stand_at_stage(from, to, i);
+      linear.at[static_cast<std::size_t>(i)].assemble(problem_, points_.a(stage_), points_.lambda(stage_));
     }
-    write(h, EntryWriter{slots.data(), values.data()});
+    write_stages(linear, h, static_cast<int>(n_), problem_.nv(), EntryWriter{slots.data(), values.data()});
   });
-  if (!linear_ready_) linear_here_ = linear_ready_ = true;
-  h_factored_ = status.ok() ? h : 0;
-  return status;
+  linear.h = 0;
+  if (status.ok() && !kept && &linear == &step_) {
+    status = filter_.refresh(from.t, [&](std::span<const int> slots, std::span<double> values) {
+      write_filter(linear, h, problem_.nv(), EntryWriter{slots.data(), values.data()});
+    });
+  }
+  if (!status.ok()) return status;
+  linear.h = h;
+  in_solver_ = &linear;
+  return {};
 }
 
 // From the stages of the completed step, or constant.
@@ -210,44 +220,35 @@ void RadauStepper::set_scale(const Point& from, const Vector& q, const Vector& v
   scale_.array() = atol_ + rtol_ * sizes_.array().max(sizes_next_.array());
 }
 
-Status RadauStepper::stages(const Point& from, double to) {
-  const double h = to - from.t;
-  for (;;) {
-    if (!linear_ready_ || h != h_factored_) {
-      if (Status status = refresh(from, h); !status.ok()) return status;
-    }
-    Status status = newton(from, to);
-    if (status.ok() || linear_here_) return status;
-    linear_ready_ = false;  // again with a matrix of this point
-  }
+Status RadauStepper::stages(const Point& from, double to, Linearized& linear) {
+  const bool kept = linear.h == to - from.t;
+  Status status = newton(from, to, linear);
+  if (status.ok() || !kept) return status;
+  linear.h = 0;  // again with a matrix of its own
+  return newton(from, to, linear);
 }
 
-// Simplified Newton iteration; ends where what is left, by the rate of convergence θ, is far below the tolerance.
-Status RadauStepper::newton(const Point& from, double to) {
+// Newton's iteration; ends where what is left, by the rate of convergence θ, is far below the tolerance.
+Status RadauStepper::newton(const Point& from, double to, Linearized& linear) {
   const double h = to - from.t;
-  const Method& m = method();
   predict(from, h);
+  if (Status status = refresh(from, to, linear); !status.ok()) return status;
   end_of_step(from, to, stage_);
   set_scale(from, stage_.q, stage_.v);
   const double enough = std::max(10 * kEpsilon / rtol_, std::min(0.03, std::sqrt(rtol_)));
-  convergence_ = std::pow(std::max(convergence_, kEpsilon), 0.8);
+  convergence_ = std::max(std::pow(convergence_, 0.8), kTrusted);
   double before = 0, rate_before = 0;
   for (int k = 0; k < kIterations; ++k) {
     for (Eigen::Index i = 0; i < 3; ++i) {
-      stage_.t = i == 2 ? to : from.t + m.c[i] * h;
-      stage_.v = V_.col(i);
-      stage_.z = Z_.col(i);
-      problem_.retract(span(from.q), column(dQ_, i), span(stage_.q));
-      points_.stand(stage_);
+      stand_at_stage(from, to, i);
       points_.residual(stage_, column(R_, i));
     }
-    W_.noalias() = R_.lazyProduct(-m.T_inverse.transpose());
-    if (Status status = system_.solve(from.t, {W_.data(), static_cast<std::size_t>(W_.size())}); !status.ok()) {
+    if (Status status = system_.solve(from.t, {R_.data(), static_cast<std::size_t>(R_.size())}); !status.ok()) {
       return status;
     }
     V_old_ = V_;
     dQ_old_ = dQ_;
-    Z_.noalias() += W_.lazyProduct(m.T.transpose());
+    Z_ -= R_;
     move(from, h, kSweeps);
     ++statistics_.newton_iterations;
     double sum = 0;
@@ -278,7 +279,7 @@ Status RadauStepper::newton(const Point& from, double to) {
 
 Status RadauStepper::attempt(double to, double& error) {
   h_ = to - state_.t;
-  if (Status status = stages(state_, to); !status.ok()) return status;
+  if (Status status = stages(state_, to, step_); !status.ok()) return status;
   end_of_step(state_, to, next_);
   set_scale(state_, next_.q, next_.v);
   return error_of(state_, h_, error);
@@ -291,20 +292,17 @@ void RadauStepper::end_of_step(const Point& from, double to, Point& at) {
   problem_.retract(span(from.q), column(dQ_, 2), span(at.q));
 }
 
-// x = (1 − hμ J)⁻¹ e, e = hμ f(y_n) + μ Σ e_i (y_i − y_n), J from the linearization.
+// x = (1 − hμ J)⁻¹ e, e = hμ f(y_n) + μ Σ e_i (y_i − y_n), J linearized at the first stage.
 Status RadauStepper::error_of(const Point& from, double h, double& error) {
   const Method& m = method();
   const double hmu = h * m.mu;
   e_.head(nv_) = hmu * from.v + m.mu * dQ_.lazyProduct(m.e);
   e_.tail(nv_) = hmu * from.z.head(nv_) + m.mu * (V_.lazyProduct(m.e) - m.e.sum() * from.v);
   change_.head(nv_) = e_.head(nv_) + hmu * e_.tail(nv_);
-  W_.setZero();
-  linear_.add_forces(span(e_, nv_, nv_), span(change_, 0, nv_), column(W_, 0));
-  W_.col(0) *= -1;
-  if (Status status = system_.solve(from.t, {W_.data(), static_cast<std::size_t>(W_.size())}); !status.ok()) {
-    return status;
-  }
-  e_.tail(nv_) += hmu * W_.col(0).head(nv_);
+  filtered_.setZero();
+  step_.at[0].add_forces(span(e_, nv_, nv_), span(change_, 0, nv_), span(filtered_, 0, nv_));
+  if (Status status = filter_.solve(from.t, span(filtered_)); !status.ok()) return status;
+  e_.tail(nv_) -= hmu * filtered_.head(nv_);
   e_.head(nv_) += hmu * e_.tail(nv_);
   error = error_norm(span(e_), span(scale_));
   return {};
@@ -320,9 +318,10 @@ Status RadauStepper::complete() {
 }
 
 Status RadauStepper::interpolate(double t) {
+  within_.h = 0;
   const bool fast = fast_;
   const double convergence = convergence_;
-  const Status status = stages(before_, t);
+  const Status status = stages(before_, t, within_);
   fast_ = fast;
   convergence_ = convergence;
   if (!status.ok()) return step_too_small(before_.t, t - before_.t, status);

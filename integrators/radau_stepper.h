@@ -9,14 +9,19 @@
 // Index 1: no order is lost in the multipliers, as it would be in index 2 or 3, and nothing is scaled by powers of h.
 // The stage at the end of the step is projected onto Φ = 0 and G v = ν (consistent_point.h).
 //
-// Newton's matrix M + h A ⊗ D + h² A² ⊗ K has the exact stiffness and damping of one point and is kept while it
-// converges well. The eigenvalues of A, μ and α ± iβ, take it apart into a real block and a pair of coupled ones:
-//   [M + hμ D + h²μ² K, Gᵀ; G, 0],   the same with α, α² − β² and, between the two, ±(hβ D + 2h²αβ K):
-// one linear system of 3 n unknowns. Error estimate of order 3, filtered by the real block; starting values by
-// extrapolation. E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", sec. IV.8.
+// Newton's matrix has the exact stiffness and damping of every stage: with D_i and K_i at stage i, its block rows are
+//   Σ_j (δ_ij M_i + h A_ij D_i + h² (A²)_ij K_i) Δa_j + G_iᵀ Δλ_i,   G_i Δa_i,
+// one linear system of 3 n unknowns. (One point's D and K for all stages would let the eigenvectors of A take it apart,
+// but a stiff spring that turns by a small angle within the step would already make that iteration diverge.) It is kept
+// over steps of the same length while it converges well; starting values are extrapolated. Error estimate of order 3,
+// filtered by M + hμ D + h²μ² K with the real eigenvalue μ of A. E. Hairer, G. Wanner, "Solving Ordinary Differential
+// Equations II", sec. IV.8.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <string_view>
 
 #include "integrators/consistent_point.h"
 #include "integrators/linearization.h"
@@ -27,8 +32,9 @@ class RadauStepper {
  public:
   using Vector = Eigen::VectorXd;
 
-  // `solver` takes the stages, `point_solver` the consistent points.
-  RadauStepper(Problem& problem, LinearSolver& solver, LinearSolver& point_solver, double rtol, double atol,
+  // `solver` takes the stages; others of the kind called `linear_solver` are made for the error and for the consistent
+  // points.
+  RadauStepper(Problem& problem, LinearSolver& solver, std::string_view linear_solver, double rtol, double atol,
                Statistics& statistics, PhaseClock& clock);
 
   Status prepare();
@@ -56,11 +62,22 @@ class RadauStepper {
  private:
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
+  // The matrices of the stages of a step of length h; h = 0: none.
+  struct Linearized {
+    explicit Linearized(const Problem& problem)
+        : at{Linearization(problem), Linearization(problem), Linearization(problem)} {}
+    std::array<Linearization, 3> at;
+    double h = 0;
+  };
+
   template <class Sink>
-  void write(double h, Sink&& entry) const;
-  Status refresh(const Point& from, double h);
-  Status stages(const Point& from, double to);
-  Status newton(const Point& from, double to);
+  static void write_stages(const Linearized& linear, double h, int n, int nv, Sink&& entry);
+  template <class Sink>
+  static void write_filter(const Linearized& linear, double h, int nv, Sink&& entry);
+  void stand_at_stage(const Point& from, double to, Eigen::Index i);
+  Status refresh(const Point& from, double to, Linearized& linear);
+  Status stages(const Point& from, double to, Linearized& linear);
+  Status newton(const Point& from, double to, Linearized& linear);
   void predict(const Point& from, double h);
   void move(const Point& from, double h, int sweeps);
   void set_scale(const Point& from, const Vector& q, const Vector& v);
@@ -68,9 +85,11 @@ class RadauStepper {
   void end_of_step(const Point& from, double to, Point& at);
 
   Problem& problem_;
-  TimedSystem system_;
+  std::unique_ptr<LinearSolver> filter_solver_, point_solver_;
+  TimedSystem system_, filter_;
   ConsistentPoints points_;
-  Linearization linear_;
+  Linearized step_, within_;               // within_: of samples
+  const Linearized* in_solver_ = nullptr;  // whose matrix system_ has factored; filter_'s is always that of step_
   const double rtol_, atol_;
   const Eigen::Index nv_, n_;
   Statistics& statistics_;
@@ -79,11 +98,10 @@ class RadauStepper {
   Columns Z_, V_, dQ_;                            // (a, λ), velocity and δq of the stages
   Columns Z_before_;                              // of the completed step
   double h_ = 0, h_before_ = 0;                   // h_before_ = 0: nothing to extrapolate
-  Columns R_, W_, V_old_, dQ_old_, rates_;
-  double h_factored_ = 0;
-  bool linear_here_ = false, linear_ready_ = false, fast_ = false;
+  Columns R_, V_old_, dQ_old_, rates_;
+  bool fast_ = false;
   double convergence_ = 1;  // θ/(1 − θ)
-  Vector sizes_, sizes_next_, scale_, change_, e_;
+  Vector sizes_, sizes_next_, scale_, change_, e_, filtered_;
 };
 
 }  // namespace poinsot

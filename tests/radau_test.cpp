@@ -1,4 +1,4 @@
-// Radau IIA: its coefficients, orders of every quantity, stiff scenes.
+// Radau IIA: orders of every quantity, stiff scenes.
 #include <gmock/gmock.h>
 
 #include "integrators/dop853.h"
@@ -13,10 +13,10 @@ class Radau : public ::testing::TestWithParam<std::string> {};  // by formulatio
 INSTANTIATE_TEST_SUITE_P(Formulations, Radau, ::testing::ValuesIn(formulation_names()),
                          [](const auto& test) { return test.param; });
 
-Bench<RadauStepper> bench(const Scene& scene, const Settings& settings, LinearSolver& point_solver) {
+Bench<RadauStepper> bench(const Scene& scene, const Settings& settings) {
   return {scene, settings, [&](Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock) {
-            return std::make_unique<RadauStepper>(problem, solver, point_solver, settings.rtol, settings.atol,
-                                                  statistics, clock);
+            return std::make_unique<RadauStepper>(problem, solver, "dense", settings.rtol, settings.atol, statistics,
+                                                  clock);
           }};
 }
 
@@ -27,7 +27,6 @@ struct OrderCase {
 };
 
 TEST_P(Radau, OrderIsTheTheoreticalOneInEveryQuantity) {
-  const std::unique_ptr<LinearSolver> point_solver = find_linear_solver("dense")->make();
   for (const OrderCase& c :
        {OrderCase{"forced", 1, {76, 88, 108, 128, 156}}, OrderCase{"heavy_top", 1, {76, 92, 112, 132, 160}}}) {
     Scene scene = c.model == "forced" ? forced() : scene_of(c.model);
@@ -40,7 +39,7 @@ TEST_P(Radau, OrderIsTheTheoreticalOneInEveryQuantity) {
     std::array<std::vector<double>, 4> found;
     for (const int count : c.counts) {
       steps.push_back(c.end / count);
-      const auto e = mean_errors(bench(scene, s, *point_solver).march(c.end, count), exact);
+      const auto e = mean_errors(bench(scene, s).march(c.end, count), exact);
       for (std::size_t k = 0; k < e.size(); ++k) found[k].push_back(e[k]);
     }
     for (std::size_t k = 0; k < found.size(); ++k) {
@@ -73,13 +72,13 @@ TEST_P(Radau, TakesStiffScenesWithLongSteps) {
   const std::vector<Snapshot> exact = motion(scene, controlled("radau5", "rA", 1e-11, end, 0.25));
   const Distance apart = distance(radau.samples, exact);
   EXPECT_LT(std::max({apart.r, apart.A, apart.rd, apart.w}), 1e-4);
-  EXPECT_LT(radau.outcome.statistics.steps, 300);
+  EXPECT_LT(radau.outcome.statistics.steps, 100);
 
   const double short_end = 0.01;  // the explicit pair is bounded by its stability
   const Recorded dopri = run(scene, controlled("dopri5", GetParam(), 1e-6, short_end, short_end));
   ASSERT_TRUE(dopri.outcome.status.ok()) << dopri.outcome.status.message;
   EXPECT_GT(static_cast<double>(dopri.outcome.statistics.steps) / short_end,
-            20 * static_cast<double>(radau.outcome.statistics.steps) / end);
+            50 * static_cast<double>(radau.outcome.statistics.steps) / end);
 }
 
 // The stiff reference itself, against a method that knows nothing of stiffness.

@@ -65,7 +65,7 @@ struct Bench {
   std::shared_ptr<const Model> model;
   InitialState start;
   std::unique_ptr<Problem> problem;
-  std::unique_ptr<LinearSolver> solver, point_solver = find_linear_solver("dense")->make();
+  std::unique_ptr<LinearSolver> solver;
   Statistics statistics;
   PhaseClock clock;
   std::unique_ptr<Stepper> stepper;
