@@ -33,7 +33,6 @@ namespace poinsot {
 namespace {
 
 constexpr double kSymmetric = 0.9;        // share of mirrored entries that makes a saddle point
-constexpr int kSingleBody = 16;           // unknowns: two dense blocks, nothing gained by taking G out
 constexpr double kNear = 10, kFar = 1e3;  // drift of pivots that is trusted unseen, and with a look at residuals
 constexpr double kSmallResidual = 2e-15;  // relative; above, residuals of later solutions are looked at
 constexpr double kGoodResidual = 5e-15;   // above, a solution is refined; some ten times klu's where that has good ones
@@ -65,7 +64,7 @@ class BlockSolver final : public LinearSolver {
     fused_.assign(at(1 + *std::ranges::max_element(node_)), -1);
     by_klu_ = only_klu_ = symmetry(layout_) < kSymmetric;
     ordered_ = determined_fits_ = false;
-    determined_ = only_klu_ || layout_.n <= kSingleBody ? nullptr : std::make_unique<Determined>();
+    determined_ = only_klu_ ? nullptr : std::make_unique<Determined>();
     if (determined_ && !determined_->analyze(layout_)) determined_.reset();
     if (!only_klu_ && !determined_) only_klu_ = !order();
     return {};

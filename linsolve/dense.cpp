@@ -1,75 +1,101 @@
-// LU with partial pivoting of the full matrix, columns stored one after the other: P A = L U.
+// LU with partial pivoting of the full matrix; kernels of fixed size for the systems of one and two bodies.
+//
+// The order of rows is kept from one factorization to the next while it serves: multipliers up to kGrowth, pivots
+// within a factor of kPivotRange of those it was chosen for.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "linsolve/back_ends.h"
+#include "linsolve/dense_kernels.h"
 #include "linsolve/scaled_lu.h"
 
 namespace poinsot {
 namespace {
 
-constexpr std::size_t kLargest = 2000;  // 32 MB, and already seconds a factorization
+constexpr int kLargest = 2000;  // 32 MB, and already seconds a factorization
+constexpr double kGrowth = 10, kPivotRange = 100;
+
+struct Kernels {
+  int size;
+  void (*factor)(double*, int, int*, double*);
+  double (*refactor)(double*, int, double*);
+  void (*solve)(const double*, int, const int*, const double*, double*, double*);
+};
+
+template <int N>
+constexpr Kernels kernels() {
+  return {N, dense::factor<N>, dense::refactor<N>, dense::solve<N>};
+}
+
+// One body in rA and reps, then rp: kinematics 6, 7; a spherical joint 9, 11; a hinge 11, 13; driven 12, 14. Two bodies
+// on hinges: 22, 26. The last one takes every size.
+constexpr Kernels kKernels[] = {kernels<6>(),  kernels<7>(),  kernels<9>(),  kernels<11>(), kernels<12>(),
+                                kernels<13>(), kernels<14>(), kernels<22>(), kernels<26>(), kernels<0>()};
 
 class Dense final : public ScaledLu {
  private:
   LinearStatus do_symbolic() override {
-    n_ = static_cast<std::size_t>(layout().n);
+    n_ = layout().n;
     if (n_ > kLargest)
       return {LinearFailure::refused, -1,
               "linear solver dense takes at most " + std::to_string(kLargest) + " unknowns, these are " +
                   std::to_string(n_) + "; klu takes them"};
-    lu_.assign(n_ * n_, 0);
-    swap_.assign(n_, 0);
-    statistics_.factor_nonzeros = static_cast<std::int64_t>(n_ * n_);
+    kernels_ = std::ranges::find_if(kKernels, [&](const Kernels& k) { return k.size == n_ || k.size == 0; });
+    lu_.assign(static_cast<std::size_t>(n_) * static_cast<std::size_t>(dense::stride(n_)), 0);
+    order_.assign(static_cast<std::size_t>(n_), 0), place_ = order_;
+    for (auto* v : {&inverse_, &chosen_}) v->assign(static_cast<std::size_t>(n_), 0);
+    x_.assign(static_cast<std::size_t>(dense::stride(n_)), 0);
+    statistics_.factor_nonzeros = std::int64_t{n_} * n_;
     return {};
   }
 
   LinearStatus do_fresh() override {
-    std::ranges::fill(lu_, 0.0);
-    for (std::size_t j = 0; j < n_; ++j)
-      for (auto k = static_cast<std::size_t>(layout().start[j]); k < static_cast<std::size_t>(layout().start[j + 1]);
-           ++k)
-        column(j)[layout().row[k]] = scaled()[k];
-
-    for (std::size_t k = 0; k < n_; ++k) {
-      double* ck = column(k);
-      std::size_t p = k;
-      for (std::size_t i = k + 1; i < n_; ++i)
-        if (std::abs(ck[i]) > std::abs(ck[p])) p = i;
-      swap_[k] = p;
-      if (ck[p] == 0) continue;
-      if (p != k)
-        for (std::size_t j = 0; j < n_; ++j) std::swap(column(j)[k], column(j)[p]);
-      const double inverse = 1 / ck[k];
-      for (std::size_t i = k + 1; i < n_; ++i) ck[i] *= inverse;
-      for (std::size_t j = k + 1; j < n_; ++j) {
-        double* cj = column(j);
-        const double u = cj[k];
-        if (u == 0) continue;  // most of a saddle point
-        for (std::size_t i = k + 1; i < n_; ++i) cj[i] -= ck[i] * u;
-      }
+    std::iota(place_.begin(), place_.end(), 0);
+    write();
+    kernels_->factor(lu_.data(), n_, order_.data(), inverse_.data());
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+      place_[static_cast<std::size_t>(order_[k])] = static_cast<int>(k);
+      chosen_[k] = std::abs(inverse_[k]);
     }
     return {};
   }
 
-  void do_substitute(std::span<double> x) override {
-    for (std::size_t k = 0; k < n_; ++k) std::swap(x[k], x[swap_[k]]);
-    for (std::size_t k = 0; k < n_; ++k)
-      for (std::size_t i = k + 1; i < n_; ++i) x[i] -= column(k)[i] * x[k];
-    for (std::size_t k = n_; k-- > 0;) {
-      x[k] /= column(k)[k];
-      for (std::size_t i = 0; i < k; ++i) x[i] -= column(k)[i] * x[k];
+  bool do_refactor() override {
+    write();
+    bool good = kernels_->refactor(lu_.data(), n_, inverse_.data()) <= kGrowth;
+    for (std::size_t k = 0; k < chosen_.size(); ++k) {
+      const double now = std::abs(inverse_[k]), then = chosen_[k];
+      good = good && now * kPivotRange >= then && now <= then * kPivotRange;
     }
+    return good;
   }
 
-  double pivot(int k) override { return column(static_cast<std::size_t>(k))[k]; }
+  // The scaled matrix with its rows at their places.
+  void write() {
+    std::ranges::fill(lu_, 0.0);
+    const int *start = layout().start.data(), *row = layout().row.data(), *place = place_.data();
+    const double* value = scaled().data();
+    for (int j = 0; j < n_; ++j)
+      for (int k = start[j]; k < start[j + 1]; ++k) column(j)[place[row[k]]] = value[k];
+  }
+
+  void do_substitute(std::span<double> b) override {
+    kernels_->solve(lu_.data(), n_, order_.data(), inverse_.data(), x_.data(), b.data());
+  }
+
+  double pivot(int k) override { return column(k)[k]; }
   int pivot_column(int k) override { return k; }
 
-  double* column(std::size_t j) { return lu_.data() + j * n_; }
+  double* column(int j) {
+    return lu_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(dense::stride(n_));
+  }
 
-  std::size_t n_ = 0;
-  std::vector<double> lu_;
-  std::vector<std::size_t> swap_;
+  int n_ = 0;
+  const Kernels* kernels_ = nullptr;
+  std::vector<double> lu_, inverse_, x_;
+  std::vector<double> chosen_;      // 1/|pivot| when the order was chosen
+  std::vector<int> order_, place_;  // row by position, position by row
 };
 
 }  // namespace

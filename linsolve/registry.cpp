@@ -13,7 +13,9 @@ constexpr LinearSolverEntry kEntries[] = {
      "elimination over the graph of bodies and constraints, order chosen once; for saddle points of every size, leaves "
      "kinematics matrices, and what it cannot solve well, to klu",
      make_block},
-    {"dense", "LU with partial pivoting of the full matrix; for a handful of bodies, refuses more than 2000 unknowns",
+    {"dense",
+     "LU with partial pivoting of the full matrix, kernels of fixed size for one or two bodies; refuses more than 2000 "
+     "unknowns",
      make_dense},
     {"schur",
      "LDL' of the Schur complement over bodies; for symmetric saddle points with a block for each body (consistent and "
