@@ -167,7 +167,7 @@ void RadauStepper::stand_at_stage(const Point& from, double to, Eigen::Index i) 
 // The matrix of `linear`, linearized at the stages as they are predicted unless it is kept from a step of this length.
 Status RadauStepper::refresh(const Point& from, double to, Linearized& linear) {
   const double h = to - from.t;
-  const bool kept = linear.h == h;
+  const bool kept = linear.is_for(h);
   if (kept && in_solver_ == &linear) return {};
   in_solver_ = nullptr;
   Status status = system_.refresh(from.t, [&](std::span<const int> slots, std::span<double> values) {
@@ -221,7 +221,7 @@ void RadauStepper::set_scale(const Point& from, const Vector& q, const Vector& v
 }
 
 Status RadauStepper::stages(const Point& from, double to, Linearized& linear) {
-  const bool kept = linear.h == to - from.t;
+  const bool kept = linear.is_for(to - from.t);
   Status status = newton(from, to, linear);
   if (status.ok() || !kept) return status;
   linear.h = 0;  // again with a matrix of its own

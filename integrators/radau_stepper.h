@@ -20,6 +20,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <string_view>
 
@@ -68,6 +69,7 @@ class RadauStepper {
         : at{Linearization(problem), Linearization(problem), Linearization(problem)} {}
     std::array<Linearization, 3> at;
     double h = 0;
+    bool is_for(double step) const { return std::abs(step - h) <= 1e-9 * step; }  // differences of times are rounded
   };
 
   template <class Sink>

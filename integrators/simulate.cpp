@@ -33,6 +33,8 @@ void check_numbers(const Settings& s) {
   positive("step", s.step);
   positive("end", s.end);
   positive("tolerance", s.tolerance);
+  positive("rtol", s.rtol);
+  positive("atol", s.atol);
   if (!(s.spectral_radius >= 0 && s.spectral_radius <= 1))
     throw InputError(fmt::format("spectral_radius is {}; it must be between 0 and 1", s.spectral_radius));
   if (s.max_iterations < 1)

@@ -248,5 +248,16 @@ TEST(StepController, KeepsWithinItsBounds) {
   EXPECT_DOUBLE_EQ(c.failed(1), 0.2);
 }
 
+// The second step's error is 16 times the first's at the same length: at this rate the third's would be 16 times
+// larger.
+TEST(StepController, FollowsTheTrend) {
+  StepController c({1, 0.25, 0.0, 0.2, 8, true});
+  EXPECT_DOUBLE_EQ(c.accepted(1, 1.0 / 16), 2);
+  EXPECT_DOUBLE_EQ(c.accepted(1, 1), 0.5);
+  StepController steady({1, 0.25, 0.0, 0.2, 8, true});
+  EXPECT_DOUBLE_EQ(steady.accepted(1, 1.0 / 16), 2);
+  EXPECT_DOUBLE_EQ(steady.accepted(2, 1.0 / 16), 4);
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -77,7 +77,6 @@ std::vector<Snapshot> reference(const Scene& scene, double step, double end, dou
 
 // Largest errors of positions, velocities, accelerations and multipliers.
 using Errors = std::array<double, 4>;
-constexpr std::array kQuantities{"positions", "velocities", "accelerations", "multipliers"};
 
 Errors absolute_errors(const Snapshot& x, const Snapshot& exact) {
   Errors e{};

@@ -71,8 +71,6 @@ struct Bench {
   std::unique_ptr<Stepper> stepper;
 };
 
-constexpr std::array kQuantities{"positions", "velocities", "accelerations", "multipliers"};
-
 // Root mean squares over instants, bodies and components, relative to those of the motion.
 inline std::array<double, 4> mean_errors(const std::vector<Snapshot>& x, const std::vector<Snapshot>& exact) {
   std::array<double, 4> apart{}, size{};

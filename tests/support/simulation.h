@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -33,6 +34,8 @@ struct Snapshot {
   std::vector<BodyState> bodies;
   std::vector<double> lambda;
 };
+
+inline constexpr std::array kQuantities{"positions", "velocities", "accelerations", "multipliers"};
 
 struct Recorded {
   Outcome outcome;
