@@ -1,6 +1,9 @@
 #include "app/motion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -43,11 +46,17 @@ bool is_zero(const Expression& f) {
 
 }  // namespace
 
-MotionRun run_motion(const Scene& scene, const Settings& settings) {
+MotionRun run_motion(const Scene& scene, const Settings& settings, double longest) {
+  using Clock = std::chrono::steady_clock;
+  struct TooLong {
+    double t;
+  };
+  const auto began = Clock::now();
   MotionRun run;
   std::optional<Reactions> reactions;
   double energy = 0;
   const auto keep = [&](const Sample& sample) {
+    if (std::chrono::duration<double>(Clock::now() - began).count() > longest) throw TooLong{sample.t};
     Motion& motion = run.motion;
     motion.t.push_back(sample.t);
     sample.problem.to_bodies(sample.a, motion.bodies.emplace_back(scene.bodies.size()));
@@ -64,6 +73,9 @@ MotionRun run_motion(const Scene& scene, const Settings& settings) {
     run.outcome = simulate(scene, settings, keep);
   } catch (const InputError& refused) {
     run.outcome.status = {Failure::inconsistent_state, 0, refused.what()};
+  } catch (const TooLong& at) {
+    run.outcome.status = {Failure::step_size_too_small, at.t,
+                          fmt::format("given up after {:g} s, at t = {:g} s", longest, at.t)};
   }
   return run;
 }

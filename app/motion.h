@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -35,8 +36,10 @@ struct MotionRun {
   double energy_drift = 0;  // largest |E − E(0)| at the output times, J
 };
 
-// Runs the scene and keeps what it gives out. Settings that do not fit the scene are a failure like any other.
-MotionRun run_motion(const Scene& scene, const Settings& settings);
+// Runs the scene and keeps what it gives out. Settings that do not fit the scene are a failure like any other, and so
+// is an output time reached later than `longest` s after the start: an explicit method on a stiff scene.
+MotionRun run_motion(const Scene& scene, const Settings& settings,
+                     double longest = std::numeric_limits<double>::infinity());
 
 // What differences from a motion are divided by.
 struct Sizes {
