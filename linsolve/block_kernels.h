@@ -147,10 +147,17 @@ inline bool factor_choosing(double* D, int p, std::uint16_t* order, const float*
   return moved;
 }
 
-// x ← x in the given order; `scratch` has room for p numbers.
+// x ← x in the given order; `scratch` has room for p numbers, which no fixed P needs.
+template <int P>
 inline void reorder(const std::uint16_t* order, int p, double* x, double* scratch) {
-  for (int k = 0; k < p; ++k) scratch[k] = x[order[k]];
-  std::copy_n(scratch, p, x);
+  if constexpr (P > 0) {
+    double y[P];
+    unrolled<P>([&](auto k) { y[k] = x[order[k]]; });
+    unrolled<P>([&](auto k) { x[k] = y[k]; });
+  } else {
+    for (int k = 0; k < p; ++k) scratch[k] = x[order[k]];
+    std::copy_n(scratch, p, x);
+  }
 }
 
 // L ← L (L_D U_D)⁻¹ for C vectors of rows from `row` on, kept in registers, and with them `out` ← W − L U.
@@ -203,7 +210,7 @@ void eliminate(double* D, const Front& f, const double* W, double* out, Choice& 
   }
   if (!done) choice.moved = factor_choosing(D, p, choice.order, choice.weight, scratch, choice.then, drift);
   if (choice.moved)
-    for (int j = 0; j < m; ++j) reorder(choice.order, p, U + j * p, scratch);
+    for (int j = 0; j < m; ++j) reorder<P>(choice.order, p, U + j * p, scratch);
   if constexpr (P > 0) {
     // As many rows at once as leave room in the registers.
     constexpr int kTogether = P <= 6 ? 2 : 1;
@@ -245,7 +252,7 @@ inline void forward(const double* D, const Front& f, const int* position, const 
                     double* t) {
   const int p = P ? P : f.pivots, m = f.others, rows = f.rows;
   double* b = x + f.first;
-  if (order) reorder(order, p, b, t);
+  if (order) reorder<P>(order, p, b, t);
   const double* L = D + p * p;
   if constexpr (P > 0) {
     double own[P];

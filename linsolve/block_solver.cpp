@@ -138,11 +138,12 @@ class BlockSolver final : public LinearSolver {
   // Factorizes with pivots chosen in the units of the equilibrated matrix and, where that does not serve, in those the
   // condition estimate finds. Finds out whether solutions need refinement.
   bool trustworthy() {
-    const auto rows = residual_.rows(), columns = residual_.columns();
+    const std::span<const double> rows = residual_.rows();
     weight_.assign(rows.begin(), rows.end());
     Condition condition;
     condition.resize(layout_.n);
-    std::vector<double> found, x(rows.size());
+    std::vector<double> x(rows.size());  // sizes of the unknowns, then a solution
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] = residual_.column(j);
     double size = 0;
     const auto solve = [&](std::span<double> b) {
       b_.assign(b.begin(), b.end());
@@ -153,8 +154,7 @@ class BlockSolver final : public LinearSolver {
       factor_.weigh_rows(schedule_, weight_);
       (void)factor_.factor(schedule_, values_, false);
       size = 0;
-      const double estimate =
-          condition.estimate(layout_, values_, solve, last ? std::span<const double>(found) : columns);
+      const double estimate = condition.estimate(layout_, values_, solve, x);
       statistics_.reciprocal_condition = 1 / estimate;
       if (!std::isfinite(estimate)) return false;
       std::ranges::transform(rows, x.begin(), [](double row) { return 1 / row; });
@@ -163,7 +163,7 @@ class BlockSolver final : public LinearSolver {
       if (estimate < kSingularCondition && (size <= kFairResidual || (last && refine(x) <= kLargeResidual)))
         return true;
       std::ranges::transform(condition.rows(), weight_.begin(), [](double w) { return 1 / w; });
-      found.assign(condition.columns().begin(), condition.columns().end());
+      std::ranges::copy(condition.columns(), x.begin());
     }
     return false;
   }

@@ -4,10 +4,28 @@
 #include <cmath>
 
 namespace poinsot {
+namespace {
+
+// max |v| f, in lanes that a compiler turns into vectors.
+double largest(std::span<const double> v, std::span<const double> f) {
+  constexpr std::size_t kWide = 8;
+  double most[kWide] = {};
+  std::size_t i = 0;
+  for (; i + kWide <= v.size(); i += kWide)
+    for (std::size_t lane = 0; lane < kWide; ++lane) {
+      const double size = std::abs(v[i + lane]) * f[i + lane];
+      most[lane] = size > most[lane] ? size : most[lane];
+    }
+  for (; i < v.size(); ++i) most[0] = std::max(most[0], std::abs(v[i]) * f[i]);
+  return *std::ranges::max_element(most);
+}
+
+}  // namespace
 
 void Residual::measure_by(std::span<const double> rows, std::span<const double> columns) {
   rows_.assign(rows.begin(), rows.end());
-  columns_.assign(columns.begin(), columns.end());
+  per_column_.resize(columns.size());
+  std::ranges::transform(columns, per_column_.begin(), [](double column) { return 1 / column; });
 }
 
 void Residual::find(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
@@ -21,13 +39,9 @@ void Residual::find(const CscLayout& layout, std::span<const double> values, std
 double Residual::size(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
                       std::span<const double> x) {
   find(layout, values, b, x);
-  double size_x = 0, size_b = 0, size_r = 0, poison = 0;
-  for (std::size_t i = 0; i < r_.size(); ++i) {
-    size_x = std::max(size_x, std::abs(x[i]) / columns_[i]);
-    size_b = std::max(size_b, std::abs(b[i]) * rows_[i]);
-    size_r = std::max(size_r, std::abs(r_[i]) * rows_[i]);
-    poison += r_[i] * 0;
-  }
+  const double size_x = largest(x, per_column_), size_b = largest(b, rows_), size_r = largest(r_, rows_);
+  double poison = 0;
+  for (const double r : r_) poison += r * 0;
   if (poison != 0) return HUGE_VAL;
   return size_r == 0 ? 0 : size_r / (size_x + size_b);
 }

@@ -13,7 +13,7 @@ class Residual {
   // Factors of rows; sizes of unknowns (the column factors of an equilibration).
   void measure_by(std::span<const double> rows, std::span<const double> columns);
   std::span<const double> rows() const { return rows_; }
-  std::span<const double> columns() const { return columns_; }
+  double column(std::size_t j) const { return 1 / per_column_[j]; }
 
   // Both leave b − A x in vector(). The size is the largest |b − A x| against the largest of |A||x| and |b|.
   void find(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
@@ -23,7 +23,7 @@ class Residual {
   std::span<double> vector() { return r_; }
 
  private:
-  std::vector<double> rows_, columns_, r_;
+  std::vector<double> rows_, per_column_, r_;
 };
 
 }  // namespace poinsot
