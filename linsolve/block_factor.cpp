@@ -35,6 +35,10 @@ void with_size(int pivots, Work&& work) {
   }
 }
 
+float in_range(double x) {
+  return static_cast<float>(std::clamp(x, 1e-37, 1e37));
+}
+
 // to[0 … n) += from[0 … n), n being small.
 inline void add(double* to, const double* from, int n) {
   int i = 0;
@@ -129,14 +133,13 @@ void BlockFactor::solve(const Schedule& s, std::span<double> b) {
 }
 
 void BlockFactor::weigh_rows(const Schedule& s, std::span<const double> weight) {
-  for (std::size_t k = 0; k < weight.size(); ++k)
-    weight_[k] = static_cast<float>(std::clamp(weight[at(s.unknown[k])], 1e-37, 1e37));
+  for (std::size_t k = 0; k < weight.size(); ++k) weight_[k] = in_range(weight[at(s.unknown[k])]);
 }
 
 void BlockFactor::keep_pivots(const Schedule& s) {
   for (const Front& f : s.fronts)
     for (int k = 0; k < f.pivots; ++k)
-      then_[at(f.first + k)] = std::abs(store_[at(f.store + std::int64_t{k} * (f.pivots + 1))]);
+      then_[at(f.first + k)] = in_range(std::abs(store_[at(f.store + std::int64_t{k} * (f.pivots + 1))]));
 }
 
 }  // namespace poinsot

@@ -27,7 +27,7 @@ class BlockFactor {
 
  private:
   std::vector<double> store_, stack_, update_, x_, t_;
-  std::vector<double> then_;   // 1/|pivot| of an examined factorization, by position
+  std::vector<float> then_;    // 1/|pivot| of an examined factorization, by position
   std::vector<float> weight_;  // by position
   std::vector<std::uint16_t> order_;
   std::vector<char> moved_;  // by front: its rows are not in the order 0, 1, 2, … but in that of order_

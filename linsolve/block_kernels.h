@@ -78,7 +78,7 @@ inline void unrolled(F&& f) {
 // holds 1/|pivot| for Drift.
 template <int P>
 inline bool factor_in_order(double* D, const std::uint16_t* order, const float* weight, double reluctance,
-                            const double* then, Drift& drift) {
+                            const float* then, Drift& drift) {
   double a[P * P], unit[P];
   if (order) {
     unrolled<P>([&](auto i) {
@@ -120,7 +120,7 @@ inline bool factor_in_order(double* D, const std::uint16_t* order, const float* 
 // The same with the order chosen here: the diagonal while it serves, so that kept orders and pivots stay comparable.
 // True where rows moved. `unit` has room for p numbers.
 inline bool factor_choosing(double* D, int p, std::uint16_t* order, const float* weight, double* unit,
-                            const double* then, Drift& drift) {
+                            const float* then, Drift& drift) {
   bool moved = false;
   for (int i = 0; i < p; ++i) order[i] = static_cast<std::uint16_t>(i), unit[i] = weight[i];
   for (int k = 0; k < p; ++k) {
@@ -192,7 +192,7 @@ inline void eliminate_rows(const double* D, double* L, const double* U, const do
 struct Choice {
   std::uint16_t* order;
   const float* weight;
-  const double* then;
+  const float* then;
   bool moved;
   bool keep;  // the order of the last factorization, while it serves
 };
