@@ -1,17 +1,15 @@
 // auto: picks a linear solver when the structure is known, and leaves everything to it.
 //
-//   structure                                        pick    measured: klu's time for factor + solve over the pick's
-//   unsymmetric: kinematics, G alone                 klu     1 (block hands these to klu, with a copy: 0.9 to 1.0)
-//   saddle point of one body that can move, at       dense   1.0 to 1.4; there block has 1.05 to 1.35 and is 10 %
-//   behind most 13 unknowns                                         dense in rA any other saddle point block   1.0
-//   to 1.5 the paper's mechanisms, 1.4 to 2.4 chains of 2 to
-//                                                            4 bodies, 2.3 to 2.5 of 100, 3.0 to 4.1 trees, 3.5
-//                                                            ladders, 1.3 to 1.8 many four-bars
+//   structure                                   pick    measured: klu's time for factor + solve over the pick's
+//   unsymmetric: kinematics, G alone            klu     1 (block hands these to klu, with a copy: 0.9 to 1.0)
+//   saddle point of bodies and constraints      block   1.0 to 1.8 the paper's mechanisms, 1.3 to 1.5 one hinged
+//   body, 2.3
+//                                                       to 3.1 chains of 10, 2.5 of 100 and more, 3.3 to 4.0 trees, 2.8
+//                                                       to 4.2 ladders, 1.5 to 2.3 many four-bars
 //
 // Measured: bench/linear_solver_bench, exact Newton matrices in rA, rp and reps, all in one run in turn; cycles of an
-// AMD EPYC with AVX-512. The other solvers of the registry won nowhere.
-#include <algorithm>
-
+// AMD EPYC with AVX-512. The other solvers of the registry won nowhere; dense
+// comes nearest, 5 % behind block on the heavy top in rA.
 #include "linsolve/back_ends.h"
 #include "linsolve/registry.h"
 
@@ -37,21 +35,6 @@ bool saddle_point(const Pattern& pattern) {
   return equal >= kSymmetric * pattern.n;
 }
 
-// As many unknowns with an entry on the diagonal, velocities, as without, multipliers: block needs only G then.
-bool determined(const Pattern& pattern) {
-  std::vector<char> diagonal(static_cast<std::size_t>(pattern.n), 0);
-  for (const Block& b : pattern.blocks)
-    for (int k = std::max(b.row, b.col); k < std::min(b.row + b.rows, b.col + b.cols); ++k)
-      diagonal[static_cast<std::size_t>(k)] = 1;
-  return 2 * std::ranges::count(diagonal, 1) == pattern.n;
-}
-
-std::string_view pick(const Pattern& pattern) {
-  constexpr int kSmall = 13;
-  if (!saddle_point(pattern)) return "klu";
-  return pattern.n <= kSmall && !determined(pattern) ? "dense" : "block";
-}
-
 class Auto final : public LinearSolver {
  public:
   std::span<const int> slots() const override { return solver_ ? solver_->slots() : LinearSolver::slots(); }
@@ -60,12 +43,12 @@ class Auto final : public LinearSolver {
 
  private:
   LinearStatus do_analyze(const Pattern& pattern) override {
-    picked_ = pick(pattern);
+    picked_ = saddle_point(pattern) ? "block" : "klu";
     solver_ = find_linear_solver(picked_)->make();
     return followed(solver_->analyze(pattern));
   }
   LinearStatus do_factor() override { return followed(solver_->factor()); }
-  LinearStatus do_solve(std::span<double> b) override { return followed(solver_->solve(b)); }
+  LinearStatus do_solve(std::span<double> b) override { return solver_->solve(b); }
 
   LinearStatus followed(LinearStatus status) {
     statistics_ = solver_->statistics();

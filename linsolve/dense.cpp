@@ -1,7 +1,10 @@
 // LU with partial pivoting of the full matrix; kernels of fixed size for the systems of one and two bodies.
 //
 // The order of rows is kept from one factorization to the next while it serves: multipliers up to kGrowth, pivots
-// within a factor of kPivotRange of those it was chosen for.
+// within a factor of kPivotRange of those it was chosen for. Measured (linear_solver_bench, AVX-512, klu's time over
+// dense's, block's in brackets): heavy top 1.3 (1.4), one hinged rod 1.1 to 1.4 (1.3 to 1.5), driven pendulum 0.9
+// to 1.0 (1.0), double pendulum 1.1 (1.3 to 1.8), larger ones 0.6 to 0.8. It beats klu on one body that can move, and
+// block nowhere.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

@@ -23,7 +23,7 @@ TEST_F(Run, PrintsASummaryWithoutAnOutputFile) {
   const Result result = poinsot({"run", "pendulum.json", "--end", "0.1"});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.err, "");
-  for (const char* part : {"pendulum: dynamics, rA, implicit_euler, auto (dense), h = 0.001 s", "t = 0.1 s", "rod",
+  for (const char* part : {"pendulum: dynamics, rA, implicit_euler, auto (block), h = 0.001 s", "t = 0.1 s", "rod",
                            "100 steps", "Newton iterations", "assembly", "largest violation"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
   EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
@@ -73,7 +73,7 @@ TEST_F(Run, TheRecordSaysWhereTheNumbersComeFrom) {
     EXPECT_EQ(record["configuration"].contains(entry.key), entry.key != "assemble") << entry.key;
 
   const nlohmann::json& statistics = record["statistics"];
-  EXPECT_EQ(statistics["linear_solver"], "dense");  // auto's pick
+  EXPECT_EQ(statistics["linear_solver"], "block");  // auto's pick
   EXPECT_EQ(statistics["steps"], 100);
   for (const char* count : {"newton_iterations", "jacobian_evaluations", "factorizations", "solves"})
     EXPECT_GE(statistics[count], 100) << count;
