@@ -1,13 +1,13 @@
 #include "linsolve/block_order.h"
 
 #include <algorithm>
-#include <numeric>
 #include <queue>
 #include <span>
 #include <tuple>
 #include <utility>
 
 #include "core/check.h"
+#include "linsolve/block_eliminated.h"
 
 namespace poinsot {
 namespace {
@@ -15,104 +15,6 @@ namespace {
 std::size_t at(int k) {
   return static_cast<std::size_t>(k);
 }
-
-// What of the mechanism is eliminated, as connected components of bodies.
-class Eliminated {
- public:
-  explicit Eliminated(const BlockGraph& graph)
-      : graph_(graph),
-        left_(graph.body_atoms),
-        in_(left_.size(), 0),
-        missing_(left_.size(), 0),
-        parent_(left_.size()),
-        component_(left_.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-
-  void add(int atom) {
-    const int body = graph_.node[at(atom)];
-    if (graph_.constraint[at(atom)]) return add_group(body);
-    if (--left_[at(body)] > 0) return;
-    in_[at(body)] = 1;
-    for (const int g : graph_.groups[body])
-      if (in_[at(g)]) {
-        for (const int other : graph_.bodies[g])
-          if (other != body && in_[at(other)]) {
-            join(body, other);
-            break;
-          }
-        if (--missing_[at(g)] == 0) --component_[at(find(body))].half;
-      }
-    for (const int g : graph_.groups[body])
-      if (graph_.fused_with[at(g)] == body) add_group(g);
-  }
-
-  bool may_be_pivot(int atom) {
-    if (!graph_.constraint[at(atom)]) return true;
-    const int g = graph_.node[at(atom)];
-    const std::span<const int> bodies = graph_.bodies[g];
-    const bool half = in_[at(g)] && missing_[at(g)] > 0;
-    bool some = false, whole = true, floating = true;
-    for (const int b : bodies) {
-      if (!in_[at(b)]) {
-        whole = false;
-        continue;
-      }
-      some = true;
-      const Component& c = component_[at(find(b))];
-      if (c.half > (half ? 1 : 0)) return false;
-      floating = floating && !c.grounded && !c.cyclic;
-    }
-    return some && (whole || floating);
-  }
-
- private:
-  struct Component {
-    int half = 0;  // groups eliminated before one of their bodies
-    bool grounded = false, cyclic = false;
-  };
-
-  int find(int k) {
-    while (parent_[at(k)] != k) k = parent_[at(k)] = parent_[at(parent_[at(k)])];
-    return k;
-  }
-
-  void join(int a, int b) {
-    a = find(a), b = find(b);
-    if (a == b) {
-      component_[at(a)].cyclic = true;
-      return;
-    }
-    parent_[at(a)] = b;
-    component_[at(b)].half += component_[at(a)].half;
-    component_[at(b)].grounded |= component_[at(a)].grounded;
-    component_[at(b)].cyclic |= component_[at(a)].cyclic;
-  }
-
-  void add_group(int g) {
-    if (in_[at(g)]) return;
-    in_[at(g)] = 1;
-    const std::span<const int> bodies = graph_.bodies[g];
-    int first = -1;
-    for (const int b : bodies) {
-      if (!in_[at(b)])
-        ++missing_[at(g)];
-      else if (first < 0)
-        first = b;
-      else
-        join(first, b);
-    }
-    if (first < 0) return;
-    if (bodies.size() == 1) component_[at(find(first))].grounded = true;
-    if (missing_[at(g)] > 0) ++component_[at(find(first))].half;
-  }
-
-  const BlockGraph& graph_;
-  std::vector<int> left_;  // atoms of a body not eliminated yet
-  std::vector<char> in_;   // node eliminated: all of a body, some of a group
-  std::vector<int> missing_, parent_;
-  std::vector<Component> component_;
-};
 
 // Quotient graph: what was eliminated is kept as elements, each the set of atoms its elimination coupled. An atom's
 // neighbours and elements share the room its neighbours had at first, from both ends: an element takes the place of the
