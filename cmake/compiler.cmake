@@ -35,10 +35,3 @@ if(POINSOT_SANITIZE)
 endif()
 add_compile_options(${poinsot_interface_options})
 add_link_options(${poinsot_interface_link_options})
-
-# Headers that nearly all files of a target read, read once. A compiler cache does that better and wants it left alone.
-function(poinsot_precompile target)
-  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    target_precompile_headers(${target} PRIVATE ${ARGN})
-  endif()
-endfunction()

@@ -42,7 +42,8 @@ std::string names(const char* key) {
 }
 
 TEST_F(WrongInput, Usage) {
-  const std::string commands = "run, check, list, tables, make, scale; see poinsot --help";
+  const std::string commands =
+      "run, check, list, tables, make, scale, reference, chart, advise, figures; see poinsot --help";
   expect_refused({}, "poinsot: found no command, expected one of " + commands);
   expect_refused({"fly"}, "poinsot: found \"fly\", expected one of " + commands);
   expect_refused({"--fly"}, "poinsot: found \"--fly\", expected one of " + commands);
