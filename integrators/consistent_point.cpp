@@ -80,9 +80,11 @@ Status ConsistentPoints::project(Point& at, bool& moved) {
     const double correction = largest(rates());
     if (k == 0 && correction <= kNegligible) break;
     if (k == kCorrections || !(correction < before)) {
-      return {
-          Failure::inconsistent_state, at.t,
-          fmt::format("at t = {:.9g} s the step leads too far from the constraints to be projected onto them", at.t)};
+      return {Failure::inconsistent_state, at.t,
+              fmt::format(
+                  "at t = {:.9g} s the step leads too far from the constraints to be projected onto them; try smaller "
+                  "tolerances",
+                  at.t)};
     }
     problem_.retract(span(at.q), rates(), span(q_moved_));
     at.q.swap(q_moved_);

@@ -25,7 +25,7 @@ Status controlled_steps(Method& method, const StepRule& rule, const Settings& se
   const double end = settings.end, smallest = 16 * std::numeric_limits<double>::epsilon() * end;
   SampleTimes times(settings.every, end);
   StepController controller(rule);
-  Creeping creeping;
+  Creeping creeping(end);
   double h = method.first_step(end);
   double usual = 0;    // length of the steps so far, those long ago forgotten
   int rejections = 0;  // in a row
@@ -33,7 +33,7 @@ Status controlled_steps(Method& method, const StepRule& rule, const Settings& se
     const double t = method.state().t;
     const double to = t + 1.01 * h >= end ? end : t + h;
     h = to - t;
-    if (creeping.tries(h)) return step_too_small(t, h, {});
+    if (creeping.tries(t, h)) return step_too_small(t, h, {});
     double error = 0;
     Status status = method.attempt(to, rejections, error);
     if (status.ok() && error <= 1) status = method.complete();

@@ -100,10 +100,24 @@ Status ExplicitStepper::first_step(double end, double& h) {
   return status;
 }
 
+// y_{n+1} of a step from the point (t_n, q_n, y_n) with f in column 0.
+Status ExplicitStepper::run_through_stages(double to) {
+  const double h = to - t_n_;
+  for (std::size_t i = 1; i < pair_.stages.size(); ++i) {
+    const Stage& stage = pair_.stages[i];
+    advance(h, stage.a, y_);
+    next_.t = stage.c == 1 ? to : t_n_ + stage.c * h;
+    if (Status status = evaluate(next_, y_, static_cast<Eigen::Index>(i)); !status.ok()) return status;
+  }
+  advance(h, pair_.b, y_);
+  next_.t = to;
+  return {};
+}
+
 Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
   const Eigen::Index nv = problem_.nv();
   project_stages_ = stages == Stages::projected;
-  dense_ready_ = false;
+  dense_ = Dense::missing;
   elsewhere_ = true;
   t_n_ = state_.t;
   h_ = to - t_n_;
@@ -111,14 +125,7 @@ Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
   y_n_.head(nv).setZero();
   y_n_.tail(nv) = state_.v;
   k_.col(0) << state_.v, state_.z.head(nv);
-  for (std::size_t i = 1; i < pair_.stages.size(); ++i) {
-    const Stage& stage = pair_.stages[i];
-    advance(h_, stage.a, y_);
-    next_.t = stage.c == 1 ? to : t_n_ + stage.c * h_;
-    if (Status status = evaluate(next_, y_, static_cast<Eigen::Index>(i)); !status.ok()) return status;
-  }
-  advance(h_, pair_.b, y_);
-  next_.t = to;
+  if (Status status = run_through_stages(to); !status.ok()) return status;
   if (error_needs_last_) {
     if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
   } else {
@@ -163,13 +170,19 @@ Status ExplicitStepper::prepare_dense() {
   r_.col(1) = h_ * k_.col(0) - r_.col(0);
   r_.col(2) = 2 * r_.col(0) - h_ * (k_.col(0) + k_.col(last_));
   for (std::size_t i = 0; i < pair_.dense.size(); ++i) sum(pair_.dense[i], r_.col(3 + static_cast<Eigen::Index>(i)));
-  dense_ready_ = true;
+  dense_ = Dense::ready;
   return {};
 }
 
 Status ExplicitStepper::interpolate(double t) {
   elsewhere_ = true;
-  if (!dense_ready_) {
+  if (dense_ != Dense::too_coarse && by_polynomial(t).ok()) return {};
+  dense_ = Dense::too_coarse;
+  return by_short_step(t);
+}
+
+Status ExplicitStepper::by_polynomial(double t) {
+  if (dense_ == Dense::missing) {
     if (Status status = prepare_dense(); !status.ok()) return status;
   }
   const double s = (t - t_n_) / h_;
@@ -178,6 +191,14 @@ Status ExplicitStepper::interpolate(double t) {
   sample_.t = t;
   sample_.v = y_n_.tail(problem_.nv()) + combined_.tail(problem_.nv());
   problem_.retract(span(q_n_), std::span<const double>(span(combined_)).first(nv_), span(sample_.q));
+  return points_.complete(sample_);
+}
+
+Status ExplicitStepper::by_short_step(double t) {
+  if (Status status = run_through_stages(t); !status.ok()) return status;
+  sample_.t = t;
+  sample_.v = y_.tail(problem_.nv());
+  problem_.retract(span(q_n_), span(y_).first(nv_), span(sample_.q));
   return points_.complete(sample_);
 }
 

@@ -41,7 +41,8 @@ class ExplicitStepper {
   // Makes the attempted step the state: f(y_{n+1}), projection. Fails where the result cannot be projected; then the
   // state is still the old one.
   Status complete();
-  // The motion within the completed step at time t, consistent, in interpolated(). The problem stands there.
+  // The motion within the completed step at time t, consistent, in interpolated(). The problem stands there. Where the
+  // step is so long that the polynomial is too far off the constraints, a shorter step from where that one began.
   Status interpolate(double t);
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
   void settle();
@@ -55,7 +56,10 @@ class ExplicitStepper {
   void advance(double h, Terms terms, Vector& y) const;
   double norm(Terms terms);
   Status evaluate(Point& at, const Vector& y, Eigen::Index k);
+  Status run_through_stages(double to);
   Status prepare_dense();
+  Status by_polynomial(double t);
+  Status by_short_step(double t);
 
   const RungeKuttaPair& pair_;
   Problem& problem_;
@@ -71,7 +75,8 @@ class ExplicitStepper {
   Vector y_n_, y_;  // 2 nv
   Eigen::MatrixXd k_, r_;
   double h_ = 0, t_n_ = 0;
-  bool dense_ready_ = false, elsewhere_ = false;
+  bool elsewhere_ = false;
+  enum class Dense { missing, ready, too_coarse } dense_ = Dense::missing;
   Vector sizes_, sizes_next_, scale_, combined_;
 };
 

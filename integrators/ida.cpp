@@ -132,7 +132,7 @@ class Run {
 
   Status advance() {
     SampleTimes times(settings_.every, settings_.end);
-    Creeping creeping;
+    Creeping creeping(settings_.end);
     double t = 0;
     while (t < settings_.end) {
       if (IDASolve(ida_.get(), settings_.end, &t, y_.get(), y_dot_.get(), IDA_ONE_STEP) < 0) {
@@ -142,7 +142,7 @@ class Run {
       ++statistics_.steps;
       double h = 0;
       IDAGetLastStep(ida_.get(), &h);
-      if (creeping.tries(h)) return step_too_small(t, h, {});
+      if (creeping.tries(t, h)) return step_too_small(t, h, {});
       creeping.completed(h);
       if (problem_.has_discrete_state()) accept(t);
       for (; settings_.every > 0 && times.next() < t; times.pass()) {

@@ -1,12 +1,16 @@
 // How to solve: the solver configuration, one field per key of the configuration file and of the command line.
 #pragma once
 
+#include <limits>
 #include <string>
 
 namespace poinsot {
 
 enum class Analysis { kinematics, dynamics };
 enum class Assembly { small, always, never };  // project an initial state that violates the constraints
+
+// Below this relative tolerance error control would chase rounding (Hairer's codes set the same bound).
+inline constexpr double kLeastRtol = 10 * std::numeric_limits<double>::epsilon();
 
 struct Settings {
   Analysis analysis = Analysis::dynamics;

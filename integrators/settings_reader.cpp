@@ -53,7 +53,8 @@ const std::array kEntries{
     SettingEntry{"tolerance", "Newton: 2-norm of the correction", &Settings::tolerance, nullptr, false},
     SettingEntry{"spectral_radius", "generalized_alpha: spectral radius at infinity, at most 1",
                  &Settings::spectral_radius, nullptr, true},
-    SettingEntry{"rtol", "relative tolerance of integrators with error control", &Settings::rtol, nullptr, false},
+    SettingEntry{"rtol", "relative tolerance of integrators with error control", &Settings::rtol, nullptr, false,
+                 kLeastRtol},
     SettingEntry{"atol", "absolute tolerance of integrators with error control", &Settings::atol, nullptr, false},
     SettingEntry{"max_iterations", "Newton: iterations allowed in a step", &Settings::max_iterations, nullptr, false},
     SettingEntry{"every", "time between output rows, s; 0: every step", &Settings::every, nullptr, true},
@@ -79,11 +80,13 @@ std::string one_of(const SettingEntry& entry) {
 
 std::string allowed_number(const SettingEntry& entry) {
   if (std::holds_alternative<int Settings::*>(entry.member)) return "a whole number, at least 1";
+  if (entry.least > 0) return fmt::format("a number, at least {:.2g}", entry.least);
   return entry.zero_allowed ? "a number, at least 0" : "a number greater than 0";
 }
 
 void set_number(const SettingEntry& entry, double value, const Source& source, Settings& settings) {
-  const bool in_range = std::isfinite(value) && (value > 0 || (entry.zero_allowed && value == 0));
+  const bool in_range =
+      std::isfinite(value) && value >= entry.least && (value > 0 || (entry.zero_allowed && value == 0));
   if (const auto* number = std::get_if<double Settings::*>(&entry.member)) {
     if (!in_range) source.expected(allowed_number(entry));
     settings.*(*number) = value;

@@ -22,6 +22,7 @@ struct SettingEntry {
       member;
   std::vector<std::string> (*names)();  // what a key with a name may be; nullptr for numbers and switches
   bool zero_allowed;                    // numbers: at least 0 instead of greater than 0
+  double least = 0;                     // numbers: at least this, where it is not 0
 };
 
 std::span<const SettingEntry> setting_entries();

@@ -33,7 +33,8 @@ void check_numbers(const Settings& s) {
   positive("step", s.step);
   positive("end", s.end);
   positive("tolerance", s.tolerance);
-  positive("rtol", s.rtol);
+  if (!(s.rtol >= kLeastRtol) || !std::isfinite(s.rtol))
+    throw InputError(fmt::format("rtol is {}; it must be at least {:.2g}", s.rtol, kLeastRtol));
   positive("atol", s.atol);
   if (!(s.spectral_radius >= 0 && s.spectral_radius <= 1))
     throw InputError(fmt::format("spectral_radius is {}; it must be between 0 and 1", s.spectral_radius));

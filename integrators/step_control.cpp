@@ -86,8 +86,9 @@ Status step_too_small(double t, double h, const Status& cause) {
   return {Failure::step_size_too_small, t,
           fmt::format("at t = {:.9g} s the steps became too small to get on with ({:.3g} s): the motion jumps or grows "
                       "without bound here, the mechanism comes to a singular position, near which accelerations are "
-                      "lost to rounding, or the tolerances ask for more than the arithmetic has; larger tolerances or "
-                      "an implicit integrator with a fixed step may pass{}",
+                      "lost to rounding, or the tolerances ask for more than the arithmetic has (where a body is at "
+                      "rest, atol alone does); larger tolerances or an implicit integrator with a fixed step may "
+                      "pass{}",
                       t, h, last)};
 }
 

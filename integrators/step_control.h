@@ -54,23 +54,32 @@ class StepController {
 double first_trial(double y, double f, double end);
 double first_step(double h0, double f, double second, int order, double end);
 
-// So many steps in a row that are so much smaller than the longest one do not pass a jump of the forces, which takes a
-// few dozen: they creep towards a singular position, where less and less of the accelerations is more than rounding, or
-// to where the motion grows without bound.
+// Steps that do not get on, tried at times t of a run to `end`.
+//
+// So many in a row that are so much smaller than the longest one do not pass a jump of the forces, which takes a few
+// dozen: they creep towards a singular position, where less and less of the accelerations is more than rounding, or to
+// where the motion grows without bound. And from a start whose steps do not grow, so many that cover so little of the
+// way would take days to the end: with an atol far below rounding a body at rest asks for its noise to be resolved.
 class Creeping {
  public:
-  bool tries(double h) {
+  explicit Creeping(double end) : little_(1e-7 * end) {}
+
+  bool tries(double t, double h) {
     tiny_ = h < kTiny * longest_ ? tiny_ + 1 : 0;
-    return tiny_ > kMost;
+    if (!(t < from_ + little_)) {
+      from_ = t;
+      tried_ = 0;
+    }
+    return tiny_ > kMostTiny || ++tried_ > kMost;
   }
   void completed(double h) { longest_ = std::max(longest_, h); }
 
  private:
-  static constexpr int kMost = 100;
+  static constexpr int kMostTiny = 100, kMost = 10000;
   static constexpr double kTiny = 1e-6;
 
-  double longest_ = 0;
-  int tiny_ = 0;
+  double little_, longest_ = 0, from_ = 0;
+  int tiny_ = 0, tried_ = 0;
 };
 
 // Error control has come to an end at time t with steps of length h; `cause` is what the last attempt failed of;

@@ -76,6 +76,7 @@ TEST_F(WrongInput, CommandLineValues) {
   };
   refused("--step", "0", "--step: found \"0\", expected a number greater than 0");
   refused("--step", "-1", "--step: found \"-1\", expected a number greater than 0");
+  refused("--rtol", "1e-15", "--rtol: found \"1e-15\", expected a number, at least 2.2e-15");
   refused("--every", "-1", "--every: found \"-1\", expected a number, at least 0");
   refused("--max-iterations", "2.5", "--max-iterations: found \"2.5\", expected a whole number, at least 1");
   for (const char* key : {"analysis", "formulation", "integrator", "linear_solver", "jacobian"}) {
@@ -100,6 +101,8 @@ TEST_F(WrongInput, Configuration) {
                                "poinsot: config.json: /step: found true, expected a number greater than 0");
   expect_configuration_refused(R"({"step": 0})",
                                "poinsot: config.json: /step: found 0, expected a number greater than 0");
+  expect_configuration_refused(R"({"rtol": 1e-15})",
+                               "poinsot: config.json: /rtol: found 1e-15, expected a number, at least 2.2e-15");
   expect_configuration_refused(R"({"max_iterations": 0})",
                                "poinsot: config.json: /max_iterations: found 0, expected a whole number, at least 1");
   expect_configuration_refused(

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/input_error.h"
 #include "core/so3.h"
 #include "integrators/sample_times.h"
 #include "integrators/step_control.h"
@@ -219,6 +220,48 @@ TEST_P(ErrorControl, StopsWhereAForceGrowsWithoutBound) {
   EXPECT_TRUE(r.samples.back().bodies[0].A.allFinite());
 }
 
+// With nothing but a relative tolerance no step resolves the rounding of a body at rest, which rp has in plane motion.
+TEST_P(ErrorControl, SaysThatTheTolerancesAskForTooMuch) {
+  Settings s = settings(1e-14, 0.5);
+  s.atol = 1e-120;
+  const Recorded r = run(scene_of("double_pendulum"), s);
+  EXPECT_TRUE(GetParam().formulation != "rp" || !r.outcome.status.ok());
+  if (!r.outcome.status.ok()) {
+    EXPECT_EQ(r.outcome.status.failure, Failure::step_size_too_small);
+    EXPECT_THAT(r.outcome.status.message, HasSubstr("where a body is at rest, atol alone does"));
+  }
+  s.rtol = 1e-15;
+  try {
+    (void)simulate(scene_of("double_pendulum"), s, {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "rtol is 1e-15; it must be at least 2.2e-15");
+  }
+}
+
+TEST_P(ErrorControl, NeedsNoAbsoluteToleranceWhereEverythingMoves) {
+  const Scene scene = scene_of("heavy_top");
+  Settings s = settings(1e-8, 0.1, 0.1);
+  const auto usual = motion(scene, s);
+  s.atol = 1e-120;
+  EXPECT_LT(distance(motion(scene, s), usual).largest(), 1e-6);
+}
+
+// The longest steps are longer than what a polynomial between their ends can follow.
+TEST_P(ErrorControl, LooseTolerancesGiveSamples) {
+  const Scene scene = scene_of("double_pendulum");
+  const auto exact = motion(scene, controlled("dop853", "rA", 1e-10, 1.5, 0.05));
+  for (const double rtol : {3e-2, 1e-2}) {
+    const Recorded r = run(scene, settings(rtol, 1.5, 0.05));
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    EXPECT_LT(r.outcome.statistics.violation.position, 1e-12);
+    const Distance d = distance(r.samples, exact);
+    EXPECT_LT(std::max({d.r, d.A, d.rd, d.w}), GetParam().of.growth * rtol) << rtol << ": " << d;
+    const Recorded later = run(scene, settings(rtol, 5, 0.05));
+    EXPECT_TRUE(later.outcome.status.ok()) << later.outcome.status.message;
+  }
+}
+
 TEST_P(ErrorControl, StopsAtASingularStart) {
   Scene scene = scene_of("double_pendulum");
   scene.bodies[1].mass = 0;
@@ -233,6 +276,23 @@ TEST(SampleTimes, AreThoseOfFixedSteps) {
   for (int k = 1; k <= 12; ++k, times.pass()) EXPECT_EQ(times.next(), k >= 10 ? 1 : k / 10.0);
   SampleTimes none(0, 3);
   EXPECT_EQ(none.next(), 3);
+}
+
+TEST(Creeping, TellsStepsThatDoNotGetOn) {
+  const auto stops = [](double h, double growth, int most) {
+    Creeping creeping(1);
+    double t = 0;
+    for (int k = 0; k < most && t < 1; ++k, t += h, h *= growth) {
+      if (creeping.tries(t, h)) return true;
+      creeping.completed(h);
+    }
+    return false;
+  };
+  EXPECT_TRUE(stops(1e-100, 1, 20000));
+  EXPECT_TRUE(stops(0, 1, 20000));
+  EXPECT_FALSE(stops(1e-100, 1.1, 20000));  // from a small start
+  EXPECT_FALSE(stops(2e-11, 1, 100000));
+  EXPECT_TRUE(stops(0.01, 0.9, 1000));  // towards a point
 }
 
 TEST(StepController, KeepsWithinItsBounds) {
