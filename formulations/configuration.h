@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "core/so3.h"
@@ -95,6 +96,20 @@ class Configuration {
   Vec3<T> rd(int body) const { return vector3(v, body, kVelocities); }
   const T* x(const T* q_of, int body) const { return q_of + body * kCoordinates + 3; }
   const T* xd(const T* v_of, int body) const { return v_of + body * kVelocities + 3; }
+
+  const Vec4<T>& p(int body) const { return at[static_cast<std::size_t>(body)].p; }  // in rp
+  T mass(int body) const { return T(elements->inertia[static_cast<std::size_t>(body)].mass); }
+  decltype(auto) J(int body) const {
+    const Matrix3& J_bar = elements->inertia[static_cast<std::size_t>(body)].J;
+    if constexpr (std::is_same_v<T, double>) {
+      return (J_bar);
+    } else {
+      return Mat3<T>(J_bar.template cast<T>());
+    }
+  }
+  Vec3<T> s_bar(int marker) const {
+    return elements->markers[static_cast<std::size_t>(marker)].s_bar.template cast<T>();
+  }
 
   // d = r_j + s_q − r_i − s_p and its rate.
   Vec3<T> span(int i, int j, int p, int q_marker) const {

@@ -92,7 +92,7 @@ class Forces {
           if (a == b) {
             const T sign = a == 0 ? T(-1) : T(1);
             K.template bottomRightCorner<F::m, F::m>() +=
-                F::H(c.at[index(body[a])], Mat3<T>(sign * pull * bar(c, point[a]).transpose()));
+                F::H(c.at[index(body[a])], Mat3<T>(sign * pull * c.s_bar(point[a]).transpose()));
           }
           sink.body_block(body[a], body[b], Block(cq * K + cv * lowered(D, body[b])));
         }
@@ -104,7 +104,7 @@ class Forces {
       const Vec3<T> force = global(c, k.body, k.frame, k.force);
       const auto& at = c.at[index(k.body)];
       Block K = Block::Zero();
-      K.template bottomRightCorner<F::m, F::m>() = -F::H(at, Mat3<T>(force * bar(c, k.p).transpose()));
+      K.template bottomRightCorner<F::m, F::m>() = -F::H(at, Mat3<T>(force * c.s_bar(k.p).transpose()));
       if (k.frame == Frame::body) {
         const Eigen::Matrix<T, 3, F::m> turned = C::E(force) * at.W();
         K.template topRightCorner<3, F::m>() -= turned;
@@ -161,7 +161,6 @@ class Forces {
 
  private:
   static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-  static Vec3<T> bar(const C& c, int marker) { return c.elements->markers[index(marker)].s_bar.template cast<T>(); }
   static Ambient torque(const Vec3<T>& moment) {
     Ambient e = Ambient::Zero();
     e.template head<3>() = moment;
@@ -210,7 +209,7 @@ class Forces {
     return arm;
   }
   static Eigen::Matrix<T, 3, F::m> s_dot_variation(const C& c, int body, int marker) {
-    return F::s_dot_variation(c.at[index(body)], c.rate[index(body)], c.xd(c.v, body), bar(c, marker));
+    return F::s_dot_variation(c.at[index(body)], c.rate[index(body)], c.xd(c.v, body), c.s_bar(marker));
   }
 
   // θ = atan2(y, x), x = a·c, y = b·c; ∇θ is the gradient of u·c at fixed u = (x b − y a)/(x² + y²).
@@ -277,7 +276,7 @@ class Forces {
         if (p == q) {
           const Vec3<T>& weigh_i = w.c;
           second += p == 0 ? F::H(c.at[index(k.i)], Mat3<T>(weigh_i * u_bar(c, k, w).transpose()))
-                           : F::H(c.at[index(k.j)], Mat3<T>(w.u * bar(c, k.c).transpose()));
+                           : F::H(c.at[index(k.j)], Mat3<T>(w.u * c.s_bar(k.c).transpose()));
         } else {
           const auto block = p == 0 ? C::EtE(w.u, w.c) : C::EtE(w.c, w.u);
           second += c.at[index(body[p])].W().transpose() * block * c.at[index(body[q])].W();
@@ -296,7 +295,7 @@ class Forces {
     }
   }
   static Vec3<T> u_bar(const C& c, const TorsionRow& k, const Twist& w) {
-    return (w.x * bar(c, k.b) - w.y * bar(c, k.a)) / w.rho2;
+    return (w.x * c.s_bar(k.b) - w.y * c.s_bar(k.a)) / w.rho2;
   }
 };
 

@@ -1,4 +1,5 @@
-// Problem over Mechanism<F, double>: the virtual seam, one call per evaluation of the whole mechanism.
+// Problem over Mechanism<F, double> and MechanismMatrix<F, double>: the virtual seam, one call per evaluation of the
+// whole mechanism.
 #pragma once
 
 #include <memory>
@@ -8,13 +9,15 @@
 
 #include "core/check.h"
 #include "formulations/mechanism.h"
+#include "formulations/mechanism_matrix.h"
 
 namespace poinsot {
 
 template <class F>
 class MechanismProblem final : public Problem {
  public:
-  explicit MechanismProblem(std::shared_ptr<const Elements> elements) : mechanism_(std::move(elements)) {
+  explicit MechanismProblem(std::shared_ptr<const Elements> elements)
+      : mechanism_(std::move(elements)), matrix_(*mechanism_.c.elements) {
     bodies_ = mechanism_.nb();
     nq_ = mechanism_.nq();
     nv_ = mechanism_.nv();
@@ -123,7 +126,7 @@ class MechanismProblem final : public Problem {
     const bool rows_only = kind == MatrixKind::kinematic || kind == MatrixKind::rates;
     pattern.n = rows_only ? std::max(nv_, nc_) : nv_ + nc_;
     Recorder recorder{pattern.blocks};
-    scratch.write_matrix(kind, {1, 1, 1}, nullptr, zeros.data(), zeros.data(), recorder);
+    Matrix(*mechanism_.c.elements).write(scratch.c, kind, {1, 1, 1}, nullptr, zeros.data(), zeros.data(), recorder);
     for (int k = 0; k < pattern.n; ++k) pattern.node.push_back(node_of(k));
     return pattern;
   }
@@ -132,7 +135,7 @@ class MechanismProblem final : public Problem {
                 std::span<const double> lambda, std::span<const int> slots, std::span<double> values) override {
     std::fill(values.begin(), values.end(), 0.0);
     Writer writer{slots.data(), values.data()};
-    mechanism_.write_matrix(kind, scale, dq.empty() ? nullptr : dq.data(), a.data(), lambda.data(), writer);
+    matrix_.write(mechanism_.c, kind, scale, dq.empty() ? nullptr : dq.data(), a.data(), lambda.data(), writer);
     check(writer.slot == slots.data() + slots.size(), "an assembled matrix has the blocks of its pattern");
   }
   void lower(std::span<const double> dq, std::span<double> z) const override { M::lower(dq.data(), z.data(), bodies_); }
@@ -189,6 +192,7 @@ class MechanismProblem final : public Problem {
 
  private:
   using M = Mechanism<F, double>;
+  using Matrix = MechanismMatrix<F, double>;
 
   struct Recorder {
     std::vector<Block>& blocks;
@@ -225,6 +229,7 @@ class MechanismProblem final : public Problem {
   std::string body_name(int b) const { return "body '" + model().bodies[static_cast<std::size_t>(b)].name + "'"; }
 
   M mechanism_;
+  Matrix matrix_;
 };
 
 }  // namespace poinsot

@@ -30,24 +30,24 @@ class RateRows {
     const auto s = [&](int k) -> const Vec3<T>& { return c.s[index(k)]; };
     const auto sd = [&](int k) -> const Vec3<T>& { return c.s_dot[index(k)]; };
     for (const DP1Row& k : c.dp1) {
-      visit(Variation{k.row, k.i, k.j, moved(c, k.i, s(k.u), sd(k.v)) + turned(c, k.i, bar(c, k.u), s(k.v)),
-                      moved(c, k.j, s(k.v), sd(k.u)) + turned(c, k.j, bar(c, k.v), s(k.u)), none},
+      visit(Variation{k.row, k.i, k.j, moved(c, k.i, s(k.u), sd(k.v)) + turned(c, k.i, c.s_bar(k.u), s(k.v)),
+                      moved(c, k.j, s(k.v), sd(k.u)) + turned(c, k.j, c.s_bar(k.v), s(k.u)), none},
             std::false_type());
     }
     for (const AngleRow& k : e.angle) {
       using std::cos, std::sin;
       const T &f = c.f[index(k.f)].f, sn = sin(f), cs = cos(f);
       const Vec3<T> u = Rows<F, T>::driven(c, k), u_t = Rows<F, T>::driven_rate(c, k);
-      const Vec3<T> ud = cs * sd(k.b) - sn * sd(k.a) + u_t, u_bar = cs * bar(c, k.b) - sn * bar(c, k.a);
+      const Vec3<T> ud = cs * sd(k.b) - sn * sd(k.a) + u_t, u_bar = cs * c.s_bar(k.b) - sn * c.s_bar(k.a);
       visit(Variation{k.row, k.i, k.j,
                       moved(c, k.i, u, sd(k.v)) + moved(c, k.i, u_t, s(k.v)) + turned(c, k.i, u_bar, s(k.v)),
-                      moved(c, k.j, s(k.v), ud) + turned(c, k.j, bar(c, k.v), u), none},
+                      moved(c, k.j, s(k.v), ud) + turned(c, k.j, c.s_bar(k.v), u), none},
             std::false_type());
     }
     for (const DP2Row& k : e.dp2) {
       const Vec3<T> d = c.span(k.i, k.j, k.p, k.q), dd = c.span_rate(k.i, k.j, k.p, k.q);
       const auto [xi, xj] = along(c, k, s(k.a), sd(k.a));
-      visit(Variation{k.row, k.i, k.j, moved(c, k.i, s(k.a), dd) + turned(c, k.i, bar(c, k.a), d) + xi, xj, sd(k.a)},
+      visit(Variation{k.row, k.i, k.j, moved(c, k.i, s(k.a), dd) + turned(c, k.i, c.s_bar(k.a), d) + xi, xj, sd(k.a)},
             std::true_type());
     }
     for (const DRow& k : e.d) {
@@ -79,7 +79,6 @@ class RateRows {
 
  private:
   static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-  static Vec3<T> bar(const C& c, int marker) { return c.elements->markers[index(marker)].s_bar.template cast<T>(); }
 
   // w·δs
   static X moved(const C& c, int body, const Vec3<T>& s, const Vec3<T>& w) {
@@ -95,7 +94,7 @@ class RateRows {
   template <class Row>
   static std::pair<X, X> along(const C& c, const Row& k, const Vec3<T>& w, const Vec3<T>& w_dot) {
     const auto of = [&](int body, int marker) {
-      return X(moved(c, body, c.s[index(marker)], w_dot) + turned(c, body, bar(c, marker), w));
+      return X(moved(c, body, c.s[index(marker)], w_dot) + turned(c, body, c.s_bar(marker), w));
     };
     return {-of(k.i, k.p), of(k.j, k.q)};
   }

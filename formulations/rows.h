@@ -2,8 +2,7 @@
 // f(t).
 //
 // A row's gradient is (−g, e_i | g, e_j): g for r_j and −g for r_i, and for the orientations the ambient vectors
-// e = Σ E(s)ᵀw over the attached vectors s the row depends on, which a formulation pulls back by Ŵᵀ. The second
-// variation, weighed by λ, is collected per body and per coupled pair in the same ambient form; see SecondVariation.
+// e = Σ E(s)ᵀw over the attached vectors s the row depends on, which a formulation pulls back by Ŵᵀ.
 #pragma once
 
 #include <algorithm>
@@ -11,53 +10,6 @@
 #include "formulations/configuration.h"
 
 namespace poinsot {
-
-// What the rows add to the matrix, before Ŵ: bodies' S = Σ λ w s̄ᵀ for H(S), and blocks E(s)ᵀE(z) between variations.
-template <class F, class T>
-struct SecondVariation {
-  using AA = Eigen::Matrix<T, F::ambient, F::ambient>;
-  using RA3 = Eigen::Matrix<T, 3, F::ambient>;
-  struct OnBody {  // of bodies whose position and orientation, or two of whose own vectors, meet in one row
-    Mat3<T> rr = Mat3<T>::Zero();
-    RA3 rx = RA3::Zero();
-    RA3 xr_transposed = RA3::Zero();
-    AA xx = AA::Zero();
-  };
-  struct OnPair {  // (i, j) and, mirrored, (j, i)
-    AA xx_ij = AA::Zero(), xx_ji = AA::Zero();
-  };
-  struct OnPairWithR {  // xr blocks are kept transposed
-    T rr = T(0);
-    RA3 rx_ij = RA3::Zero(), rx_ji = RA3::Zero(), xr_ij_transposed = RA3::Zero(), xr_ji_transposed = RA3::Zero();
-  };
-
-  explicit SecondVariation(const Elements& of)
-      : elements(of),
-        S(index(of.nb)),
-        bodies_(index(of.bodies_own)),
-        pairs_(of.pairs.size()),
-        pairs_with_r_(index(of.pairs_with_r)) {}
-
-  void clear() {
-    for (Mat3<T>& sum : S) sum.setZero();
-    std::fill(bodies_.begin(), bodies_.end(), OnBody());
-    std::fill(pairs_.begin(), pairs_.end(), OnPair());
-    std::fill(pairs_with_r_.begin(), pairs_with_r_.end(), OnPairWithR());
-  }
-
-  OnBody& body(int b) { return bodies_[index(elements.body_own[index(b)])]; }
-  OnPair& pair(int k) { return pairs_[index(k)]; }
-  OnPairWithR& pair_with_r(int k) { return pairs_with_r_[index(elements.pairs[index(k)].with_r)]; }
-
-  const Elements& elements;
-  std::vector<Mat3<T>> S;
-
- private:
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-  std::vector<OnBody> bodies_;
-  std::vector<OnPair> pairs_;
-  std::vector<OnPairWithR> pairs_with_r_;
-};
 
 template <class F, class T>
 class Rows {
@@ -144,9 +96,9 @@ class Rows {
     const auto s = [&](int k) -> const Vec3<T>& { return c.s[index(k)]; };
     const auto sd = [&](int k) -> const Vec3<T>& { return c.s_dot[index(k)]; };
     const auto sdd = [&](int k) -> Vec3<T> {
-      const Marker& marker = e.markers[index(k)];
-      if (marker.body == kGround) return Vec3<T>::Zero();
-      return N[index(marker.body)] * marker.s_bar.template cast<T>();
+      const int body = e.markers[index(k)].body;
+      if (body == kGround) return Vec3<T>::Zero();
+      return N[index(body)] * c.s_bar(k);
     };
     for (const DP1Row& k : c.dp1) {
       out[k.row] = c.f[index(k.f)].fdd - s(k.v).dot(sdd(k.u)) - 2 * sd(k.u).dot(sd(k.v)) - s(k.u).dot(sdd(k.v));
@@ -180,99 +132,6 @@ class Rows {
     for (const PfaffianRow& k : e.pfaffian) {
       const Vec3<T> dd = c.span_rate(k.i, k.j, k.p, k.q);
       out[k.row] = c.f[index(k.f)].fd - sd(k.a).dot(dd) - s(k.a).dot(sdd(k.q) - sdd(k.p));
-    }
-  }
-
-  // Σ λ (second variation of the row).
-  static void second_variation(const C& c, const T* lambda, SecondVariation<F, T>& sum) {
-    const Elements& e = *c.elements;
-    const auto s = [&](int k) -> const Vec3<T>& { return c.s[index(k)]; };
-    const auto bar = [&](int k) -> Vec3<T> { return e.markers[index(k)].s_bar.template cast<T>(); };
-    const auto on_S = [&](int body, const Vec3<T>& weighed, const Vec3<T>& s_bar) {
-      if (body != kGround) sum.S[index(body)] += weighed * s_bar.transpose();
-    };
-    const auto directions = [&](const RowBase& k, const Vec3<T>& u, const Vec3<T>& u_bar, int v) {
-      const T l = lambda[k.row];
-      on_S(k.i, l * s(v), u_bar);
-      on_S(k.j, l * u, bar(v));
-      if (k.pair < 0) return;
-      const auto block = C::EtE(l * u, s(v));
-      sum.pair(k.pair).xx_ij += block;
-      sum.pair(k.pair).xx_ji += block.transpose();
-    };
-    for (const DP1Row& k : c.dp1) directions(k, s(k.u), bar(k.u), k.v);
-    for (const AngleRow& k : e.angle) {
-      using std::cos, std::sin;
-      const T &f = c.f[index(k.f)].f, sn = sin(f), cs = cos(f);
-      directions(k, driven(c, k), cs * bar(k.b) - sn * bar(k.a), k.v);
-    }
-    for (const DP2Row& k : e.dp2) {
-      const T l = lambda[k.row];
-      const Vec3<T> a = l * s(k.a), d = l * c.span(k.i, k.j, k.p, k.q);
-      on_S(k.i, d, bar(k.a));
-      on_S(k.i, -a, bar(k.p));
-      on_S(k.j, a, bar(k.q));
-      if (k.i != kGround) {
-        auto& own = sum.body(k.i);
-        own.rx -= C::E(a);
-        own.xr_transposed -= C::E(a);
-        const auto block = C::EtE(a, s(k.p));
-        own.xx -= block + block.transpose();
-      }
-      if (k.pair < 0) continue;
-      sum.pair_with_r(k.pair).rx_ji += C::E(a);
-      sum.pair_with_r(k.pair).xr_ij_transposed += C::E(a);
-      const auto block = C::EtE(a, s(k.q));
-      sum.pair(k.pair).xx_ij += block;
-      sum.pair(k.pair).xx_ji += block.transpose();
-    }
-    for (const DRow& k : e.d) {
-      const T l = T(2) * lambda[k.row];
-      const Vec3<T> d = l * c.span(k.i, k.j, k.p, k.q);
-      on_S(k.i, -d, bar(k.p));
-      on_S(k.j, d, bar(k.q));
-      const auto own = [&](int body, int point) {
-        if (body == kGround) return;
-        auto& mine = sum.body(body);
-        mine.rr.diagonal().array() += l;
-        mine.rx += C::E(l * s(point));
-        mine.xr_transposed += C::E(l * s(point));
-        mine.xx += C::EtE(l * s(point), s(point));
-      };
-      own(k.i, k.p);
-      own(k.j, k.q);
-      if (k.pair < 0) continue;
-      auto& pair = sum.pair_with_r(k.pair);
-      pair.rr -= l;
-      pair.rx_ij -= C::E(l * s(k.q));
-      pair.rx_ji -= C::E(l * s(k.p));
-      pair.xr_ij_transposed -= C::E(l * s(k.p));
-      pair.xr_ji_transposed -= C::E(l * s(k.q));
-      const auto block = C::EtE(l * s(k.p), s(k.q));
-      sum.pair(k.pair).xx_ij -= block;
-      sum.pair(k.pair).xx_ji -= block.transpose();
-    }
-    for (const CDRow& k : e.cd) {
-      const Vec3<T> n = lambda[k.row] * k.c.template cast<T>();
-      on_S(k.i, -n, bar(k.p));
-      on_S(k.j, n, bar(k.q));
-    }
-    for (const CoincidenceRows& k : e.coincidences) {
-      const Vec3<T> force = Eigen::Map<const Vec3<T>>(lambda + k.row);
-      on_S(k.i, -force, bar(k.p));
-      on_S(k.j, force, bar(k.q));
-    }
-    for (const PfaffianRow& k : e.pfaffian) {  // the reaction Ψᵀλ varies with a_j only; no mirror
-      const Vec3<T> a = lambda[k.row] * s(k.a);
-      on_S(k.i, -a, bar(k.p));
-      on_S(k.j, a, bar(k.q));
-      if (k.j != kGround) {
-        sum.body(k.j).rx += C::E(a);
-        sum.body(k.j).xx += C::EtE(s(k.q), a);
-      }
-      if (k.pair < 0) continue;
-      sum.pair_with_r(k.pair).rx_ij -= C::E(a);
-      sum.pair(k.pair).xx_ij -= C::EtE(s(k.p), a);
     }
   }
 
