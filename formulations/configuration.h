@@ -111,6 +111,12 @@ class Configuration {
     return elements->markers[static_cast<std::size_t>(marker)].s_bar.template cast<T>();
   }
 
+  // ∂ṡ/∂x
+  Eigen::Matrix<T, 3, F::m> s_dot_variation(int body, int marker) const {
+    const std::size_t b = static_cast<std::size_t>(body);
+    return F::s_dot_variation(at[b], rate[b], xd(v, body), s_bar(marker));
+  }
+
   // d = r_j + s_q − r_i − s_p and its rate.
   Vec3<T> span(int i, int j, int p, int q_marker) const {
     return r(j) + s[static_cast<std::size_t>(q_marker)] - r(i) - s[static_cast<std::size_t>(p)];

@@ -7,10 +7,10 @@
 #pragma once
 
 #include <cmath>
-#include <numbers>
 
 #include "formulations/configuration.h"
 #include "formulations/problem.h"
+#include "formulations/torsion.h"
 
 namespace poinsot {
 
@@ -30,7 +30,6 @@ class Forces {
   using Block = Eigen::Matrix<T, n, n>;
   using XX = Eigen::Matrix<T, F::m, F::m>;
   using Arm = Eigen::Matrix<T, 3, n>;  // δ of a point or a span
-  using Line = Eigen::Matrix<T, 1, F::m>;
 
   // Adds −Q.
   static void residual(const C& c, std::vector<Wrench<F, T>>& sum) {
@@ -46,7 +45,7 @@ class Forces {
       add(k.j, -s.force * s.direction, -C::Et_times(c.s[index(k.q)], s.force * s.direction));
     }
     for (std::size_t k = 0; k < e.torsions.size(); ++k) {
-      const Twist w(c, e.torsions[k], c.twist[k]);
+      const typename Torsion<F, T>::Twist w(c, e.torsions[k], c.twist[k]);
       add(e.torsions[k].i, Vec3<T>::Zero(), -w.torque * C::Et_times(w.u, w.c));
       add(e.torsions[k].j, Vec3<T>::Zero(), -w.torque * C::Et_times(w.c, w.u));
     }
@@ -87,7 +86,7 @@ class Forces {
             Eigen::Matrix<T, n, 1> left = arm[a].transpose() * s.direction;
             D = left * (along * arm[b]);
             K.template rightCols<F::m>() +=
-                (b == 0 ? T(-1) : T(1)) * left * (along * s_dot_variation(c, body[b], point[b]));
+                (b == 0 ? T(-1) : T(1)) * left * (along * c.s_dot_variation(body[b], point[b]));
           }
           if (a == b) {
             const T sign = a == 0 ? T(-1) : T(1);
@@ -98,7 +97,8 @@ class Forces {
         }
       }
     }
-    for (std::size_t k = 0; k < e.torsions.size(); ++k) torsion(c, e.torsions[k], c.twist[k], cq, cv, T_inverse, sink);
+    for (std::size_t k = 0; k < e.torsions.size(); ++k)
+      Torsion<F, T>::matrix(c, e.torsions[k], c.twist[k], cq, cv, T_inverse, sink);
 
     for (const PointForceElement& k : e.point_forces) {
       const Vec3<T> force = global(c, k.body, k.frame, k.force);
@@ -143,20 +143,10 @@ class Forces {
       sum += T(0.5 * k.stiffness) * stretch * stretch;
     }
     for (std::size_t k = 0; k < e.torsions.size(); ++k) {
-      const T twist = angle(c, e.torsions[k], c.twist[k]) - T(e.torsions[k].angle);
+      const T twist = Torsion<F, T>::angle(c, e.torsions[k], c.twist[k]) - T(e.torsions[k].angle);
       sum += T(0.5 * e.torsions[k].stiffness) * twist * twist;
     }
     return sum;
-  }
-
-  // Angle of a torsion spring with its full turns: of all that fit, the one nearest to `before`, so that it goes on
-  // over ±π within a step.
-  static T angle(const C& c, const TorsionRow& k, double before) {
-    using std::atan2;
-    constexpr double turn = 2 * std::numbers::pi;
-    const Vec3<T>& v = c.s[index(k.c)];
-    const T principal = atan2(c.s[index(k.b)].dot(v), c.s[index(k.a)].dot(v));
-    return principal + T(turn * std::round((before - plain(principal)) / turn));
   }
 
  private:
@@ -207,95 +197,6 @@ class Forces {
     arm.template leftCols<3>().diagonal().array() = T(sign);
     arm.template rightCols<F::m>() = T(sign) * (C::E(c.s[index(point)]) * c.at[index(body)].W());
     return arm;
-  }
-  static Eigen::Matrix<T, 3, F::m> s_dot_variation(const C& c, int body, int marker) {
-    return F::s_dot_variation(c.at[index(body)], c.rate[index(body)], c.xd(c.v, body), c.s_bar(marker));
-  }
-
-  // θ = atan2(y, x), x = a·c, y = b·c; ∇θ is the gradient of u·c at fixed u = (x b − y a)/(x² + y²).
-  struct Twist {
-    T x, y, xd = T(0), yd = T(0), rho2, torque;
-    Vec3<T> u, c;
-
-    Twist(const C& at, const TorsionRow& k, double before) : c(at.s[index(k.c)]) {
-      const Vec3<T>&a = at.s[index(k.a)], &b = at.s[index(k.b)];
-      x = a.dot(c);
-      y = b.dot(c);
-      rho2 = x * x + y * y;
-      u = (x * b - y * a) / rho2;
-      torque = T(k.stiffness) * (angle(at, k, before) - T(k.angle));
-      if (k.damping != 0) {
-        const Vec3<T>&ad = at.s_dot[index(k.a)], &bd = at.s_dot[index(k.b)], &cd = at.s_dot[index(k.c)];
-        xd = ad.dot(c) + a.dot(cd);
-        yd = bd.dot(c) + b.dot(cd);
-        torque += T(k.damping) * (x * yd - y * xd) / rho2;
-      }
-    }
-  };
-
-  // K = k ∇θ∇θᵀ + torque ∇²θ + c ∇θ (∂θ̇/∂q)ᵀ, D = c ∇θ∇θᵀ.
-  template <class Sink>
-  static void torsion(const C& c, const TorsionRow& k, double before, const T& cq, const T& cv,
-                      const std::vector<XX>& T_inverse, Sink&& sink) {
-    const Twist w(c, k, before);
-    const Vec3<T>&a = c.s[index(k.a)], &b = c.s[index(k.b)];
-    const int body[2] = {k.i, k.j};
-    Line gx[2], gy[2], gxd[2], gyd[2];  // gradients of x, y, ẋ, ẏ with the orientations of i and j
-    const auto pulled = [&](int of, const Ambient& e) {
-      return Line((c.at[index(of)].W().transpose() * e).transpose());
-    };
-    if (k.i != kGround) {
-      gx[0] = pulled(k.i, C::Et_times(a, w.c));
-      gy[0] = pulled(k.i, C::Et_times(b, w.c));
-    }
-    if (k.j != kGround) {
-      gx[1] = pulled(k.j, C::Et_times(w.c, a));
-      gy[1] = pulled(k.j, C::Et_times(w.c, b));
-    }
-    if (k.damping != 0) {
-      const Vec3<T>&ad = c.s_dot[index(k.a)], &bd = c.s_dot[index(k.b)], &cd = c.s_dot[index(k.c)];
-      if (k.i != kGround) {
-        gxd[0] = w.c.transpose() * s_dot_variation(c, k.i, k.a) + pulled(k.i, C::Et_times(a, cd));
-        gyd[0] = w.c.transpose() * s_dot_variation(c, k.i, k.b) + pulled(k.i, C::Et_times(b, cd));
-      }
-      if (k.j != kGround) {
-        gxd[1] = a.transpose() * s_dot_variation(c, k.j, k.c) + pulled(k.j, C::Et_times(w.c, ad));
-        gyd[1] = b.transpose() * s_dot_variation(c, k.j, k.c) + pulled(k.j, C::Et_times(w.c, bd));
-      }
-    }
-    const T x = w.x, y = w.y, r2 = w.rho2, tx = -y / r2, ty = x / r2;
-    const T txx = T(2) * x * y / (r2 * r2), txy = (y * y - x * x) / (r2 * r2);
-    for (int p = 0; p < 2; ++p) {
-      if (body[p] == kGround) continue;
-      const Line grad_p = tx * gx[p] + ty * gy[p];
-      for (int q = 0; q < 2; ++q) {
-        if (body[q] == kGround) continue;
-        const Line grad_q = tx * gx[q] + ty * gy[q];
-        XX second = txx * (gx[p].transpose() * gx[q] - gy[p].transpose() * gy[q]) +
-                    txy * (gx[p].transpose() * gy[q] + gy[p].transpose() * gx[q]);
-        if (p == q) {
-          const Vec3<T>& weigh_i = w.c;
-          second += p == 0 ? F::H(c.at[index(k.i)], Mat3<T>(weigh_i * u_bar(c, k, w).transpose()))
-                           : F::H(c.at[index(k.j)], Mat3<T>(w.u * c.s_bar(k.c).transpose()));
-        } else {
-          const auto block = p == 0 ? C::EtE(w.u, w.c) : C::EtE(w.c, w.u);
-          second += c.at[index(body[p])].W().transpose() * block * c.at[index(body[q])].W();
-        }
-        XX K = T(k.stiffness) * grad_p.transpose() * grad_q + w.torque * second;
-        XX D = XX::Zero();
-        if (k.damping != 0) {  // θ̇ = tx ẋ + ty ẏ
-          const Line rate_q =
-              (txx * w.xd + txy * w.yd) * gx[q] + (txy * w.xd - txx * w.yd) * gy[q] + tx * gxd[q] + ty * gyd[q];
-          K += T(k.damping) * grad_p.transpose() * rate_q;
-          D = T(k.damping) * grad_p.transpose() * grad_q;
-          if (!T_inverse.empty()) D *= T_inverse[index(body[q])];
-        }
-        sink.orientation_block(body[p], body[q], XX(cq * K + cv * D));
-      }
-    }
-  }
-  static Vec3<T> u_bar(const C& c, const TorsionRow& k, const Twist& w) {
-    return (w.x * c.s_bar(k.b) - w.y * c.s_bar(k.a)) / w.rho2;
   }
 };
 

@@ -10,6 +10,7 @@
 #include "core/check.h"
 #include "formulations/mechanism.h"
 #include "formulations/mechanism_matrix.h"
+#include "formulations/torsion.h"
 
 namespace poinsot {
 
@@ -149,7 +150,7 @@ class MechanismProblem final : public Problem {
   bool accept(double, std::span<double> q, std::span<double> v, std::span<double> a) override {
     auto& c = mechanism_.c;
     for (std::size_t k = 0; k < c.twist.size(); ++k) {
-      c.twist[k] = Forces<F, double>::angle(c, c.elements->torsions[k], c.twist[k]);
+      c.twist[k] = Torsion<F, double>::angle(c, c.elements->torsions[k], c.twist[k]);
     }
     bool changed = false;
     if constexpr (requires { F::rechart; }) {

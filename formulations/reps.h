@@ -2,8 +2,8 @@
 // = 0.
 //
 // Near the singularity the body-fixed frame is chosen anew: A = R(ε) C with C one of three cyclic permutations of the
-// axes, the chart, stored beside the angles. Everything below is written for A, so vectors and inertias of the scene
-// stay as they are, and a change of chart is a change of (ε, ε̇, ε̈) and of nothing else.
+// axes, the chart (formulations/chart.h), stored beside the angles. Everything below is written for A, so vectors and
+// inertias of the scene stay as they are, and a change of chart is a change of (ε, ε̇, ε̈) and of nothing else.
 //   δs = E(s) W δε, E(s) = −s̃, W = [e_z, A₁ e_x, A₁A₂ e_z]: global angular velocity ω = W ε̇
 //   s̈⁰ = N s̄, N = Σ_ab (∂²A/∂ε_a∂ε_b) ε̇_a ε̇_b (the paper's D),   H(S)_ab = (∂²A/∂ε_a∂ε_b) : S
 // Kinetics in the chart's frame (J_c = C J̄ Cᵀ, ω_c = B ε̇): Bᵀ (J_c (B ε̈ + Ḃ ε̇) + ω̃_c J_c ω_c).
@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "core/so3.h"
+#include "formulations/chart.h"
 
 namespace poinsot {
 
@@ -62,7 +63,7 @@ struct REPS {
     R << cp * cs - sp * ct * ss, -cp * ss - sp * ct * cs, sp * st,  //
         sp * cs + cp * ct * ss, -sp * ss + cp * ct * cs, -cp * st,  //
         st * ss, st * cs, ct;
-    at.A = to_scene(at.chart, R);
+    at.A = Chart::to_scene(at.chart, R);
     at.W_hat << T(0), cp, sp * st,  //
         T(0), sp, -cp * st,         //
         T(1), T(0), ct;
@@ -75,7 +76,7 @@ struct REPS {
     const Eigen::Map<const Vec3<T>> ed(xd);
     rate.wc = at.B * ed;
     rate.wg = at.W_hat * ed;
-    rate.w = vector_to_scene<T>(at.chart, rate.wc);
+    rate.w = Chart::vector_to_scene<T>(at.chart, rate.wc);
   }
 
   template <class T>
@@ -132,18 +133,18 @@ struct REPS {
   template <class T>
   static X<T> inertia_residual(const Position<T>& at, const Velocity<T>& rate, const T* xd, const T* xdd,
                                const Mat3<T>& J) {
-    const Mat3<T> Jc = inertia_to_chart(at.chart, J);
+    const Mat3<T> Jc = Chart::inertia_to_chart(at.chart, J);
     const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot(at, xd) * Eigen::Map<const Vec3<T>>(xd);
     return at.B.transpose() * (Jc * wd + rate.wc.cross(Jc * rate.wc));
   }
   template <class T>
   static XX<T> mass(const Position<T>& at, const Mat3<T>& J) {
-    return at.B.transpose() * inertia_to_chart(at.chart, J) * at.B;
+    return at.B.transpose() * Chart::inertia_to_chart(at.chart, J) * at.B;
   }
   static constexpr bool simplified_keeps_rate_term = false;
   template <class T>
   static XX<T> inertia_rate_variation(const Position<T>& at, const Velocity<T>& rate, const T* xd, const Mat3<T>& J) {
-    const Mat3<T> Jc = inertia_to_chart(at.chart, J);
+    const Mat3<T> Jc = Chart::inertia_to_chart(at.chart, J);
     const Vec3<T> ed = Eigen::Map<const Vec3<T>>(xd);
     const Mat3<T> L = tilde<T>(rate.wc) * Jc - tilde<T>(Jc * rate.wc);
     Mat3<T> inner = Jc * B_dot(at, xd) + L * at.B;
@@ -155,7 +156,7 @@ struct REPS {
   template <class T>
   static XX<T> inertia_position_variation(const Position<T>& at, const Velocity<T>& rate, const T* xd, const T* xdd,
                                           const Mat3<T>& J) {
-    const Mat3<T> Jc = inertia_to_chart(at.chart, J);
+    const Mat3<T> Jc = Chart::inertia_to_chart(at.chart, J);
     const Vec3<T> ed = Eigen::Map<const Vec3<T>>(xd), edd = Eigen::Map<const Vec3<T>>(xdd);
     const Mat3<T> L = tilde<T>(rate.wc) * Jc - tilde<T>(Jc * rate.wc);
     const Vec3<T> u = Jc * (at.B * edd + B_dot(at, xd) * ed) + rate.wc.cross(Jc * rate.wc);
@@ -177,13 +178,13 @@ struct REPS {
   // Chart 0 is the scene's own frame; another one is taken only where it is (nearly) singular.
   template <class T>
   static void from_rotation(const Mat3<T>& A, T* x) {
-    from_rotation_in(A, plain(sin_theta(A, 0)) > kLeaveChart ? 0 : best_chart(A), x);
+    Chart::angles(A, plain(Chart::sin_theta(A, 0)) > kLeaveChart ? 0 : Chart::best(A), x);
   }
   template <class T>
   static bool rates_from(const Position<T>& at, const Vec3<T>& w, T* xd) {  // ε̇ = B⁻¹ ω_c
     using std::abs;
     if (plain(abs(at.st)) < kTooSmall) return false;
-    const Vec3<T> wc = vector_to_chart<T>(at.chart, w);
+    const Vec3<T> wc = Chart::vector_to_chart<T>(at.chart, w);
     xd[0] = (at.ss * wc[0] + at.cs * wc[1]) / at.st;
     xd[1] = at.cs * wc[0] - at.ss * wc[1];
     xd[2] = wc[2] - at.ct * xd[0];
@@ -192,79 +193,24 @@ struct REPS {
   template <class T>
   static Vec3<T> angular_acceleration(const Position<T>& at, const Velocity<T>&, const T* xd, const T* xdd) {
     const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot(at, xd) * Eigen::Map<const Vec3<T>>(xd);
-    return vector_to_scene<T>(at.chart, wd);
+    return Chart::vector_to_scene<T>(at.chart, wd);
   }
 
   // Changes to the best chart where this one is nearly singular; ε̈ keeps the angular acceleration. True when it did.
   static bool rechart(const Position<double>& at, const Velocity<double>& rate, double* x, double* xd, double* xdd) {
     if (std::abs(at.st) >= kLeaveChart) return false;
     const Vec3<double> wd = angular_acceleration(at, rate, xd, xdd);
-    from_rotation_in(at.A, best_chart(at.A), x);
+    Chart::angles(at.A, Chart::best(at.A), x);
     Position<double> there;
     position(x, there);
     rates_from(there, rate.w, xd);
     const Vec3<double> bias =
-        vector_to_scene<double>(there.chart, B_dot(there, xd) * Eigen::Map<const Vec3<double>>(xd));
+        Chart::vector_to_scene<double>(there.chart, B_dot(there, xd) * Eigen::Map<const Vec3<double>>(xd));
     rates_from<double>(there, wd - bias, xdd);
     return true;
   }
 
  private:
-  // Axis k of the scene's body frame is axis (k + chart) mod 3 of the chart's frame.
-  static int axis(int chart, int k) { return (k + chart) % 3; }
-  template <class T>
-  static Mat3<T> to_scene(int chart, const Mat3<T>& R) {
-    if (chart == 0) return R;
-    Mat3<T> A;
-    for (int k = 0; k < 3; ++k) A.col(k) = R.col(axis(chart, k));
-    return A;
-  }
-  template <class T>
-  static Vec3<T> vector_to_scene(int chart, const Vec3<T>& c) {
-    return {c[axis(chart, 0)], c[axis(chart, 1)], c[axis(chart, 2)]};
-  }
-  template <class T>
-  static Vec3<T> vector_to_chart(int chart, const Vec3<T>& s) {
-    Vec3<T> c;
-    for (int k = 0; k < 3; ++k) c[axis(chart, k)] = s[k];
-    return c;
-  }
-  template <class T>
-  static Mat3<T> inertia_to_chart(int chart, const Mat3<T>& J) {
-    if (chart == 0) return J;
-    Mat3<T> Jc;
-    for (int k = 0; k < 3; ++k) {
-      for (int l = 0; l < 3; ++l) Jc(axis(chart, k), axis(chart, l)) = J(k, l);
-    }
-    return Jc;
-  }
-
-  // The chart's z axis is the scene's axis (2 − chart) mod 3 = column of A; sin θ is its distance from the global z.
-  template <class T>
-  static T sin_theta(const Mat3<T>& A, int chart) {
-    using std::sqrt;
-    const int column = (2 - chart + 3) % 3;
-    return sqrt(A(0, column) * A(0, column) + A(1, column) * A(1, column));
-  }
-  template <class T>
-  static int best_chart(const Mat3<T>& A) {
-    int best = 0;
-    for (int chart = 1; chart < 3; ++chart) {
-      if (plain(sin_theta(A, chart)) > plain(sin_theta(A, best))) best = chart;
-    }
-    return best;
-  }
-  template <class T>
-  static void from_rotation_in(const Mat3<T>& A, int chart, T* x) {
-    using std::atan2;
-    Mat3<T> R;
-    for (int k = 0; k < 3; ++k) R.col(axis(chart, k)) = A.col(k);
-    x[0] = atan2(R(0, 2), -R(1, 2));
-    x[1] = atan2(sin_theta(A, chart), R(2, 2));
-    x[2] = atan2(R(2, 0), R(2, 1));
-    x[3] = T(chart);
-  }
-
   // ∂W_k/∂ε_l: a later axis is turned by an earlier angle, W_l × W_k for l < k, else 0.
   template <class T>
   static Vec3<T> W_partial(const Position<T>& at, int k, int l) {

@@ -235,7 +235,7 @@ TYPED_TEST_P(Derivatives, OfTheEnergyAreThePowerOfTheForces) {
     duals.stand(Dual<double>(t, 1.0), q, TestFixture::dual(VectorX::Zero(problem->nv()), v), TestFixture::dual(v, a));
     const auto& torsions = duals.mechanism.c.elements->torsions;
     for (const TorsionRow& torsion : torsions) {
-      power -= torsion.damping * std::pow(Forces<TypeParam, Dual<double>>::angle(duals.mechanism.c, torsion, 0).d, 2);
+      power -= torsion.damping * std::pow(Torsion<TypeParam, Dual<double>>::angle(duals.mechanism.c, torsion, 0).d, 2);
     }
     const double expected = v.dot(out) + power;
     EXPECT_NEAR(duals.mechanism.energy().d, expected, 1e-11 * (1 + std::abs(expected)));
