@@ -11,6 +11,7 @@
 #include "integrators/consistent.h"
 #include "integrators/initial_state.h"
 #include "integrators/jacobian_policy.h"
+#include "integrators/singular_position.h"
 #include "linsolve/registry.h"
 
 namespace poinsot {
@@ -119,8 +120,16 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
       if (!outcome.status.ok()) return outcome;
     }
   }
+  const std::vector<double> q_start = state.q;
   const std::unique_ptr<LinearSolver> solver = linear_solver.make();
   outcome.status = integrator.make()->run(*problem, *solver, settings, state, observe, outcome.statistics);
+  const Failure failure = outcome.status.failure;
+  if (settings.analysis == Analysis::dynamics &&
+      (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {
+    const int rows = static_cast<int>(model->rows.size() - start.dropped.size());
+    const std::string why = near_singular_position(*problem, rows, q_start, outcome.status.time, state.q);
+    if (!why.empty()) outcome.status.message += "; " + why;
+  }
   outcome.statistics.linear_solver = solver->picked().empty() ? linear_solver.name : solver->picked();
   return outcome;
 }

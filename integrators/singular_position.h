@@ -1,0 +1,22 @@
+// Whether a run that stopped did so beside a singular position of its mechanism, and which constraint row says so.
+//
+// Of a row g of G, with rows of unit length, the part independent of the others is as long as
+//   1/sqrt((G Gᵀ)⁻¹_gg)
+// which goes to 0 with the distance from a position where the row depends on the others. How small it is elsewhere is a
+// matter of the mechanism (of its lengths, of the number of its loops): it is compared with what it was at the start.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "formulations/problem.h"
+
+namespace poinsot {
+
+// A sentence; empty where every row is as independent as at the start, or nearly, and for mechanisms too large to look
+// at densely. `rows`: rows of G that are constraints of the scene (before normalizations). The problem stands at (t, q)
+// afterwards, at rest.
+std::string near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
+                                   std::span<const double> q);
+
+}  // namespace poinsot
