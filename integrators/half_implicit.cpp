@@ -3,9 +3,8 @@
 #include <utility>
 
 #include "integrators/broyden.h"
+#include "integrators/fixed_steps.h"
 #include "integrators/newton_loop.h"
-#include "integrators/observe.h"
-#include "integrators/time_grid.h"
 #include "integrators/velocity_rows.h"
 
 namespace poinsot {
@@ -32,71 +31,43 @@ class HalfImplicit final : public Integrator {
     Broyden broyden(problem.nv() + problem.nc(), problem.nv());
     const std::vector<int> free_rows = velocity_rows(problem);
 
-    const Eigen::Index nv = problem.nv(), nc = problem.nc();
-    Vector q = Eigen::Map<Vector>(state.q.data(), problem.nq()), v = Eigen::Map<Vector>(state.v.data(), nv);
-    Vector z(nv + nc);  // (a, λ)
-    z << Eigen::Map<Vector>(state.a.data(), nv), Eigen::Map<Vector>(state.lambda.data(), nc);
-    const std::span<double> a = span(z, 0, nv), lambda = span(z, nv, nc);
-    Vector q_n = q, v_n = v, dq(nv), rows(nc);
-
-    problem.set_position(0, span(q));
-    problem.set_velocity(span(v));
-    sample(observe, problem, 0, span(q), span(v), a, lambda, statistics);
-
-    clock.start();
-    for (std::int64_t n = 1; n <= grid.steps; ++n) {
-      const double t = grid.time(n);
-      q_n.swap(q);
-      v_n.swap(v);
+    SteppedState x(state);
+    Vector dq(x.nv), rows(x.nc);
+    double t_n = 0;
+    x.stand(problem, 0);
+    const auto stand = [&](double) -> Problem& { return here->problem; };  // it does after every step
+    const auto step = [&](double t) -> Status {
       const auto advance = [&] {
-        v.noalias() = v_n + h * z.head(nv);
-        dq.noalias() = h * v;
-        problem.retract(span(q_n), span(dq), span(q));
-        there->problem.set_position(t, span(q));
+        x.v.noalias() = x.v_n + h * x.z.head(x.nv);
+        dq.noalias() = h * x.v;
+        problem.retract(span(x.q_n), span(dq), span(x.q));
+        there->problem.set_position(t, span(x.q));
       };
       const auto residual = [&](Vector& r) {
         advance();
-        here->problem.equations_of_motion(a, lambda, span(r, 0, nv));
-        there->problem.position_residual(span(r, nv, nc));
-        r.tail(nc) /= h * h;
+        here->problem.equations_of_motion(x.a(), x.lambda(), span(r, 0, x.nv));
+        there->problem.position_residual(span(r, x.nv, x.nc));
+        r.tail(x.nc) /= h * h;
         if (free_rows.empty()) return;
-        there->problem.set_velocity(span(v));
+        there->problem.set_velocity(span(x.v));
         there->problem.velocity_residual(span(rows));
-        for (int row : free_rows) r[nv + row] = rows[row] / h;
+        for (int row : free_rows) r[x.nv + row] = rows[row] / h;
       };
-      const auto matrix = [&] { return here->system.refresh(grid.time(n - 1), {}, {}, a, lambda); };
+      const auto matrix = [&] { return here->system.refresh(t_n, {}, {}, x.a(), x.lambda()); };
       const auto correct = [&](Vector& delta) -> Status {
         broyden.improve(delta);
-        z += delta;
+        x.z += delta;
         return {};
       };
       broyden.restart();
-      if (Status status = newton.solve(t, h * h, q, residual, matrix, correct); !status.ok()) {
-        finish(clock, statistics);  // the last accepted step stays in `state`
-        state.q.assign(q_n.begin(), q_n.end());
-        state.v.assign(v_n.begin(), v_n.end());
-        return status;
-      }
+      if (Status status = newton.solve(t, h * h, x.q, residual, matrix, correct); !status.ok()) return status;
       advance();
-      ++statistics.steps;
       std::swap(here, there);
-      here->problem.set_velocity(span(v));
-      if (here->problem.has_discrete_state() && here->problem.accept(t, span(q), span(v), a)) {
-        here->problem.set_position(t, span(q));
-        here->problem.set_velocity(span(v));
-      }
-      if (grid.sampled(n)) {
-        clock.lap(Phase::other);
-        sample(observe, here->problem, t, span(q), span(v), a, lambda, statistics);
-        clock.skip();
-      }
-    }
-    finish(clock, statistics);
-    state.q.assign(q.begin(), q.end());
-    state.v.assign(v.begin(), v.end());
-    state.a.assign(a.begin(), a.end());
-    state.lambda.assign(lambda.begin(), lambda.end());
-    return {};
+      here->problem.set_velocity(span(x.v));
+      t_n = t;
+      return {};
+    };
+    return fixed_steps(x, grid, state, observe, statistics, clock, step, stand);
   }
 };
 
