@@ -217,4 +217,21 @@ class Reference {
   std::vector<std::size_t> order_;
 };
 
+// Masses from 1e-5 to 1e3 and constraint rows over h², h = 1e-6.
+inline LinearSystem badly_scaled(const Mechanism& mechanism, BodyKind kind, bool both, std::mt19937_64& random) {
+  LinearSystem s = saddle_point(mechanism, kind, random);
+  const double h = 1e-6;
+  for (std::size_t m = 0; m < s.pattern.blocks.size(); ++m) {
+    const Block& b = s.pattern.blocks[m];
+    const int row = s.pattern.node[static_cast<std::size_t>(b.row)],
+              col = s.pattern.node[static_cast<std::size_t>(b.col)];
+    double factor = 1;
+    if (row == col && b.rows == b.cols) factor = row % 3 == 0 ? 1e-5 : row % 3 == 1 ? 1 : 1e3;
+    if (row != col && row >= mechanism.bodies) factor = 1 / (h * h);
+    if (row != col && col >= mechanism.bodies && both) factor = 1 / (h * h);
+    for (double& x : s.block(m)) x *= factor;
+  }
+  return s;
+}
+
 }  // namespace poinsot::test
