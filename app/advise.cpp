@@ -10,6 +10,7 @@
 #include "app/measure.h"
 #include "app/name_list.h"
 #include "app/natural_end.h"
+#include "app/options.h"
 #include "app/scene_waste.h"
 #include "app/terminal.h"
 #include "core/expression.h"
@@ -39,18 +40,9 @@ Asked asked(const Options& options) {
     refuse(fmt::format(" ({})", error.what()));
   }
   if (!(result.accuracy > 0 && result.accuracy <= kUseless)) refuse("");
-  const auto number = [](std::string_view name) {
-    return static_cast<std::size_t>(std::find(kQuantities.begin(), kQuantities.end(), name) - kQuantities.begin());
-  };
-  for (std::size_t begin = 0; begin <= options.of.size();) {
-    const std::size_t end = std::min(options.of.find(',', begin), options.of.size());
-    const std::string name = options.of.substr(begin, end - begin);
-    if (number(name) == kQuantities.size())
-      throw InputError(fmt::format("--of: found \"{}\", expected one or more of {}, with commas between", name,
-                                   fmt::join(kQuantities, ", ")));
-    result.quantities.push_back(number(name));
-    begin = end + 1;
-  }
+  const std::vector<std::string> known(kQuantities.begin(), kQuantities.end());
+  for (const std::string& name : names_in("--of", options.of, known))
+    result.quantities.push_back(static_cast<std::size_t>(std::find(known.begin(), known.end(), name) - known.begin()));
   return result;
 }
 
@@ -157,7 +149,7 @@ int advise(const Options& options) {
 void add_advise(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("advise", "find the cheapest way to an accuracy on a scene, by trying");
   const auto options = std::make_shared<Options>();
-  command->add_option("scene", options->scene, "scene file")->required()->type_name("SCENE");
+  add_scene(*command, options->scene);
   command
       ->add_option("--accuracy", options->accuracy,
                    fmt::format("largest error, relative to the motion (default {})", options->accuracy))
@@ -167,9 +159,8 @@ void add_advise(CLI::App& app, int& status) {
                    fmt::format("what must be so accurate, with commas between: {} (default {})",
                                fmt::join(kQuantities, ", "), options->of))
       ->type_name("NAMES");
-  command->add_option("--end", options->end, fmt::format("end time, s (default: {})", kNaturalEnd))->type_name("X");
-  command->add_option("--cache", options->cache, "folder where references are kept (default $XDG_CACHE_HOME/poinsot)")
-      ->type_name("DIR");
+  add_end(*command, options->end);
+  add_cache(*command, options->cache);
   command->footer("Everything named has been run on this scene and compared with a reference (`poinsot reference`).");
   command->callback([options, &status] { status = advise(*options); });
 }

@@ -9,16 +9,14 @@
 #include "app/commands.h"
 #include "app/measure.h"
 #include "app/models_directory.h"
-#include "app/name_list.h"
 #include "app/natural_end.h"
+#include "app/options.h"
 #include "app/plot.h"
 #include "app/progress.h"
 #include "app/report.h"
 #include "app/terminal.h"
 #include "core/input_error.h"
 #include "core/scene_reader.h"
-#include "formulations/registry.h"
-#include "linsolve/registry.h"
 
 namespace poinsot::app {
 namespace {
@@ -41,7 +39,8 @@ const Extent kQuick{{100, 300, 1000, 3000, 10000}, {1e-3, 1e-5, 1e-7, 1e-9, 1e-1
 
 struct Options {
   std::vector<std::string> scenes;
-  std::string out = "results", end, models, formulations, integrators, linear_solvers, cache = user_cache().string();
+  std::string out = "results", end, models, formulations, integrators, cache = user_cache().string();
+  std::string linear_solvers{kUsualSolver};
   bool all = false, quick = false, fresh = false, quiet = false;
 
   const Extent& extent() const { return quick ? kQuick : kFull; }
@@ -63,21 +62,8 @@ std::vector<fs::path> scene_files(const Options& options) {
 }
 
 SweepPlan plan_of(const Options& options) {
-  SweepPlan plan = everything();
-  plan.steps = options.extent().steps;
-  plan.tolerances = options.extent().tolerances;
-  if (!options.formulations.empty())
-    plan.formulations = names_in("--formulations", options.formulations,
-                                 [](std::string_view name) { return find_formulation(name) != nullptr; });
-  if (!options.integrators.empty())
-    plan.integrators = names_in("--integrators", options.integrators, [](std::string_view name) {
-      const IntegratorEntry* entry = find_integrator(name);
-      return entry && entry->analysis == Analysis::dynamics;
-    });
-  if (!options.linear_solvers.empty())
-    plan.linear_solvers = names_in("--linear-solvers", options.linear_solvers,
-                                   [](std::string_view name) { return find_linear_solver(name) != nullptr; });
-  return plan;
+  return {names_given("formulation", options.formulations), names_given("integrator", options.integrators),
+          names_given("linear_solver", options.linear_solvers), options.extent().steps, options.extent().tolerances};
 }
 
 std::vector<std::string> notes(const Scene& scene, double end, const Reference& r, const Options& options,
@@ -230,22 +216,16 @@ void add_chart(CLI::App& app, int& status) {
   const auto options = std::make_shared<Options>();
   command->add_option("scenes", options->scenes, "scene files")->type_name("SCENE");
   command->add_flag("--all", options->all, "the models that came with the program, too");
-  command->add_option("--models", options->models, "folder of these models")->type_name("DIR");
-  command->add_option("--out", options->out, "folder for a CSV, SVG and PNG for each scene (default results)")
-      ->type_name("DIR");
+  add_models(*command, options->models);
+  add_out_folder(*command, options->out, "a CSV, SVG and PNG for each scene");
   command->add_flag("--quick", options->quick, "a reduced set: fewer and shorter runs");
-  command->add_option("--end", options->end, fmt::format("end time, s (default: {})", kNaturalEnd))->type_name("X");
-  command->add_option("--formulations", options->formulations, "with commas between (default: all)")
-      ->type_name("NAMES");
-  command->add_option("--integrators", options->integrators, "with commas between (default: all)")->type_name("NAMES");
-  command
-      ->add_option("--linear-solvers", options->linear_solvers,
-                   fmt::format("with commas between (default {})", kUsualSolver))
-      ->type_name("NAMES");
+  add_end(*command, options->end);
+  add_names(*command, "formulation", options->formulations);
+  add_names(*command, "integrator", options->integrators);
+  add_names(*command, "linear_solver", options->linear_solvers);
   command->add_flag("--fresh", options->fresh, "measure everything, also what the folder holds already");
-  command->add_option("--cache", options->cache, "folder where references are kept (default $XDG_CACHE_HOME/poinsot)")
-      ->type_name("DIR");
-  command->add_flag("--quiet", options->quiet, "nothing but errors");
+  add_cache(*command, options->cache);
+  add_quiet(*command, options->quiet);
   command->footer(
       "Errors are those against a reference (`poinsot reference`). A sweep that was interrupted goes on where it\n"
       "stopped when the command is given again.");

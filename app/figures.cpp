@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/figure.h"
 #include "app/models_directory.h"
+#include "app/options.h"
 #include "app/terminal.h"
 #include "core/input_error.h"
 #include "core/scene_reader.h"
@@ -91,14 +92,10 @@ void add_figures(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("figures", "compute and draw the paper's figures, and more of their kind");
   const auto options = std::make_shared<Options>();
   command->add_option("NAME", options->names, "of a figure, see below (default: all)")->type_name("");
-  command->add_option("--out", options->out, "folder for the Markdown page, CSV files and pictures (default results)")
-      ->type_name("DIR");
-  command
-      ->add_option("--models", options->models,
-                   "folder with the mechanisms (default: those that came with the program)")
-      ->type_name("DIR");
+  add_out_folder(*command, options->out, "the Markdown page, CSV files and pictures");
+  add_models(*command, options->models);
   command->add_flag("--quick", options->quick, "fewer and longer steps, shorter motions: to see that it works");
-  command->add_flag("--quiet", options->quiet, "nothing but errors");
+  add_quiet(*command, options->quiet);
   command->footer(footer());
   command->callback([options, &status] { status = figures(*options); });
 }

@@ -3,9 +3,9 @@
 // codes also the exact one.
 #include <fmt/format.h>
 
+#include "app/cell_rows.h"
 #include "app/figure.h"
 #include "app/paper_figures.h"
-#include "app/paper_tables.h"
 #include "app/progress.h"
 #include "app/range.h"
 #include "formulations/registry.h"

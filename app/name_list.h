@@ -7,7 +7,8 @@
 
 namespace poinsot::app {
 
-// Throws InputError where one is not `known`.
-std::vector<std::string> names_in(std::string_view option, const std::string& list, bool (*known)(std::string_view));
+// Throws InputError where one is not among the `known`, and says which are.
+std::vector<std::string> names_in(std::string_view option, const std::string& list,
+                                  const std::vector<std::string>& known);
 
 }  // namespace poinsot::app

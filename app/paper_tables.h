@@ -1,9 +1,8 @@
-// The paper's tables from measured cells, with its own figures and those of its two codes beside ours, and what the
-// division of the time into phases says about them. Sentences with numbers in them are made from the numbers.
+// The paper's tables from measured cells, with its own figures and those of its two codes beside ours. Sentences with
+// numbers in them are made from the numbers.
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "app/measure.h"
 #include "app/report.h"
@@ -14,15 +13,6 @@ Table constraint_counts(std::span<const Scene> scenes);  // one per mechanism, i
 // Of cells that differ in mechanism, formulation and jacobian only.
 Table speed_up_table(std::span<const Cell> cells, Analysis analysis);
 Table iterations_table(std::span<const Cell> cells, Analysis analysis);
-Table phases_table(std::span<const Cell> cells, Analysis analysis);
-Table advantage_table(std::span<const Cell> cells, Analysis analysis);
 Table against_original_table(std::span<const Cell> cells, Analysis analysis);
-
-// All linear solvers × mechanisms × formulations × jacobians.
-Table linear_solvers_table(std::span<const Cell> cells);
-// Every repetition of every cell.
-Table raw_table(std::span<const Cell> cells);
-
-std::string_view analysis_name(Analysis analysis);
 
 }  // namespace poinsot::app

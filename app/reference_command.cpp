@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "app/natural_end.h"
+#include "app/options.h"
 #include "app/reference.h"
 #include "app/run_record.h"
 #include "app/terminal.h"
@@ -133,8 +134,8 @@ int run(const Options& options) {
 void add_reference(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("reference", "compute a motion as exactly as can be, and how exact it is");
   const auto options = std::make_shared<Options>();
-  command->add_option("scene", options->scene, "scene file")->required()->type_name("SCENE");
-  command->add_option("--end", options->end, fmt::format("end time, s (default: {})", kNaturalEnd))->type_name("X");
+  add_scene(*command, options->scene);
+  add_end(*command, options->end);
   command->add_option("--every", options->every, fmt::format("time between output rows, s (default: end/{})", kRows))
       ->type_name("X");
   command
@@ -145,9 +146,8 @@ void add_reference(CLI::App& app, int& status) {
       ->add_option("--out", options->out,
                    "the motion, CSV, as `poinsot run` writes it; beside it .json with the evidence")
       ->type_name("FILE.csv");
-  command->add_option("--cache", options->cache, "folder where references are kept (default $XDG_CACHE_HOME/poinsot)")
-      ->type_name("DIR");
-  command->add_flag("--quiet", options->quiet, "nothing but errors");
+  add_cache(*command, options->cache);
+  add_quiet(*command, options->quiet);
   command->footer(
       "Several methods, each at two tolerances: what they differ by is stated for positions, velocities, accelerations "
       "and\n"

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "app/output_file.h"
 #include "app/progress.h"
 #include "app/reactions_writer.h"
@@ -143,12 +144,12 @@ int run(const Options& options) {
 void add_run(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("run", "compute the motion of a scene");
   const auto options = std::make_shared<Options>();
-  command->add_option("scene", options->scene, "scene file")->required()->type_name("SCENE");
+  add_scene(*command, options->scene);
   options->settings.add_to(*command);
   command->add_option("--out", options->out, "trajectory, CSV; the run record is written beside it as .json")
       ->type_name("FILE.csv");
   command->add_option("--reactions", options->reactions, "multipliers and reaction forces, CSV")->type_name("FILE.csv");
-  command->add_flag("--quiet", options->quiet, "nothing but errors: no progress, no notices, no summary");
+  add_quiet(*command, options->quiet);
   command->footer(
       "Without --out and --reactions a short summary is printed. Numbers may be constant expressions, as\n"
       "in scenes: --step 1/1000 --end 2*pi.");

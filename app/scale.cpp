@@ -5,19 +5,16 @@
 
 #include "app/commands.h"
 #include "app/measure.h"
-#include "app/name_list.h"
+#include "app/options.h"
 #include "app/progress.h"
 #include "app/scale_series.h"
 #include "app/terminal.h"
-#include "core/input_error.h"
-#include "formulations/registry.h"
-#include "linsolve/registry.h"
 
 namespace poinsot::app {
 namespace {
 
 struct Options {
-  std::string out = "results", linear_solvers = "block", formulations = "rA,rp,reps";
+  std::string out = "results", linear_solvers = "block", formulations;
   int most = 100000, repetitions = 3;
   bool quiet = false;
 };
@@ -41,14 +38,10 @@ double end_of(int bodies, double step) {
 }
 
 int scale(const Options& options) {
-  const auto solvers = names_in("--linear-solvers", options.linear_solvers,
-                                [](std::string_view name) { return find_linear_solver(name) != nullptr; });
-  const auto of = names_in("--formulations", options.formulations,
-                           [](std::string_view name) { return find_formulation(name) != nullptr; });
-  if (options.most < 1) throw InputError(fmt::format("--bodies: found {}, expected at least 1", options.most));
-  if (options.repetitions < 1) {
-    throw InputError(fmt::format("--repetitions: found {}, expected at least 1", options.repetitions));
-  }
+  const auto solvers = names_given("linear_solver", options.linear_solvers);
+  const auto of = names_given("formulation", options.formulations);
+  require_positive("--bodies", options.most);
+  require_positive("--repetitions", options.repetitions);
   make_folder(options.out);
   const std::vector<int> all_sizes = sizes(options.most);
 
@@ -117,23 +110,13 @@ int scale(const Options& options) {
 void add_scale(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("scale", "measure how time and memory grow with the number of bodies");
   const auto options = std::make_shared<Options>();
-  command->add_option("--out", options->out, "folder for the Markdown page, CSV files and plots (default results)")
-      ->type_name("DIR");
+  add_out_folder(*command, options->out, "the Markdown page, CSV files and plots");
   command->add_option("--bodies", options->most, fmt::format("largest scene (default {})", options->most))
       ->type_name("N");
-  command
-      ->add_option("--linear-solvers", options->linear_solvers,
-                   fmt::format("with commas between (default {})", options->linear_solvers))
-      ->type_name("NAMES");
-  command
-      ->add_option("--formulations", options->formulations,
-                   fmt::format("with commas between (default {})", options->formulations))
-      ->type_name("NAMES");
-  command
-      ->add_option("--repetitions", options->repetitions,
-                   fmt::format("timed runs of each scene (default {})", options->repetitions))
-      ->type_name("N");
-  command->add_flag("--quiet", options->quiet, "nothing but errors");
+  add_names(*command, "linear_solver", options->linear_solvers);
+  add_names(*command, "formulation", options->formulations);
+  add_repetitions(*command, options->repetitions, "each scene");
+  add_quiet(*command, options->quiet);
   command->callback([options, &status] { status = scale(*options); });
 }
 

@@ -24,15 +24,6 @@ std::string Case::method() const {
   return settings.linear_solver == kUsualSolver ? name : fmt::format("{} with {}", name, settings.linear_solver);
 }
 
-SweepPlan everything() {
-  SweepPlan plan;
-  for (const FormulationEntry& entry : formulations()) plan.formulations.emplace_back(entry.name);
-  for (const IntegratorEntry& entry : integrators())
-    if (entry.analysis == Analysis::dynamics) plan.integrators.emplace_back(entry.name);
-  plan.linear_solvers = {kUsualSolver};
-  return plan;
-}
-
 bool refuses(const IntegratorEntry& integrator, std::string_view formulation) {
   return std::any_of(integrator.refuses.begin(), integrator.refuses.end(),
                      [&](const Refusal& refusal) { return refusal.formulation == formulation; });

@@ -42,8 +42,6 @@ struct SweepPlan {
 inline constexpr int kOutputs = 20;  // output times after 0
 inline const std::string kUsualSolver = Settings{}.linear_solver;
 
-// All there is.
-SweepPlan everything();
 bool refuses(const IntegratorEntry& integrator, std::string_view formulation);
 
 class Sweep {

@@ -3,10 +3,13 @@
 
 #include <memory>
 
+#include "app/cell_rows.h"
 #include "app/commands.h"
 #include "app/models_directory.h"
+#include "app/options.h"
 #include "app/output_file.h"
 #include "app/paper_tables.h"
+#include "app/phase_tables.h"
 #include "app/terminal.h"
 #include "core/input_error.h"
 #include "core/scene_reader.h"
@@ -94,8 +97,7 @@ int tables(const Options& options) {
     Settings ignored;
     set_setting(*find_setting("linear_solver"), options.linear_solver, ignored);  // its message names all there are
   }
-  if (options.repetitions < 1)
-    throw InputError(fmt::format("--repetitions: found {}, expected a whole number, at least 1", options.repetitions));
+  require_positive("--repetitions", options.repetitions);
   const fs::path models = models_directory(options.models);
   std::vector<Scene> scenes;
   for (const Mechanism& mechanism : kMechanisms)
@@ -137,24 +139,17 @@ void add_tables(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("tables", "measure and write the paper's tables, ours beside the paper's figures");
   const auto options = std::make_shared<Options>();
-  command->add_option("--out", options->out, "folder for the Markdown page and the CSV files (default results)")
-      ->type_name("DIR");
-  command
-      ->add_option("--models", options->models,
-                   "folder with the mechanisms (default: those that came with the program)")
-      ->type_name("DIR");
+  add_out_folder(*command, options->out, "the Markdown page and the CSV files");
+  add_models(*command, options->models);
   command
       ->add_option(
           "--linear-solver", options->linear_solver,
           fmt::format("of the paper's tables (default {}); one more table compares all", options->linear_solver))
       ->type_name("NAME");
-  command
-      ->add_option("--repetitions", options->repetitions,
-                   fmt::format("timed runs of each cell (default {})", options->repetitions))
-      ->type_name("N");
+  add_repetitions(*command, options->repetitions, "each cell");
   command->add_flag("--quick", options->quick,
                     "a tenth of the simulated time and at most 5 repetitions: to see that it works");
-  command->add_flag("--quiet", options->quiet, "nothing but errors");
+  add_quiet(*command, options->quiet);
   command->callback([options, &status] { status = tables(*options); });
 }
 

@@ -90,8 +90,8 @@ TEST_F(Chart, SaysWhatIsWrong) {
     EXPECT_EQ(result.err, "poinsot: " + message + "\n");
   };
   says({"chart"}, "found no scene, expected poinsot chart SCENE, or --all");
-  says({"chart", "pendulum.json", "--integrators", "magic"},
-       "--integrators: found \"magic\"; `poinsot list` says what there is");
+  says({"chart", "pendulum.json", "--formulations", "rA,magic"},
+       "--formulations: found \"magic\", expected one or more of rA, rp, reps, with commas between");
   write("other.csv", "1,2\n");
   says({"chart", "pendulum.json", "./pendulum.json"}, "pendulum.json: two scenes would be charted as pendulum.csv");
 }

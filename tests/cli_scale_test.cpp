@@ -1,10 +1,14 @@
 // `poinsot make` and `poinsot scale`: generated scene files, and the files of the scaling study; not how fast anything
 // is.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
 #include <map>
 
 #include "command_line.h"
 #include "core/scene_generator.h"
+#include "integrators/settings_reader.h"
 
 namespace poinsot::test {
 namespace {
@@ -87,7 +91,10 @@ TEST_F(Scale, ExponentsFollowFromTheTable) {
 TEST_F(Scale, SaysWhatItDoesNotKnow) {
   const Result result = poinsot({"scale", "--linear-solvers", "block,magic", "--out", "results"});
   EXPECT_EQ(result.status, 2);
-  EXPECT_EQ(result.err, "poinsot: --linear-solvers: found \"magic\"; `poinsot list` says what there is\n");
+  EXPECT_EQ(result.err,
+            fmt::format("poinsot: --linear-solvers: found \"magic\", expected one or more of {}, with commas "
+                        "between\n",
+                        fmt::join(find_setting("linear_solver")->names(), ", ")));
   EXPECT_TRUE(files().empty());
 }
 

@@ -1,0 +1,68 @@
+#include "app/options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/name_list.h"
+#include "app/natural_end.h"
+#include "core/input_error.h"
+#include "integrators/settings_reader.h"
+
+namespace poinsot::app {
+namespace {
+
+std::string option_of(std::string_view setting) {
+  return option_name(*find_setting(setting)) + "s";
+}
+
+}  // namespace
+
+void add_scene(CLI::App& command, std::string& file) {
+  command.add_option("scene", file, "scene file")->required()->type_name("SCENE");
+}
+
+void add_end(CLI::App& command, std::string& end) {
+  command.add_option("--end", end, fmt::format("end time, s (default: {})", kNaturalEnd))->type_name("X");
+}
+
+void add_cache(CLI::App& command, std::string& folder) {
+  command.add_option("--cache", folder, "folder where references are kept (default $XDG_CACHE_HOME/poinsot)")
+      ->type_name("DIR");
+}
+
+void add_models(CLI::App& command, std::string& folder) {
+  command.add_option("--models", folder, "folder with the mechanisms (default: those that came with the program)")
+      ->type_name("DIR");
+}
+
+void add_out_folder(CLI::App& command, std::string& folder, std::string_view what) {
+  command.add_option("--out", folder, fmt::format("folder for {} (default {})", what, folder))->type_name("DIR");
+}
+
+void add_quiet(CLI::App& command, bool& quiet) {
+  command.add_flag("--quiet", quiet, "nothing but errors");
+}
+
+void add_repetitions(CLI::App& command, int& repetitions, std::string_view what) {
+  command.add_option("--repetitions", repetitions, fmt::format("timed runs of {} (default {})", what, repetitions))
+      ->type_name("N");
+}
+
+void require_positive(std::string_view option, int value) {
+  if (value < 1) throw InputError(fmt::format("{}: found {}, expected a whole number, at least 1", option, value));
+}
+
+void add_names(CLI::App& command, std::string_view setting, std::string& list) {
+  command
+      .add_option(option_of(setting), list,
+                  fmt::format("with commas between: {} (default {})", fmt::join(find_setting(setting)->names(), ", "),
+                              list.empty() ? "all" : list))
+      ->type_name("NAMES");
+}
+
+std::vector<std::string> names_given(std::string_view setting, const std::string& list) {
+  const std::vector<std::string> known = find_setting(setting)->names();
+  return list.empty() ? known : names_in(option_of(setting), list, known);
+}
+
+}  // namespace poinsot::app

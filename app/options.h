@@ -1,0 +1,27 @@
+// Options that mean the same in several commands: one wording and one check. What a variable holds is its default.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace poinsot::app {
+
+void add_scene(CLI::App& command, std::string& file);
+void add_end(CLI::App& command, std::string& end);        // its value: end_time()
+void add_cache(CLI::App& command, std::string& folder);   // of references
+void add_models(CLI::App& command, std::string& folder);  // its value: models_directory()
+void add_out_folder(CLI::App& command, std::string& folder, std::string_view what);
+void add_quiet(CLI::App& command, bool& quiet);
+
+// "timed runs of `what`"; require_positive() is due.
+void add_repetitions(CLI::App& command, int& repetitions, std::string_view what);
+// Throws InputError where the value of an option is less than 1.
+void require_positive(std::string_view option, int value);
+
+// Several names for a setting, with commas between: --linear-solvers for linear_solver. An empty list means all.
+void add_names(CLI::App& command, std::string_view setting, std::string& list);
+std::vector<std::string> names_given(std::string_view setting, const std::string& list);
+
+}  // namespace poinsot::app
