@@ -39,8 +39,9 @@ const Extent kQuick{{100, 300, 1000, 3000, 10000}, {1e-3, 1e-5, 1e-7, 1e-9, 1e-1
 
 struct Options {
   std::vector<std::string> scenes;
-  std::string out = "results", end, models, formulations, integrators, cache = user_cache().string();
-  std::string linear_solvers{kUsualSolver};
+  std::string out = "results", end, models, cache = user_cache().string();
+  std::string formulations = all_names("formulation"), integrators = all_names("integrator"),
+              linear_solvers = kUsualSolver;
   bool all = false, quick = false, fresh = false, quiet = false;
 
   const Extent& extent() const { return quick ? kQuick : kFull; }
@@ -172,6 +173,7 @@ int chart(const Options& options) {
   const SweepPlan plan = plan_of(options);
   std::vector<Scene> scenes;
   for (const fs::path& file : files) scenes.push_back(read_scene(file));
+  if (!options.end.empty()) (void)end_time(options.end, scenes.front());  // a wrong one, before anything is written
   make_folder(options.out);
   const int core = pin_to_one_core();
 

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -34,14 +35,23 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
     for (const CLI::App* subcommand : app.get_subcommands({})) names.push_back(subcommand->get_name());
     what = fmt::format("found {}, expected one of {}", unknown.empty() ? "no command" : '"' + unknown.front() + '"',
                        fmt::join(names, ", "));
+  } else if (const std::size_t flag = what.find(" was given"); flag != std::string::npos) {
+    what = fmt::format("--{}: expected no value", what.substr(0, flag));
   } else if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
     what = fmt::format("{}: expected one value, once", what.substr(0, what.find(':')));
+  } else if (dynamic_cast<const CLI::ConversionError*>(&error)) {  // "Could not convert: --bodies = x"
+    const std::size_t option = what.find(": ") + 2, value = what.find(" = ");
+    what = fmt::format("{}: found \"{}\", expected a whole number", what.substr(option, value - option),
+                       what.substr(value + 3));
   } else if (!unknown.empty()) {
     const auto option = std::find_if(unknown.begin(), unknown.end(), [](const auto& word) { return word[0] == '-'; });
     what = option != unknown.end() ? fmt::format("{}: unknown option", *option)
                                    : fmt::format("found \"{}\", expected nothing more", unknown.front());
   } else if (dynamic_cast<const CLI::RequiredError*>(&error)) {
-    what = fmt::format("found no scene, expected {} SCENE", command);
+    std::string word = what.substr(0, what.find(' ')), place = word;
+    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
+    std::transform(place.begin(), place.end(), place.begin(), [](unsigned char c) { return std::toupper(c); });
+    what = fmt::format("found no {}, expected {} {}", word, command, place);
   }
   return fmt::format("{}; see {} --help", what, command);
 }
@@ -67,6 +77,9 @@ int main(int argc, char** argv) {
   add_chart(app, status);
   add_advise(app, status);
   add_figures(app, status);
+  for (CLI::App* command : app.get_subcommands({}))
+    for (CLI::Option* option : command->get_options())
+      if (option->get_items_expected_max() == 0) option->disable_flag_override();
 
   try {
     hold_blas_to_one_thread();

@@ -52,17 +52,20 @@ void require_positive(std::string_view option, int value) {
   if (value < 1) throw InputError(fmt::format("{}: found {}, expected a whole number, at least 1", option, value));
 }
 
+std::string all_names(std::string_view setting) {
+  return fmt::format("{}", fmt::join(find_setting(setting)->names(), ","));
+}
+
 void add_names(CLI::App& command, std::string_view setting, std::string& list) {
   command
       .add_option(option_of(setting), list,
                   fmt::format("with commas between: {} (default {})", fmt::join(find_setting(setting)->names(), ", "),
-                              list.empty() ? "all" : list))
+                              list == all_names(setting) ? "all" : list))
       ->type_name("NAMES");
 }
 
 std::vector<std::string> names_given(std::string_view setting, const std::string& list) {
-  const std::vector<std::string> known = find_setting(setting)->names();
-  return list.empty() ? known : names_in(option_of(setting), list, known);
+  return names_in(option_of(setting), list, find_setting(setting)->names());
 }
 
 }  // namespace poinsot::app

@@ -20,7 +20,8 @@ void add_repetitions(CLI::App& command, int& repetitions, std::string_view what)
 // Throws InputError where the value of an option is less than 1.
 void require_positive(std::string_view option, int value);
 
-// Several names for a setting, with commas between: --linear-solvers for linear_solver. An empty list means all.
+// Several names for a setting, with commas between: --linear-solvers for linear_solver.
+std::string all_names(std::string_view setting);
 void add_names(CLI::App& command, std::string_view setting, std::string& list);
 std::vector<std::string> names_given(std::string_view setting, const std::string& list);
 

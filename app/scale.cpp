@@ -14,7 +14,7 @@ namespace poinsot::app {
 namespace {
 
 struct Options {
-  std::string out = "results", linear_solvers = "block", formulations;
+  std::string out = "results", linear_solvers = "block", formulations = all_names("formulation");
   int most = 100000, repetitions = 3;
   bool quiet = false;
 };

@@ -92,6 +92,9 @@ TEST_F(Chart, SaysWhatIsWrong) {
   says({"chart"}, "found no scene, expected poinsot chart SCENE, or --all");
   says({"chart", "pendulum.json", "--formulations", "rA,magic"},
        "--formulations: found \"magic\", expected one or more of rA, rp, reps, with commas between");
+  const auto before = files();
+  says({"chart", "pendulum.json", "--end", "0"}, "--end: found \"0\", expected a number greater than 0");
+  EXPECT_EQ(files(), before);
   write("other.csv", "1,2\n");
   says({"chart", "pendulum.json", "./pendulum.json"}, "pendulum.json: two scenes would be charted as pendulum.csv");
 }

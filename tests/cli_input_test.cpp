@@ -56,6 +56,10 @@ TEST_F(WrongInput, Usage) {
                  "poinsot: --step: expected one value, once; see poinsot run --help");
   expect_refused({"run", "pendulum.json", "--step", "1", "--step", "2"},
                  "poinsot: --step: expected one value, once; see poinsot run --help");
+  expect_refused({"run", "pendulum.json", "--quiet=no"}, "poinsot: --quiet: expected no value; see poinsot run --help");
+  expect_refused({"make"}, "poinsot: found no structure, expected poinsot make STRUCTURE; see poinsot make --help");
+  expect_refused({"make", "chain", "--bodies", "2.5"},
+                 "poinsot: --bodies: found \"2.5\", expected a whole number; see poinsot make --help");
 }
 
 TEST_F(WrongInput, Scene) {
