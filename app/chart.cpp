@@ -2,11 +2,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <set>
 
 #include "app/chart_file.h"
 #include "app/commands.h"
+#include "app/fronts.h"
 #include "app/measure.h"
 #include "app/models_directory.h"
 #include "app/natural_end.h"
@@ -56,9 +58,10 @@ std::vector<fs::path> scene_files(const Options& options) {
   }
   if (files.empty()) throw InputError("found no scene, expected poinsot chart SCENE, or --all");
   std::set<std::string> stems;
+  if (files.size() > 1) stems = {"fronts_integrators", "fronts_methods"};  // written, too
   for (const fs::path& file : files)
     if (!stems.insert(file.stem()).second)
-      throw InputError(fmt::format("{}: two scenes would be charted as {}.csv", file.string(), file.stem().string()));
+      throw InputError(fmt::format("{}: two tables would be written as {}.csv", file.string(), file.stem().string()));
   return {files.begin(), files.end()};
 }
 
@@ -149,25 +152,6 @@ void measure_scene(const Sweep& sweep, const std::vector<std::vector<Case>>& lev
   }
 }
 
-// Of how many charts each integrator is on the front, of any quantity; those of none are named.
-void print_fronts(const std::vector<std::string>& integrators, const std::vector<std::vector<ChartRow>>& charts) {
-  std::vector<std::string> on, none;
-  for (const std::string& integrator : integrators) {
-    const auto leads = [&](const ChartRow& row) {
-      return row.integrator == integrator && std::count(row.front.begin(), row.front.end(), true) > 0;
-    };
-    const auto count = std::count_if(charts.begin(), charts.end(), [&](const std::vector<ChartRow>& rows) {
-      return std::any_of(rows.begin(), rows.end(), leads);
-    });
-    if (count > 0)
-      on.push_back(fmt::format("{} {}", integrator, count));
-    else
-      none.push_back(integrator);
-  }
-  fmt::print("on the front of so many of {} charts: {}\n", charts.size(), fmt::join(on, ", "));
-  if (!none.empty()) fmt::print("on no front: {}\n", fmt::join(none, ", "));
-}
-
 int chart(const Options& options) {
   const std::vector<fs::path> files = scene_files(options);
   const SweepPlan plan = plan_of(options);
@@ -178,7 +162,7 @@ int chart(const Options& options) {
   const int core = pin_to_one_core();
 
   int status = kDone;
-  std::vector<std::vector<ChartRow>> charts;
+  std::vector<Chart> charts;
   std::vector<Plot> plots;
   Progress progress(static_cast<double>(scenes.size()), "scenes", !options.quiet);
   for (std::size_t k = 0; k < scenes.size(); ++k) {
@@ -200,14 +184,22 @@ int chart(const Options& options) {
     const Sweep sweep(scenes[k], end, r);
     measure_scene(sweep, sweep.cases(plan), file, options.extent(), k, progress);
     file.finish(r);
-    charts.push_back(file.rows());
+    charts.push_back({stem.filename(), file.rows()});
     plots.push_back({file.path(), stem});
   }
   progress.clear();
   if (const std::string why = draw("work_precision", plots); !why.empty()) print_notice(why);
+  std::vector<fs::path> written;
+  for (const Plot& plot : plots) written.push_back(plot.csv);
+  if (charts.size() > 1) {
+    std::vector<std::string> foot = origin_lines(core);
+    foot.push_back(options.quick ? "settings: the reduced set, --quick" : "settings: the full set");
+    std::ranges::copy(write_report(fronts_report(plan.integrators, charts, foot), options.out, "fronts"),
+                      std::back_inserter(written));
+  }
   if (options.quiet || charts.empty()) return status;
-  for (const Plot& plot : plots) fmt::print("{}\n", plot.csv.string());
-  print_fronts(plan.integrators, charts);
+  for (const fs::path& file : written) fmt::print("{}\n", file.string());
+  fmt::print("{}", fronts_summary(plan.integrators, charts));
   return status;
 }
 
@@ -219,7 +211,7 @@ void add_chart(CLI::App& app, int& status) {
   command->add_option("scenes", options->scenes, "scene files")->type_name("SCENE");
   command->add_flag("--all", options->all, "the models that came with the program, too");
   add_models(*command, options->models);
-  add_out_folder(*command, options->out, "a CSV, SVG and PNG for each scene");
+  add_out_folder(*command, options->out, "a CSV, SVG and PNG for each scene, and of several a summary of the fronts");
   command->add_flag("--quick", options->quick, "a reduced set: fewer and shorter runs");
   add_end(*command, options->end);
   add_names(*command, "formulation", options->formulations);

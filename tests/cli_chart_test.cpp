@@ -18,10 +18,10 @@ class Chart : public CommandLine {
     return poinsot(more);
   }
 
-  std::vector<Row> rows() const {
+  std::vector<Row> rows(const std::string& file = "out/pendulum.csv") const {
     std::vector<Row> result;
     std::vector<std::string> names;
-    for (const std::string& line : lines(read("out/pendulum.csv"))) {
+    for (const std::string& line : lines(read(file))) {
       if (line.starts_with("#")) continue;
       const auto f = fields(line);
       if (names.empty()) {
@@ -83,6 +83,40 @@ TEST_F(Chart, GoesOnWhereItStopped) {
   EXPECT_EQ(chart({"--linear-solvers", "klu", "--fresh"}).status, 0);
 }
 
+TEST_F(Chart, CountsTheFrontsOfSeveralScenes) {
+  write("second.json", kPendulum);
+  const Result result = chart({"second.json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("on the front of so many of 2 charts:\n"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("out/fronts.md\n"), std::string::npos) << result.out;
+  EXPECT_NE(read("out/fronts.md").find("On how many of 2 charts"), std::string::npos);
+  int found = 0;
+  for (const char* table : {"out/fronts_integrators.csv", "out/fronts_methods.csv"}) {
+    for (const Row& row : rows(table)) {
+      int any = 0;
+      std::map<std::string, int> expected;
+      for (const char* file : {"out/pendulum.csv", "out/second.csv"}) {
+        std::map<std::string, bool> on;
+        for (const Row& one : rows(file)) {
+          if (one.at("integrator") != row.at("integrator") || one.at("status") != "ok") continue;
+          if (row.count("formulation") && one.at("formulation") != row.at("formulation")) continue;
+          for (const char* quantity : {"position", "velocity", "acceleration", "multiplier"})
+            if (one.at(std::string("front_") + quantity) == "1") on[quantity] = true;
+        }
+        for (const auto& [quantity, is] : on) expected[quantity] += is;
+        any += !on.empty();
+      }
+      for (const char* quantity : {"position", "velocity", "acceleration", "multiplier"})
+        EXPECT_EQ(row.at(quantity), std::to_string(expected[quantity])) << table << quantity;
+      EXPECT_EQ(row.at("any"), std::to_string(any));
+      found += any;
+    }
+  }
+  EXPECT_EQ(rows("out/fronts_integrators.csv").size(), 2u);
+  EXPECT_EQ(rows("out/fronts_methods.csv").size(), 4u);
+  EXPECT_GT(found, 0);
+}
+
 TEST_F(Chart, SaysWhatIsWrong) {
   const auto says = [&](const std::vector<std::string>& arguments, const std::string& message) {
     const Result result = poinsot(arguments);
@@ -96,7 +130,7 @@ TEST_F(Chart, SaysWhatIsWrong) {
   says({"chart", "pendulum.json", "--end", "0"}, "--end: found \"0\", expected a number greater than 0");
   EXPECT_EQ(files(), before);
   write("other.csv", "1,2\n");
-  says({"chart", "pendulum.json", "./pendulum.json"}, "pendulum.json: two scenes would be charted as pendulum.csv");
+  says({"chart", "pendulum.json", "./pendulum.json"}, "pendulum.json: two tables would be written as pendulum.csv");
 }
 
 TEST_F(Chart, AFailureIsARowAndASceneWithoutReferenceASentence) {
