@@ -29,11 +29,15 @@ double resident_kilobytes() {
 
 Answer answer(const SceneGenerator& generator, int bodies, const Settings& settings) {
   using Clock = std::chrono::steady_clock;
+  using Seconds = decltype(Statistics::seconds);
   Answer out;
   const auto fail = [&](const std::string& why) { std::strncpy(out.failure, why.c_str(), sizeof out.failure - 1); };
   try {
     const double before = resident_kilobytes();
     const Scene scene = generator.make(bodies);
+    Settings first_step = settings;
+    first_step.end = first_step.every = settings.step;
+    const Outcome first = simulate(scene, first_step, {});
     const auto began = Clock::now();
     const Outcome outcome = simulate(scene, settings, {});
     const double all = std::chrono::duration<double>(Clock::now() - began).count();
@@ -41,15 +45,16 @@ Answer answer(const SceneGenerator& generator, int bodies, const Settings& setti
       fail(outcome.status.message);
       return out;
     }
-    const Statistics& s = outcome.statistics;
+    const Statistics &s = outcome.statistics, &s1 = first.statistics;
     out.bodies = static_cast<int>(scene.bodies.size());
-    const double units = static_cast<double>(s.newton_iterations) * out.bodies * 1e-6;
-    const double numbers[] = {s.seconds.total / units,
-                              s.seconds.assembly / units,
-                              s.seconds.factor / units,
-                              s.seconds.solve / units,
-                              s.seconds.other / units,
-                              all - s.seconds.total,
+    const double units = static_cast<double>(s.newton_iterations - s1.newton_iterations) * out.bodies * 1e-6;
+    const auto later = [&](double Seconds::*phase) { return (s.seconds.*phase - s1.seconds.*phase) / units; };
+    const double numbers[] = {later(&Seconds::total),
+                              later(&Seconds::assembly),
+                              later(&Seconds::factor),
+                              later(&Seconds::solve),
+                              later(&Seconds::other),
+                              all - s.seconds.total + s1.seconds.total,
                               (resident_kilobytes() - before) / out.bodies,
                               all};
     std::copy(std::begin(numbers), std::end(numbers), std::begin(out.numbers));

@@ -1,4 +1,8 @@
 // A run in a process of its own, so that the memory it needs can be told from everything before it.
+//
+// The first step is not like the others: the linear solver chooses its pivots and examines what it may rely on, once.
+// In a large scene, of which only a few steps are timed, that would weigh as much as the steps. So the first step is
+// run alone, too, and counts as start-up; costs per iteration are those of the steps after it.
 #pragma once
 
 #include <string>
@@ -10,9 +14,9 @@ namespace poinsot::app {
 
 struct IsolatedRun {
   std::string failure;                                   // why there are no figures
-  double us_per_body = 0;                                // and Newton iteration
+  double us_per_body = 0;                                // and Newton iteration, after the first step
   double assembly = 0, factor = 0, solve = 0, rest = 0;  // the same by phase
-  double start = 0;                                      // s from the scene's structs to the first step
+  double start = 0;                                      // s from the scene's structs to the end of the first step
   double kilobytes_per_body = 0;                         // resident, beyond an idle process
   double seconds = 0;                                    // of the whole run
   int bodies = 0;

@@ -70,8 +70,9 @@ bool good(const std::vector<IsolatedRun>& runs) {
 Table cost_table(const std::vector<Series>& all) {
   Table table{"scaling",
               "Cost per body and Newton iteration",
-              "Implicit Euler, exact Newton matrix; microseconds per body and iteration, the whole step and by phase; "
-              "kilobytes resident per body; seconds from the scene to the first step.",
+              "Implicit Euler, exact Newton matrix; microseconds per body and iteration, the whole step and by phase, "
+              "from the second step on; kilobytes resident per body; seconds from the scene to the end of the first "
+              "step, in which the linear solver chooses its pivots.",
               {"structure", "formulation", "linear solver", "bodies"},
               {}};
   for (const Quantity& quantity : kQuantities) table.header.emplace_back(quantity.column);
