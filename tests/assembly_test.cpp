@@ -204,31 +204,29 @@ TEST(Assembly, NamesADriverOfWhatCannotMove) {
             "`poinsot check` names what it depends on");
 }
 
-// A pendulum of 2 m asked to be 5 m away from its pivot: the row depends on the joint's, and conflicts.
-TEST(Assembly, NamesAConflictOfIndependentTypes) {
+// A pendulum of 2 m asked to be 5 m away from a point of the ground.
+Scene too_far(const Vector3& point) {
   Scene scene = scene_of("single_pendulum_free");
   Constraint far;
   far.name = "far";
   far.type = ConstraintType::D;
   far.j = 0;
+  far.s_i = point;
   far.f = Expression(25);
   scene.constraints.push_back(far);
-  EXPECT_EQ(refusal(scene, Assembly::always),
+  return scene;
+}
+
+// From its pivot: the row depends on the joint's, and conflicts.
+TEST(Assembly, NamesAConflictOfIndependentTypes) {
+  EXPECT_EQ(refusal(too_far({0, 0, 0}), Assembly::always),
             "the constraints conflict: with the others satisfied, constraint 'far' is still violated by 21 (position); "
             "`poinsot check` names what it depends on");
 }
 
 // The same from a point beside the pivot, where the rows are independent and have no common solution.
 TEST(Assembly, RefusesWhatHasNoSolution) {
-  Scene scene = scene_of("single_pendulum_free");
-  Constraint far;
-  far.name = "far";
-  far.type = ConstraintType::D;
-  far.j = 0;
-  far.s_i = {0, 1, 0};
-  far.f = Expression(25);
-  scene.constraints.push_back(far);
-  EXPECT_EQ(refusal(scene, Assembly::always),
+  EXPECT_EQ(refusal(too_far({0, 1, 0}), Assembly::always),
             "the constraints cannot be satisfied together near the given pose; the largest violation is that of "
             "constraint 'far'; `poinsot check` names conflicting constraints");
 }

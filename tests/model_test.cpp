@@ -1,5 +1,5 @@
 // From a scene to rows: how many rows of which type each joint has, and that they hold at the initial pose, whatever
-// it is. The constraint functions are written here once more, from their definitions.
+// it is.
 #include "core/model.h"
 
 #include <fmt/format.h>
@@ -8,61 +8,23 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <map>
-#include <random>
 
 #include "core/scene_reader.h"
+#include "tests/support/random_model.h"
+#include "tests/support/row_definitions.h"
 
-namespace poinsot {
+namespace poinsot::test {
 namespace {
 
-struct Pose {
-  Vector3 r = Vector3::Zero();
-  Matrix3 A = Matrix3::Identity();
-};
-
-double residual(const Row& row, const std::vector<Pose>& poses, double t) {
-  const Pose i = row.i == kGround ? Pose{} : poses[static_cast<std::size_t>(row.i)];
-  const Pose j = row.j == kGround ? Pose{} : poses[static_cast<std::size_t>(row.j)];
-  const Vector3 d = j.r + j.A * row.s_j - i.r - i.A * row.s_i;
-  double f = row.f.at(t).f;
-  if (row.squared) f *= f;
-  switch (row.type) {
-    case RowType::DP1:
-      return (i.A * row.a_i).dot(j.A * row.a_j) - f;
-    case RowType::DP2:
-      return (i.A * row.a_i).dot(d) - f;
-    case RowType::D:
-      return d.dot(d) - f;
-    case RowType::CD:
-      return row.c.dot(d) - f;
-    case RowType::angle:
-      return (i.A * (-std::sin(f) * row.a_i + std::cos(f) * row.b_i)).dot(j.A * row.a_j);
-    case RowType::pfaffian:
-      return 0;
+std::vector<BodyState> initial_poses(const Model& model) {
+  std::vector<BodyState> poses;
+  for (const Body& body : model.bodies) {
+    BodyState& pose = poses.emplace_back();
+    pose.r = body.position;
+    pose.A = body.orientation;
   }
-  return NAN;
-}
-
-std::vector<Pose> initial_poses(const Model& model) {
-  std::vector<Pose> poses;
-  for (const Body& body : model.bodies) poses.push_back({body.position, body.orientation});
   return poses;
 }
-
-class Random {
- public:
-  explicit Random(unsigned seed) : generator_(seed) {}
-  double number() { return distribution_(generator_); }
-  Vector3 vector() { return {number(), number(), number()}; }
-  Vector3 unit() { return vector().normalized(); }
-  Matrix3 rotation() {
-    return Eigen::Quaterniond(number(), number(), number(), number()).normalized().toRotationMatrix();
-  }
-
- private:
-  std::mt19937_64 generator_;
-  std::normal_distribution<double> distribution_;
-};
 
 Matrix3 turn(double angle, const Vector3& axis) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
@@ -83,14 +45,14 @@ Scene two_bodies(Random& random) {
 
 // Of the rows' derivatives with respect to the motion of one body from the initial pose, by central differences.
 Eigen::Index rank(const Model& model, std::size_t body) {
-  const std::vector<Pose> poses = initial_poses(model);
+  const std::vector<BodyState> poses = initial_poses(model);
   Eigen::MatrixXd gradient(static_cast<Eigen::Index>(model.rows.size()), 6);
   for (Eigen::Index k = 0; k < 6; ++k) {
     const auto at = [&](const Row& row, double step) {
-      std::vector<Pose> moved = poses;
+      std::vector<BodyState> moved = poses;
       if (k < 3) moved[body].r[k] += step;
       if (k >= 3) moved[body].A *= turn(step, Vector3::Unit(k - 3));
-      return residual(row, moved, 0);
+      return asked(row, moved, 0);
     };
     constexpr double kStep = 1e-5;
     for (Eigen::Index r = 0; r < gradient.rows(); ++r) {
@@ -142,21 +104,22 @@ TEST(Model, expands_joints_by_table_1) {
       EXPECT_EQ(model.groups[0].rows, static_cast<int>(model.rows.size()));
       EXPECT_EQ(model.groups[0].type, c.name);
 
-      std::vector<Pose> poses = initial_poses(model);
-      for (const Row& row : model.rows) EXPECT_NEAR(residual(row, poses, 0), 0, 1e-14) << where;
-      const Pose on_j = j == kGround ? Pose{} : poses[static_cast<std::size_t>(j)];
+      std::vector<BodyState> poses = initial_poses(model);
+      for (const Row& row : model.rows) EXPECT_NEAR(asked(row, poses, 0), 0, 1e-14) << where;
+      const BodyState on_j = j == kGround ? BodyState() : poses[static_cast<std::size_t>(j)];
       EXPECT_LT((on_j.r + on_j.A * model.groups[0].point_j - joint.point).norm(), 1e-14) << where;
 
       EXPECT_EQ(rank(model, static_cast<std::size_t>(i == kGround ? j : i)), model.groups[0].rows) << where;
 
       // The motions it allows: a body turns about, and slides along, the axis.
-      Pose& moved = poses[static_cast<std::size_t>(i == kGround ? j : i)];
-      const Pose initial = moved;
+      BodyState& moved = poses[static_cast<std::size_t>(i == kGround ? j : i)];
+      const BodyState initial = moved;
       const auto largest = [&](double angle, double distance) {
         const Matrix3 R = turn(angle, joint.axis);
-        moved = {joint.point + R * (initial.r - joint.point) + distance * joint.axis, R * initial.A};
+        moved.r = joint.point + R * (initial.r - joint.point) + distance * joint.axis;
+        moved.A = R * initial.A;
         double result = 0;
-        for (const Row& row : model.rows) result = std::max(result, std::abs(residual(row, poses, 0)));
+        for (const Row& row : model.rows) result = std::max(result, std::abs(asked(row, poses, 0)));
         return result;
       };
       if (c.type != JointType::universal) {
@@ -183,17 +146,17 @@ TEST(Model, angle_driver_turns_body_j_about_an_axis_of_body_i) {
     EXPECT_EQ(row.type, RowType::angle);
     EXPECT_NEAR((row.a_i.cross(row.b_i) - driver.axis).norm(), 0, 1e-15);
 
-    std::vector<Pose> poses = initial_poses(model);
-    EXPECT_NEAR(residual(row, poses, 0), 0, 1e-14);
+    std::vector<BodyState> poses = initial_poses(model);
+    EXPECT_NEAR(asked(row, poses, 0), 0, 1e-14);
     const Matrix3 A_i = i == kGround ? Matrix3::Identity() : poses[static_cast<std::size_t>(i)].A;
     const Vector3 axis = A_i * driver.axis;
     for (const double t : {0.1, 0.5, 1.0, 2.0}) {
-      std::vector<Pose> turned = poses;
+      std::vector<BodyState> turned = poses;
       // Turning i backwards about the axis is turning j forwards, seen from i.
       Matrix3& A = turned[static_cast<std::size_t>(j == kGround ? i : j)].A;
       A = turn(j == kGround ? -3 * t : 3 * t, axis) * A;
-      EXPECT_NEAR(residual(row, turned, t), 0, 1e-14) << "seed " << kSeed;
-      EXPECT_NEAR(residual(row, turned, t + 0.1), std::sin(-0.3), 1e-13) << "seed " << kSeed;
+      EXPECT_NEAR(asked(row, turned, t), 0, 1e-14) << "seed " << kSeed;
+      EXPECT_NEAR(asked(row, turned, t + 0.1), std::sin(-0.3), 1e-13) << "seed " << kSeed;
     }
   }
 }
@@ -209,7 +172,7 @@ TEST(Model, distance_driver_is_a_squared_distance) {
   const Model model = compile(scene);
   EXPECT_EQ(model.rows.at(0).type, RowType::D);
   EXPECT_TRUE(model.rows[0].squared);
-  EXPECT_NEAR(residual(model.rows[0], initial_poses(model), 0), 0, 1e-14);
+  EXPECT_NEAR(asked(model.rows[0], initial_poses(model), 0), 0, 1e-14);
 }
 
 TEST(Model, torsion_springs_start_at_angle_zero) {
@@ -257,14 +220,14 @@ TEST_P(ModelFiles, hold_at_their_initial_pose) {
   const Model model = compile(read_scene(fmt::format(POINSOT_SOURCE_DIR "/models/{}.json", c.file)));
   EXPECT_EQ(static_cast<int>(model.bodies.size()), c.bodies);
   EXPECT_EQ(static_cast<int>(model.rows.size()), c.rows);
-  const std::vector<Pose> poses = initial_poses(model);
+  const std::vector<BodyState> poses = initial_poses(model);
   double largest = 0;
   for (const Row& row : model.rows) {
-    largest = std::max(largest, std::abs(residual(row, poses, 0)));
+    largest = std::max(largest, std::abs(asked(row, poses, 0)));
     if (row.alternate) {
       Row other = row;
       other.a_i = row.alternate->a_i, other.a_j = row.alternate->a_j, other.f = row.alternate->f;
-      largest = std::max(largest, std::abs(residual(other, poses, 0)));
+      largest = std::max(largest, std::abs(asked(other, poses, 0)));
     }
   }
   EXPECT_LE(largest, c.violation);
@@ -284,4 +247,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& file) { return std::string(file.param.file); });
 
 }  // namespace
-}  // namespace poinsot
+}  // namespace poinsot::test
