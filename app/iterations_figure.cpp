@@ -45,7 +45,8 @@ Table beside_original(const Scene& scene, FigureResult& result) {
   Table table{"iterations_original",
               "Iterations a step beside the original codes",
               "Four link, dynamics, simplified matrix, 1 s, steps of exact length: ours, and the original codes run "
-              "again with such steps.",
+              "again with such steps. Theirs needs more in rp because its residual holds the gradient p of the "
+              "normalizations at the old position.",
               {"formulation", "h, s", "ours", "original"},
               {}};
   for (const OriginalIterations& theirs : original_iterations()) {
