@@ -38,21 +38,19 @@ class Auto final : public LinearSolver {
  public:
   std::span<const int> slots() const override { return solver_ ? solver_->slots() : LinearSolver::slots(); }
   std::span<double> values() override { return solver_ ? solver_->values() : LinearSolver::values(); }
+  const LinearStatistics& statistics() const override {
+    return solver_ ? solver_->statistics() : LinearSolver::statistics();
+  }
   std::string_view picked() const override { return picked_; }
 
  private:
   LinearStatus do_analyze(const Pattern& pattern) override {
     picked_ = saddle_point(pattern) ? "block" : "klu";
     solver_ = find_linear_solver(picked_)->make();
-    return followed(solver_->analyze(pattern));
+    return solver_->analyze(pattern);
   }
-  LinearStatus do_factor() override { return followed(solver_->factor()); }
+  LinearStatus do_factor() override { return solver_->factor(); }
   LinearStatus do_solve(std::span<double> b) override { return solver_->solve(b); }
-
-  LinearStatus followed(LinearStatus status) {
-    statistics_ = solver_->statistics();
-    return status;
-  }
 
   std::string_view picked_;
   std::unique_ptr<LinearSolver> solver_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linsolve/block_assembly.h"
+
 namespace poinsot {
 namespace {
 
@@ -39,42 +41,10 @@ float in_range(double x) {
   return static_cast<float>(std::clamp(x, 1e-37, 1e37));
 }
 
-// to[0 … n) += from[0 … n), n being small.
-inline void add(double* to, const double* from, int n) {
-  int i = 0;
-  for (; i + block::kPair <= n; i += block::kPair)
-    block::store_pair(to + i, block::load_pair(to + i) + block::load_pair(from + i));
-  if (i < n) to[i] += from[i];
-}
-
-// Adds a child's update matrix to the parent's D, L, U and W.
-inline void extend_add(const Front& child, const double* update, const Stretch* stretches, const Front& parent,
-                       double* D, double* W) {
-  const int p = parent.pivots, rows = parent.rows;
-  double *L = D + p * p, *U = L + p * rows;
-  const Stretch *first = stretches + child.first_stretch, *outer = stretches + child.first_outer_stretch,
-                *last = stretches + child.last_stretch;
-  for (const Stretch* across = first; across != last; ++across) {
-    double* top = (across < outer ? D : U) + across->to * p;
-    double* bottom = (across < outer ? L : W) + across->to * rows;
-    const double* from = update + across->from * child.rows;
-    for (int j = 0; j < across->length; ++j, top += p, bottom += rows, from += child.rows) {
-      for (const Stretch* down = first; down != outer; ++down) add(top + down->to, from + down->from, down->length);
-      for (const Stretch* down = outer; down != last; ++down) add(bottom + down->to, from + down->from, down->length);
-    }
-  }
-}
-
-template <int Length>
-inline const Run* copy_runs(const Run* run, const Run* end, const double* values, double* store) {
-  for (; run != end; ++run) std::memcpy(store + run->target, values + run->source, Length * sizeof(double));
-  return run;
-}
-
 }  // namespace
 
 void BlockFactor::resize(const Schedule& s) {
-  store_.assign(at(s.store_size), 0);
+  store_.assign(at(s.store_size + kLanes), 0);  // the last front may be laid down as well
   stack_.assign(at(s.stack_size), 0);
   update_.assign(at(s.largest_update), 0);
   x_.assign(at(s.n), 0);
@@ -83,6 +53,14 @@ void BlockFactor::resize(const Schedule& s) {
   weight_.assign(at(s.n), 1);
   order_.assign(at(s.n), 0);
   moved_.assign(s.fronts.size(), 0);
+  places_.assign(s.fronts.size(), {});
+  const int* child = s.children.data();
+  for (std::size_t k = 0; k < s.fronts.size(); ++k) {
+    const int* end = s.children.data() + s.fronts[k].children;
+    if (child != end && block::lays_down(s.fronts[at(*child)], s.fronts[k]))
+      places_[k] = block::places(s.fronts[at(*child)], s.stretches.data());
+    child = end;
+  }
 }
 
 block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> values, bool keep_order) {
@@ -92,18 +70,23 @@ block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> valu
   for (std::size_t k = 0; k < s.fronts.size(); ++k) {
     const Front& f = s.fronts[k];
     double* D = store_.data() + f.store;
-    std::fill_n(D, f.pivots * (f.pivots + f.rows + f.others), 0.0);
-    run = copy_runs<1>(run, s.runs.data() + f.runs[0], values.data(), D);
-    run = copy_runs<2>(run, s.runs.data() + f.runs[1], values.data(), D);
-    run = copy_runs<3>(run, s.runs.data() + f.runs[2], values.data(), D);
-    run = copy_runs<4>(run, s.runs.data() + f.runs[3], values.data(), D);
-    for (const Run* end = s.runs.data() + f.runs[4]; run != end; ++run)
-      for (unsigned i = 0; i < run->length; ++i) D[run->target + i] = values[at(run->source) + i];
     double* W = update_.data();
-    std::fill_n(W, f.rows * f.others, 0.0);
-    for (const int* end = s.children.data() + f.children; child != end; ++child) {
+    const int* end = s.children.data() + f.children;
+    if (child != end && block::lays_down(s.fronts[at(*child)], f)) {
+      block::lay_down(places_[k], stack_.data() + s.fronts[at(*child++)].update, f, D, W);
+    } else {
+      std::fill_n(D, f.pivots * (f.pivots + f.rows + f.others), 0.0);
+      std::fill_n(W, f.rows * f.others, 0.0);
+    }
+    run = block::add_runs<1>(run, s.runs.data() + f.runs[0], values.data(), D);
+    run = block::add_runs<2>(run, s.runs.data() + f.runs[1], values.data(), D);
+    run = block::add_runs<3>(run, s.runs.data() + f.runs[2], values.data(), D);
+    run = block::add_runs<4>(run, s.runs.data() + f.runs[3], values.data(), D);
+    for (const Run* last = s.runs.data() + f.runs[4]; run != last; ++run)
+      block::add(D + run->target, values.data() + run->source, static_cast<int>(run->length));
+    for (; child != end; ++child) {
       const Front& c = s.fronts[at(*child)];
-      extend_add(c, stack_.data() + c.update, s.stretches.data(), f, D, W);
+      block::extend_add(c, stack_.data() + c.update, s.stretches.data(), f, D, W);
     }
     block::Choice choice{order_.data() + f.first, weight_.data() + f.first, then_.data() + f.first, moved_[k] != 0,
                          keep_order};

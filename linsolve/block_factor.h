@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "linsolve/block_assembly.h"
 #include "linsolve/block_kernels.h"
 #include "linsolve/block_schedule.h"
 
@@ -30,7 +31,8 @@ class BlockFactor {
   std::vector<float> then_;    // 1/|pivot| of an examined factorization, by position
   std::vector<float> weight_;  // by position
   std::vector<std::uint16_t> order_;
-  std::vector<char> moved_;  // by front: its rows are not in the order 0, 1, 2, … but in that of order_
+  std::vector<block::Places> places_;  // by front: those of its first child where that lays it down
+  std::vector<char> moved_;            // by front: its rows are not in the order 0, 1, 2, … but in that of order_
 };
 
 }  // namespace poinsot

@@ -27,6 +27,7 @@
 #include "linsolve/csc_layout.h"
 #include "linsolve/determined.h"
 #include "linsolve/equilibration.h"
+#include "linsolve/finite.h"
 #include "linsolve/residual.h"
 
 namespace poinsot {
@@ -95,11 +96,10 @@ class BlockSolver final : public LinearSolver {
   }
 
   LinearStatus factor_determined() {
-    const LinearStatistics before = determined_->statistics();
-    LinearStatus status = determined_->factor(values_);
     const LinearStatistics& after = determined_->statistics();
-    statistics_.factorizations += after.factorizations - before.factorizations;
-    statistics_.refactorizations += after.refactorizations - before.refactorizations;
+    statistics_.factorizations -= after.factorizations, statistics_.refactorizations -= after.refactorizations;
+    LinearStatus status = determined_->factor(values_);
+    statistics_.factorizations += after.factorizations, statistics_.refactorizations += after.refactorizations;
     statistics_.factor_nonzeros = after.factor_nonzeros;
     statistics_.reciprocal_condition = after.reciprocal_condition;
     return status;
@@ -110,8 +110,7 @@ class BlockSolver final : public LinearSolver {
   }
 
   LinearStatus factor_fresh() {
-    if (!std::ranges::all_of(values_, [](double x) { return std::isfinite(x); }))
-      return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
+    if (!all_finite(values_)) return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
     ++statistics_.factorizations;
     {
       Equilibration equilibration;
@@ -199,7 +198,10 @@ class BlockSolver final : public LinearSolver {
   }
 
   LinearStatus do_solve(std::span<double> b) override {
-    if (determined_fits_) return determined_->solve(layout_, values_, b);
+    if (determined_fits_) {
+      determined_->solve(layout_, values_, b);
+      return {};
+    }
     if (by_klu_) return klu_->solve(b);
     if (!drifted_) {
       factor_.solve(schedule_, b);

@@ -24,7 +24,8 @@ class Determined {
   bool fits(std::span<const double> values) const;
   // `values` fit; the unknown of a failure is one of the whole system.
   LinearStatus factor(std::span<const double> values);
-  LinearStatus solve(const CscLayout& layout, std::span<const double> values, std::span<double> b);
+  // The caller tests whether the solution is finite.
+  void solve(const CscLayout& layout, std::span<const double> values, std::span<double> b);
 
   const LinearStatistics& statistics() const { return klu_.statistics(); }
 

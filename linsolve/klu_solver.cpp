@@ -74,6 +74,13 @@ void Klu::do_substitute(std::span<double> b) {
   klu_solve(symbolic_, numeric_, layout().n, 1, b.data(), &common_);
 }
 
+void Klu::solve_untested(std::span<double> b) {
+  check(state() == State::factored, "Klu::solve_untested comes after a factor that was ok");
+  equilibration().scale_right_hand_side(b);
+  do_substitute(b);
+  equilibration().scale_solution(b);
+}
+
 // A = D_r⁻¹ S D_c⁻¹, so A⁻ᵀ = D_r S⁻ᵀ D_c.
 void Klu::solve_transposed(std::span<double> b) {
   check(state() == State::factored, "Klu::solve_transposed comes after a factor that was ok");

@@ -20,7 +20,8 @@ class Klu final : public ScaledLu {
   Klu();
   ~Klu() override;
 
-  // b ← A⁻ᵀ b, for the values of the last factor().
+  // b ← A⁻¹ b and b ← A⁻ᵀ b for the values of the last factor(); the caller tests whether they are finite.
+  void solve_untested(std::span<double> b);
   void solve_transposed(std::span<double> b);
 
  private:

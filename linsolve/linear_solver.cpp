@@ -1,9 +1,9 @@
 #include "linsolve/linear_solver.h"
 
-#include <cmath>
 #include <new>
 
 #include "core/check.h"
+#include "linsolve/finite.h"
 
 namespace poinsot {
 namespace {
@@ -26,13 +26,6 @@ bool fits(const Pattern& pattern) {
   for (const int node : pattern.node)
     if (node < 0) return false;
   return true;
-}
-
-bool all_finite(std::span<const double> x) {
-  // x · 0 is NaN for an infinity and for NaN, and a sum keeps it: no branch in the loop.
-  double sum = 0;
-  for (const double xi : x) sum += xi * 0;
-  return sum == 0;
 }
 
 }  // namespace

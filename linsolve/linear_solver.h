@@ -55,7 +55,7 @@ class LinearSolver {
   virtual std::string_view picked() const { return {}; }
   State state() const { return state_; }
   int size() const { return n_; }
-  const LinearStatistics& statistics() const { return statistics_; }
+  virtual const LinearStatistics& statistics() const { return statistics_; }
 
  protected:
   // Sets up slots_ and values_ (usually by CscLayout) and everything symbolic.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linsolve/finite.h"
+
 namespace poinsot {
 namespace {
 
@@ -40,9 +42,7 @@ double Residual::size(const CscLayout& layout, std::span<const double> values, s
                       std::span<const double> x) {
   find(layout, values, b, x);
   const double size_x = largest(x, per_column_), size_b = largest(b, rows_), size_r = largest(r_, rows_);
-  double poison = 0;
-  for (const double r : r_) poison += r * 0;
-  if (poison != 0) return HUGE_VAL;
+  if (!all_finite(r_)) return HUGE_VAL;
   return size_r == 0 ? 0 : size_r / (size_x + size_b);
 }
 

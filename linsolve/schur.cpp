@@ -16,6 +16,7 @@
 #include "linsolve/back_ends.h"
 #include "linsolve/condition.h"
 #include "linsolve/equilibration.h"
+#include "linsolve/finite.h"
 #include "linsolve/residual.h"
 #include "linsolve/schur_bodies.h"
 
@@ -44,9 +45,7 @@ class Schur final : public LinearSolver {
   }
 
   LinearStatus do_factor() override {
-    double poison = 0;  // stays 0 as long as everything is finite
-    for (const double value : values_) poison += value * 0;
-    if (poison != 0) return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
+    if (!all_finite(values_)) return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
     if (LinearStatus status = bodies_.eliminate(values_, complement_); !status.ok()) return status;
     complement_.factor();
     const auto rest = std::ranges::copy(bodies_.determinants(), now_.begin()).out;
