@@ -1,24 +1,49 @@
 #include "integrators/rank.h"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/QR>
 #include <Eigen/SparseCore>
-#include <Eigen/SparseQR>
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "core/check.h"
 #include "formulations/gradient.h"
 #include "formulations/registry.h"
+#include "integrators/consistent.h"
+#include "integrators/settings.h"
+#include "linsolve/column_dependencies.h"
 
 namespace poinsot {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-// Gᵀ at (t, q) with unit columns, in rA: its variations are regular everywhere.
-Sparse transposed_gradient(Problem& problem, std::span<const double> q, Eigen::VectorXd& lengths) {
+// Columns have unit length: what is left of a dependent one is rounding, far below this. A row that keeps less than
+// this of its length is not told from a dependent one.
+constexpr double kRankTolerance = 1e-9;
+
+// What the terms have of which the row's gradient is made, where they can cancel altogether: the cross product of
+// directions that are parallel, the distance of points that coincide. 0 for rows that cannot vanish.
+double terms_of_gradient(const Row& row, std::span<const BodyState> states) {
+  const auto place = [&](int body) { return body == kGround ? 0.0 : states[static_cast<std::size_t>(body)].r.norm(); };
+  switch (row.type) {
+    case RowType::DP1:
+    case RowType::angle:
+      return row.a_i.norm() * row.a_j.norm();
+    case RowType::D: {
+      const double s = std::max(row.s_i.norm(), row.s_j.norm());
+      return 2 * (place(row.i) + place(row.j) + 2 * s) * std::max(1.0, s);
+    }
+    case RowType::DP2:
+    case RowType::CD:
+    case RowType::pfaffian:
+      return 0;
+  }
+  return 0;
+}
+
+// Gᵀ at (t, q) with unit columns, in rA: its variations are regular everywhere. A column of nothing but rounding is 0.
+Sparse transposed_gradient(Problem& problem, std::span<const double> q, std::span<const BodyState> states) {
   const std::vector<double> at_rest(static_cast<std::size_t>(problem.nv()), 0.0);
   problem.set_position(0, q);
   problem.set_velocity(at_rest);
@@ -26,78 +51,76 @@ Sparse transposed_gradient(Problem& problem, std::span<const double> q, Eigen::V
   Sparse G(problem.nc(), problem.nv());
   G.setFromTriplets(entries.begin(), entries.end());
   Sparse Gt = G.transpose();
-  lengths.setOnes(Gt.cols());
+  const std::vector<Row>& rows = problem.model().rows;
   for (Eigen::Index k = 0; k < Gt.cols(); ++k) {
     const double norm = Gt.col(k).norm();
-    if (norm > 0) Gt.col(k) /= lengths[k] = norm;
+    const double terms = terms_of_gradient(rows[static_cast<std::size_t>(k)], states);
+    Gt.col(k) *= norm > kRankTolerance * terms ? 1 / norm : 0.0;
   }
-  Gt.makeCompressed();
   return Gt;
 }
 
-using Decomposition = Eigen::SparseQR<Sparse, Eigen::NaturalOrdering<int>>;
-
-// Columns have unit length: what is left of a dependent one is rounding, far below this. A row that keeps less than
-// this of its length is not told from a dependent one.
-constexpr double kRankTolerance = 1e-9;
-
-std::vector<Dependency> dependencies(const Decomposition& qr, Eigen::Index columns) {
-  const Eigen::Index rank = qr.rank();
-  const auto& order = qr.colsPermutation().indices();
-  const Eigen::MatrixXd last = Eigen::MatrixXd(Sparse(qr.matrixR()).topRows(rank).rightCols(columns - rank));
-  const Sparse R = Sparse(qr.matrixR()).topLeftCorner(rank, rank);
+std::vector<Dependency> dependencies(Problem& problem, std::span<const double> q, std::span<const BodyState> states) {
   std::vector<Dependency> found;
-  for (Eigen::Index k = rank; k < columns; ++k) {
-    Dependency dependency{order[k], {}};
-    if (rank > 0) {
-      const Eigen::VectorXd combination = R.triangularView<Eigen::Upper>().solve(last.col(k - rank));
-      for (Eigen::Index l = 0; l < rank; ++l) {
-        if (std::abs(combination[l]) > 1e-6) dependency.others.push_back(order[l]);
-      }
-    }
-    std::sort(dependency.others.begin(), dependency.others.end());
-    found.push_back(dependency);
-  }
-  std::sort(found.begin(), found.end(), [](const Dependency& x, const Dependency& y) { return x.row < y.row; });
+  for (ColumnDependency& d : column_dependencies(transposed_gradient(problem, q, states), kRankTolerance))
+    found.push_back({d.column, std::move(d.others)});
   return found;
 }
 
-// A small free motion from q, projected back onto the constraints (least squares, so dependent rows do no harm).
-bool neighbour(Problem& problem, const std::vector<double>& start, std::vector<double>& q) {
+std::vector<int> rows_of(const std::vector<Dependency>& dependent) {
+  std::vector<int> rows;
+  for (const Dependency& d : dependent) rows.push_back(d.row);
+  return rows;
+}
+
+// A small free motion from q, projected back onto the constraints: those that are independent there, and the others
+// have to follow. Bodies of unit mass and inertia, so that the moves are the shortest. False where there is none.
+bool neighbour(Problem& problem, const std::vector<Dependency>& dependent, std::span<const BodyState> states,
+               std::vector<double>& q) {
   constexpr double kStep = 1e-2;
+  auto model = std::make_shared<Model>(problem.model());
+  for (Body& body : model->bodies) body.mass = 1, body.inertia.setIdentity();
+  const auto make = [&](const std::vector<Dependency>& without) {
+    return find_formulation("rA")->make(model, rows_of(without));
+  };
+
+  const std::unique_ptr<Problem> here = make(dependent);
+  std::vector<double> at_rest(static_cast<std::size_t>(here->nv()), 0.0);
+  here->set_position(0, q);
+  here->set_velocity(at_rest);
+  std::vector<double> move(static_cast<std::size_t>(here->nv() + here->nc()), 0.0);
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  Eigen::VectorXd move(problem.nv());
-  for (double& x : move) x = normal(random);
-  const auto row_space_part = [](const Sparse& Gt, const Eigen::VectorXd& x) {
-    return Eigen::MatrixXd(Gt.transpose()).completeOrthogonalDecomposition().solve(Gt.transpose() * x).eval();
+  for (std::size_t k = 0; k < at_rest.size(); ++k) move[k] = normal(random);
+  if (!Consistent(*here, Settings{}.linear_solver).solve(*here, 0, move).ok()) return false;
+  move.resize(at_rest.size());
+  double length = 0;
+  for (const double x : move) length = std::hypot(length, x);
+  if (!(length >= 1e-6)) return false;
+  for (double& x : move) x *= kStep / length;
+  std::vector<double> beside(q.size());
+  here->retract(q, move, beside);
+  const auto distance = [&] {
+    double sum = 0;
+    for (std::size_t k = 0; k < q.size(); ++k) sum = std::hypot(sum, beside[k] - q[k]);
+    return sum;
   };
-  Eigen::VectorXd lengths;
-  Sparse Gt = transposed_gradient(problem, start, lengths);
-  move -= row_space_part(Gt, move);
-  if (move.norm() < 1e-6) return false;
-  move *= kStep / move.norm();
-  q = start;
-  std::vector<double> next(q.size());
-  Eigen::VectorXd Phi(problem.nc());
-  const auto span = [](Eigen::VectorXd& x) { return std::span<double>(x.data(), static_cast<std::size_t>(x.size())); };
-  for (int k = 0; k < 8; ++k) {
-    problem.retract(q, span(move), next);
-    q.swap(next);
-    Gt = transposed_gradient(problem, q, lengths);
-    problem.position_residual(span(Phi));
-    Phi.array() /= lengths.array();
-    move = Eigen::MatrixXd(Gt.transpose()).completeOrthogonalDecomposition().solve(-Phi);
-  }
-  return Phi.norm() < 1e-8;
+  const double moved = distance();
+
+  const std::unique_ptr<Problem> there = make(dependencies(problem, beside, states));
+  if (!Consistent(*there, Settings{}.linear_solver).project_position(*there, 0, beside).ok()) return false;
+  if (distance() < 0.5 * moved) return false;  // the constraints take it back where it was
+  problem.set_position(0, beside);
+  std::vector<double> Phi(static_cast<std::size_t>(problem.nc()));
+  problem.position_residual(Phi);
+  q = std::move(beside);
+  return std::all_of(Phi.begin(), Phi.end(), [](double x) { return std::abs(x) < 1e-8; });
 }
 
 }  // namespace
 
 std::vector<int> RankAnalysis::dependent_rows() const {
-  std::vector<int> rows;
-  for (const Dependency& d : dependent) rows.push_back(d.row);
-  return rows;
+  return rows_of(dependent);
 }
 
 RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states) {
@@ -107,28 +130,17 @@ RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<c
 
   RankAnalysis analysis;
   analysis.variables = problem->nv();
-  if (problem->nc() == 0) return analysis;
-  const auto decompose = [&](const std::vector<double>& at, Decomposition& qr) {
-    qr.setPivotThreshold(kRankTolerance);
-    Eigen::VectorXd lengths;
-    qr.compute(transposed_gradient(*problem, at, lengths));
-    return static_cast<int>(qr.rank());
-  };
-  Decomposition here;
-  analysis.rank = analysis.rank_here = decompose(q, here);
-  if (analysis.rank == problem->nc()) return analysis;
-  analysis.dependent = dependencies(here, problem->nc());
-
-  // Only mechanisms that can move have neighbours; the dense projections bound the size for which they are looked at.
-  constexpr int kLargest = 1500;
-  std::vector<double> beside;
-  if (problem->nv() <= kLargest && neighbour(*problem, q, beside)) {
-    Decomposition there;
-    const int rank = decompose(beside, there);
-    if (rank > analysis.rank) {
-      analysis.rank = rank;
-      analysis.dependent = rank == problem->nc() ? std::vector<Dependency>() : dependencies(there, problem->nc());
-    }
+  analysis.dependent = dependencies(*problem, q, states);
+  const auto rank = [&](const std::vector<Dependency>& d) { return problem->nc() - static_cast<int>(d.size()); };
+  analysis.rank = analysis.rank_here = rank(analysis.dependent);
+  // Only mechanisms that can move have neighbours.
+  if (analysis.dependent.empty() || analysis.degrees_of_freedom() == 0 ||
+      !neighbour(*problem, analysis.dependent, states, q))
+    return analysis;
+  std::vector<Dependency> there = dependencies(*problem, q, states);
+  if (rank(there) > analysis.rank) {
+    analysis.rank = rank(there);
+    analysis.dependent = std::move(there);
   }
   return analysis;
 }

@@ -1,8 +1,9 @@
-// Which constraint rows depend on others: rank-revealing QR of Gᵀ, column by column in the model's order.
+// Which constraint rows depend on others: the columns of Gᵀ that are combinations of earlier ones.
 //
-// A row is dependent when its gradient is a combination of earlier rows' gradients at the given position. Where that is
-// so only at the given position (a mechanism that lies flat), a neighbouring position of higher rank decides, and the
-// given one is called singular.
+// A row is dependent when its gradient is a combination of earlier rows' gradients, in the model's order, at the given
+// position; so is one whose gradient is nothing but the rounding of what it is made of. Where that is so only
+// at the given position (a mechanism that lies flat), a neighbouring position of higher rank decides, and the given one
+// is called singular. The cost grows with the number of rows (linsolve/column_dependencies.h).
 #pragma once
 
 #include <memory>

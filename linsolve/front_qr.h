@@ -1,0 +1,52 @@
+// A P = Q R of a sparse matrix by fronts, Q not kept: which columns depend on those before them, and how.
+//
+// The order P reduces fill. The front of a column is the dense matrix of all rows that begin there; one Householder
+// reflection leaves a row of R, what remains is passed on to the next column of the front. A column of which no more
+// than `tolerance` is left is dependent and gets no row of R (M. T. Heath, Some extensions of an algorithm for sparse
+// linear least squares problems, 1982). Time and memory grow with the number of columns where fronts stay small.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <utility>
+#include <vector>
+
+namespace poinsot {
+
+using SparseEntries = std::vector<std::pair<int, double>>;  // by index
+
+class FrontQr {
+ public:
+  // `left_out`: rows of A that are passed over.
+  FrontQr(const Eigen::SparseMatrix<double>& A, const std::vector<char>& left_out, double tolerance);
+
+  // Columns of A that depend on those before them in the order P.
+  const std::vector<int>& dependent() const { return dependent_; }
+  // A z = 0 up to the tolerance, for a dependent column: 1 there, and columns that are independent, sorted.
+  SparseEntries null_vector(int column);
+
+ private:
+  struct Front {
+    std::vector<int> places;  // of its columns in the order P, ascending
+    Eigen::MatrixXd rows;     // what is left of it: from `top` and `first` on
+    Eigen::Index top = 0, first = 0;
+    auto left() { return rows.bottomRightCorner(rows.rows() - top, rows.cols() - first); }
+  };
+  using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+  Front assemble(int place, const RowMajor& A, const std::vector<int>& begins, std::vector<Front> parts);
+  void reduce(int place, Front& front, double tolerance);
+  void store_by_column();
+
+  std::vector<int> column_, place_;  // column at a place, place of a column
+  std::vector<int> dependent_;
+  std::vector<int> local_;    // place within the front being assembled
+  std::vector<double> work_;  // by place, zero between calls
+  struct Entry {
+    int row, place;
+    double value;
+  };
+  std::vector<Entry> R_;
+  std::vector<std::size_t> start_;  // of each place in R_, once it is sorted by column; rows ascending
+};
+
+}  // namespace poinsot
