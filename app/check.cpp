@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "app/commands.h"
 #include "app/scene_check.h"
@@ -20,19 +21,19 @@ std::string count(std::size_t n, std::string_view one) {
   return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
 }
 
-// "joint 'hinge', driver 'motor'": the groups that rows belong to, the first few of them.
+// "joint 'hinge', driver 'motor'": the groups that rows belong to, the first few of them. Rows of a group lie together.
 std::string groups_text(const Model& model, std::span<const int> rows) {
-  constexpr std::size_t most = 8;
+  constexpr int most = 8;
   constexpr const char* kinds[] = {"constraint", "joint", "driver"};
-  std::vector<std::string> names;
+  std::string text;
+  int groups = 0, last = -1;
   for (const int row : rows) {
-    const Group& group = model.groups[static_cast<std::size_t>(model.rows[static_cast<std::size_t>(row)].group)];
-    const std::string name = fmt::format("{} '{}'", kinds[static_cast<int>(group.kind)], group.name);
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    const int k = model.rows[static_cast<std::size_t>(row)].group;
+    if (k == std::exchange(last, k) || ++groups > most) continue;
+    const Group& group = model.groups[static_cast<std::size_t>(k)];
+    text += fmt::format("{}{} '{}'", groups > 1 ? ", " : "", kinds[static_cast<int>(group.kind)], group.name);
   }
-  const std::size_t more = names.size() > most ? names.size() - most : 0;
-  names.resize(names.size() - more);
-  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+  return groups > most ? fmt::format("{} and {} more", text, groups - most) : text;
 }
 
 void print_header(const Model& model) {
@@ -50,18 +51,29 @@ bool print_constraints(const Model& model, const RankAnalysis& analysis, std::sp
                analysis.rank_here, analysis.rank);
   const std::size_t redundant = analysis.dependent.size() - conflicts.size();
   fmt::print("redundant constraints: {}\n", redundant == 0 ? "none" : count(redundant, "row"));
-  const auto conflicting = [&](int row) {
-    return std::any_of(conflicts.begin(), conflicts.end(), [&](const Conflict& c) { return c.row == row; });
+  if (!analysis.named)
+    fmt::print("  {} dependent rows in a mechanism so connected: what each follows from is not worked out\n",
+               analysis.dependent.size());
+  const auto from = [&](const Dependency& d) { return analysis.named ? groups_text(model, d.others) : "other rows"; };
+  const auto follows = [&](const Dependency& d) {
+    return d.others.empty() && analysis.named ? "says nothing at this position" : "follows from " + from(d);
   };
-  for (const Dependency& d : analysis.dependent)
-    if (!conflicting(d.row))
-      fmt::print("  {} follows from {}\n", describe_row(model, d.row), groups_text(model, d.others));
+  // Both lists are by row.
+  auto conflict = conflicts.begin();
+  for (const Dependency& d : analysis.dependent) {
+    if (conflict != conflicts.end() && conflict->row == d.row)
+      ++conflict;
+    else
+      fmt::print("  {} {}\n", describe_row(model, d.row), follows(d));
+  }
   fmt::print("conflicting constraints: {}\n", conflicts.empty() ? "none" : count(conflicts.size(), "row"));
-  for (const Dependency& d : analysis.dependent)
-    for (const Conflict& c : conflicts)
-      if (c.row == d.row)
-        fmt::print("  {} contradicts {}: off by {:.3g} ({}) where those hold\n", describe_row(model, d.row),
-                   groups_text(model, d.others), c.by, c.position ? "position" : "velocity");
+  conflict = conflicts.begin();
+  for (const Dependency& d : analysis.dependent) {
+    if (conflict == conflicts.end() || conflict->row != d.row) continue;
+    fmt::print("  {} contradicts {}: off by {:.3g} ({}) where those hold\n", describe_row(model, d.row), from(d),
+               conflict->by, conflict->position ? "position" : "velocity");
+    ++conflict;
+  }
   return conflicts.empty();
 }
 

@@ -60,29 +60,14 @@ Sparse transposed_gradient(Problem& problem, std::span<const double> q, std::spa
   return Gt;
 }
 
-std::vector<Dependency> dependencies(Problem& problem, std::span<const double> q, std::span<const BodyState> states) {
-  std::vector<Dependency> found;
-  for (ColumnDependency& d : column_dependencies(transposed_gradient(problem, q, states), kRankTolerance))
-    found.push_back({d.column, std::move(d.others)});
-  return found;
-}
-
-std::vector<int> rows_of(const std::vector<Dependency>& dependent) {
-  std::vector<int> rows;
-  for (const Dependency& d : dependent) rows.push_back(d.row);
-  return rows;
-}
-
 // A small free motion from q, projected back onto the constraints: those that are independent there, and the others
 // have to follow. Bodies of unit mass and inertia, so that the moves are the shortest. False where there is none.
-bool neighbour(Problem& problem, const std::vector<Dependency>& dependent, std::span<const BodyState> states,
+bool neighbour(Problem& problem, const std::vector<int>& dependent, std::span<const BodyState> states,
                std::vector<double>& q) {
   constexpr double kStep = 1e-2;
   auto model = std::make_shared<Model>(problem.model());
   for (Body& body : model->bodies) body.mass = 1, body.inertia.setIdentity();
-  const auto make = [&](const std::vector<Dependency>& without) {
-    return find_formulation("rA")->make(model, rows_of(without));
-  };
+  const auto make = [&](const std::vector<int>& without) { return find_formulation("rA")->make(model, without); };
 
   const std::unique_ptr<Problem> here = make(dependent);
   std::vector<double> at_rest(static_cast<std::size_t>(here->nv()), 0.0);
@@ -107,7 +92,8 @@ bool neighbour(Problem& problem, const std::vector<Dependency>& dependent, std::
   };
   const double moved = distance();
 
-  const std::unique_ptr<Problem> there = make(dependencies(problem, beside, states));
+  const std::unique_ptr<Problem> there =
+      make(dependent_columns(transposed_gradient(problem, beside, states), kRankTolerance));
   if (!Consistent(*there, Settings{}.linear_solver).project_position(*there, 0, beside).ok()) return false;
   if (distance() < 0.5 * moved) return false;  // the constraints take it back where it was
   problem.set_position(0, beside);
@@ -120,7 +106,9 @@ bool neighbour(Problem& problem, const std::vector<Dependency>& dependent, std::
 }  // namespace
 
 std::vector<int> RankAnalysis::dependent_rows() const {
-  return rows_of(dependent);
+  std::vector<int> rows;
+  for (const Dependency& d : dependent) rows.push_back(d.row);
+  return rows;
 }
 
 RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states) {
@@ -130,18 +118,21 @@ RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<c
 
   RankAnalysis analysis;
   analysis.variables = problem->nv();
-  analysis.dependent = dependencies(*problem, q, states);
-  const auto rank = [&](const std::vector<Dependency>& d) { return problem->nc() - static_cast<int>(d.size()); };
-  analysis.rank = analysis.rank_here = rank(analysis.dependent);
+  const auto name = [&](const Sparse& Gt) {
+    ColumnDependencies found = column_dependencies(Gt, kRankTolerance);
+    analysis.dependent.clear();
+    for (ColumnDependency& d : found.columns) analysis.dependent.push_back({d.column, std::move(d.others)});
+    analysis.named = found.named;
+    analysis.rank = problem->nc() - static_cast<int>(analysis.dependent.size());
+  };
+  name(transposed_gradient(*problem, q, states));
+  analysis.rank_here = analysis.rank;
   // Only mechanisms that can move have neighbours.
   if (analysis.dependent.empty() || analysis.degrees_of_freedom() == 0 ||
-      !neighbour(*problem, analysis.dependent, states, q))
+      !neighbour(*problem, analysis.dependent_rows(), states, q))
     return analysis;
-  std::vector<Dependency> there = dependencies(*problem, q, states);
-  if (rank(there) > analysis.rank) {
-    analysis.rank = rank(there);
-    analysis.dependent = std::move(there);
-  }
+  const Sparse beside = transposed_gradient(*problem, q, states);
+  if (dependent_columns(beside, kRankTolerance).size() < analysis.dependent.size()) name(beside);
   return analysis;
 }
 

@@ -25,6 +25,7 @@ struct RankAnalysis {
   int rank = 0;                       // of G, at the given or a neighbouring position, whichever is higher
   int rank_here = 0;                  // at the given position
   std::vector<Dependency> dependent;  // by row
+  bool named = true;                  // false: too many to say what each depends on; `others` are empty
   int degrees_of_freedom() const { return variables - rank; }
   bool singular_position() const { return rank_here < rank; }
   std::vector<int> dependent_rows() const;

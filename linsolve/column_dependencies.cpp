@@ -22,6 +22,11 @@ double largest(const SparseEntries& z) {
   return size;
 }
 
+void drop_nothing(SparseEntries& z) {
+  const double nothing = kNothing * largest(z);
+  std::erase_if(z, [&](const auto& entry) { return std::abs(entry.second) <= nothing; });
+}
+
 // x − factor y without entry `gone` and what is nothing beside the rest.
 SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntries& y, int gone) {
   SparseEntries sum;
@@ -36,8 +41,8 @@ SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntrie
       ++b;
     }
   }
-  const double nothing = kNothing * largest(sum);
-  std::erase_if(sum, [&](const auto& e) { return e.first == gone || std::abs(e.second) <= nothing; });
+  std::erase_if(sum, [&](const auto& entry) { return entry.first == gone; });
+  drop_nothing(sum);
   return sum;
 }
 
@@ -75,39 +80,70 @@ std::map<int, SparseEntries> echelon(std::vector<SparseEntries> vectors) {
   return ends;
 }
 
+// Null vectors of A, by the last column of each.
+struct NullSpace {
+  std::map<int, SparseEntries> by_last;
+  std::vector<int> dependent;  // instead, where the vectors are not needed or would be too long
+  bool complete = true;
+
+  NullSpace(const Sparse& A, double tolerance, bool vectors_needed) {
+    std::vector<int> entries(static_cast<std::size_t>(A.rows()), 0), wide(entries.size(), -1);
+    for (int k = 0; k < A.outerSize(); ++k)
+      for (Sparse::InnerIterator it(A, k); it; ++it) ++entries[static_cast<std::size_t>(it.row())];
+    std::vector<char> left_out(entries.size(), 0);
+    int count = 0;
+    for (std::size_t k = 0; k < entries.size(); ++k)
+      if (entries[k] > kWide) wide[k] = count++, left_out[k] = 1;
+
+    FrontQr qr(A, left_out, tolerance);
+    std::vector<SparseEntries> vectors;
+    std::size_t size = 0;
+    for (const int column : qr.dependent()) {
+      complete = count > 0 || (vectors_needed && size <= kMostNamed);
+      if (!complete) break;
+      SparseEntries& z = vectors.emplace_back(qr.null_vector(column));
+      drop_nothing(z);
+      append_wide_rows(A, wide, z);
+      size += z.size();
+    }
+    if (!complete) {
+      dependent = qr.dependent();
+      std::sort(dependent.begin(), dependent.end());
+      return;
+    }
+    by_last = echelon(std::move(vectors));
+    by_last.erase(by_last.lower_bound(static_cast<int>(A.cols())), by_last.end());  // a wide row holds these
+    for (const auto& [column, z] : by_last) dependent.push_back(column);
+  }
+};
+
 }  // namespace
 
-std::vector<ColumnDependency> column_dependencies(const Sparse& A, double tolerance) {
-  std::vector<int> entries(static_cast<std::size_t>(A.rows()), 0), wide(entries.size(), -1);
-  for (int k = 0; k < A.outerSize(); ++k)
-    for (Sparse::InnerIterator it(A, k); it; ++it) ++entries[static_cast<std::size_t>(it.row())];
-  std::vector<char> left_out(entries.size(), 0);
-  int count = 0;
-  for (std::size_t k = 0; k < entries.size(); ++k)
-    if (entries[k] > kWide) wide[k] = count++, left_out[k] = 1;
-
-  FrontQr qr(A, left_out, tolerance);
-  std::vector<SparseEntries> vectors;
-  for (const int column : qr.dependent()) {
-    vectors.push_back(qr.null_vector(column));
-    append_wide_rows(A, wide, vectors.back());
-  }
-  std::map<int, SparseEntries> ends = echelon(std::move(vectors));
-  ends.erase(ends.lower_bound(static_cast<int>(A.cols())), ends.end());  // not null vectors: a wide row holds these
-
-  // Ascending: the dependent columns a vector contains have been expressed by independent ones before.
-  std::vector<ColumnDependency> found;
-  for (auto& [column, z] : ends) {
-    const SparseEntries contained = z;
-    for (const auto& [index, value] : contained)
-      if (const auto other = ends.find(index); index != column && other != ends.end())
-        z = subtract(z, value / other->second.back().second, other->second, index);
-    ColumnDependency& dependency = found.emplace_back(ColumnDependency{column, {}});
+ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
+  NullSpace space(A, tolerance, true);
+  ColumnDependencies found;
+  found.named = space.complete;
+  for (const int column : space.dependent) found.columns.push_back({column, {}});
+  std::size_t size = 0, k = 0;
+  for (auto& [column, z] : space.by_last) {
+    // Ascending: the dependent columns a vector contains have been expressed by independent ones before.
+    if (size <= kMostNamed) {
+      const SparseEntries contained = z;
+      for (const auto& [index, value] : contained)
+        if (const auto other = space.by_last.find(index); index != column && other != space.by_last.end())
+          z = subtract(z, value / other->second.back().second, other->second, index);
+    }
+    size += z.size();
     for (const auto& [index, value] : z)
       if (index != column && std::abs(value) > kMentioned * std::abs(z.back().second))
-        dependency.others.push_back(index);
+        found.columns[k].others.push_back(index);
+    ++k;
   }
   return found;
+}
+
+std::vector<int> dependent_columns(const Sparse& A, double tolerance) {
+  return NullSpace(A, tolerance, false).dependent;
 }
 
 }  // namespace poinsot

@@ -5,6 +5,9 @@
 // dependent one, and contains no other dependent column; that form is unique. Rows of A that reach very many columns
 // (a body with hundreds of joints) would couple all of these in one front; they are left out there, and the null
 // vectors found without them are combined to those that such rows take to zero.
+//
+// Dependencies can be long: every loop of a long planar mechanism may come to lean on all loops before it. Their total
+// length is bounded by kMostNamed; past it columns are named as dependent, but not always what they depend on.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -14,10 +17,20 @@ namespace poinsot {
 
 struct ColumnDependency {
   int column;
-  std::vector<int> others;  // independent columns before it, ascending
+  std::vector<int> others;  // earlier columns it is a combination of, ascending; independent ones up to kMostNamed
 };
 
-// Columns of A have unit length or are zero; less than `tolerance` of one counts as nothing. By column, ascending.
-std::vector<ColumnDependency> column_dependencies(const Eigen::SparseMatrix<double>& A, double tolerance);
+inline constexpr std::size_t kMostNamed = 20'000'000;  // entries of null vectors: about 300 MB
+
+struct ColumnDependencies {
+  std::vector<ColumnDependency> columns;  // ascending
+  bool named = true;  // false past kMostNamed: `others` are empty, and the columns are the last in some other order
+};
+
+// Columns of A have unit length or are zero; less than `tolerance` of one counts as nothing.
+ColumnDependencies column_dependencies(const Eigen::SparseMatrix<double>& A, double tolerance);
+
+// As many columns, ascending, without which the others are independent; not always those named above. Needs far less.
+std::vector<int> dependent_columns(const Eigen::SparseMatrix<double>& A, double tolerance);
 
 }  // namespace poinsot

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/scene_generator.h"
 #include "integrators/initial_state.h"
 #include "tests/support/scene_transform.h"
 
@@ -199,6 +200,22 @@ TEST(Rank, ADriverWhoseRowVanishes) {
   EXPECT_EQ(analysis.degrees_of_freedom(), 1);
   ASSERT_THAT(analysis.dependent_rows(), ElementsAre(0));
   EXPECT_THAT(analysis.dependent[0].others, IsEmpty());
+}
+
+// The cost is that of the rows, not of their square or cube: seconds would become hours here.
+TEST(Rank, OfManyBodies) {
+  const RankAnalysis chain = analyze(find_scene_generator("chain")->make(3000));
+  EXPECT_EQ(chain.degrees_of_freedom(), 3000);
+  EXPECT_THAT(chain.dependent_rows(), IsEmpty());
+
+  // Hinged to the ground at the far end as well: the plane is given once too often, and in the straight pose the length
+  // is, too. It cannot move from there, so that there is no pose beside it to ask.
+  Scene scene = find_scene_generator("chain")->make(1000);
+  scene.joints.push_back(joint(JointType::revolute, 999, kGround, {0, 1000, 0}, Vector3::UnitX()));
+  const RankAnalysis loop = analyze(scene);
+  EXPECT_THAT(loop.dependent_rows(), ElementsAre(5000, 5001, 5003, 5004));
+  for (const Dependency& dependency : loop.dependent) EXPECT_GE(dependency.others.size(), 1000u);
+  EXPECT_FALSE(loop.singular_position());
 }
 
 // Rank does not depend on units, frames or place.
