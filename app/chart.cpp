@@ -188,7 +188,7 @@ int chart(const Options& options) {
     plots.push_back({file.path(), stem});
   }
   progress.clear();
-  if (const std::string why = draw("work_precision", plots); !why.empty()) print_notice(why);
+  if (const std::string why = draw("work_precision", plots); !why.empty() && !options.quiet) print_notice(why);
   std::vector<fs::path> written;
   for (const Plot& plot : plots) written.push_back(plot.csv);
   if (charts.size() > 1) {

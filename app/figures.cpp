@@ -56,9 +56,12 @@ int figures(const Options& options) {
   bool failed = false;
   for (const FigureEntry* entry : entries) {
     FigureResult result = entry->compute(request);
-    if (const std::string why = write_plots(result.plots, options.out, report.foot); !why.empty()) print_notice(why);
     std::string pictures;
     for (const PanelPlot& plot : result.plots) pictures += fmt::format("![{}]({}.svg)\n\n", plot.title, plot.file);
+    if (const std::string why = write_plots(result.plots, options.out, report.foot); !why.empty()) {
+      if (!options.quiet) print_notice(why);
+      pictures = fmt::format("({})\n\n", why);
+    }
     if (!result.tables.empty()) result.tables.front().text = pictures + result.tables.front().text;
     for (const std::string& failure : result.failures) {
       const std::string sentence = fmt::format("no figure for {}", failure);

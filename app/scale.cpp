@@ -78,14 +78,19 @@ int scale(const Options& options) {
   progress.clear();
 
   Report report{"Scaling",
-                "Chains, trees, ladders of closed loops and the N-four-bar, each run in its own process.\n\n"
-                "![Cost over the number of bodies](scaling_plot.svg)",
+                "Chains, trees, ladders of closed loops and the N-four-bar, each run in its own process.",
                 {cost_table(all), growth_table(all)},
                 origin_lines(core)};
   report.foot.push_back(
       fmt::format("settings: implicit_euler, h = {:g} s, tolerance {:g}, jacobian {}; {} interleaved "
                   "repetitions, median",
                   Settings{}.step, Settings{}.tolerance, Settings{}.jacobian, options.repetitions));
+  if (const std::string why = write_plots({scaling_plot(all)}, options.out, report.foot); why.empty()) {
+    report.text += "\n\n![Cost over the number of bodies](scaling_plot.svg)";
+  } else {
+    if (!options.quiet) print_notice(why);
+    report.text += fmt::format("\n\n({})", why);
+  }
   bool failed = false;
   for (const Series& series : all) {
     for (std::size_t n = 0; n < all_sizes.size(); ++n) {
@@ -99,8 +104,6 @@ int scale(const Options& options) {
     }
   }
   const auto written = write_report(report, options.out, "scaling");
-  if (const std::string why = write_plots({scaling_plot(all)}, options.out, report.foot); !why.empty())
-    print_notice(why);
   if (!options.quiet) fmt::print("{}\n", written.front().string());
   return failed ? kNumericsFailed : kDone;
 }

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -11,7 +10,6 @@
 #include "app/paper_tables.h"
 #include "app/phase_tables.h"
 #include "app/terminal.h"
-#include "core/input_error.h"
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
@@ -93,10 +91,8 @@ int report_failures(std::span<const Cell> cells, std::string& text) {
 }
 
 int tables(const Options& options) {
-  if (!find_linear_solver(options.linear_solver)) {
-    Settings ignored;
-    set_setting(*find_setting("linear_solver"), options.linear_solver, ignored);  // its message names all there are
-  }
+  Settings checked;
+  set_setting(*find_setting("linear_solver"), options.linear_solver, checked);
   require_positive("--repetitions", options.repetitions);
   const fs::path models = models_directory(options.models);
   std::vector<Scene> scenes;

@@ -75,6 +75,19 @@ TEST_F(Figures, OrdersFollowFromThePoints) {
   EXPECT_TRUE(result.out.starts_with("order_paper\n  implicit_euler (order 1): exponents ")) << result.out;
 }
 
+TEST_F(Figures, WithoutMatplotlibTheNumbersAreThere) {
+  write("matplotlib.py", "raise ImportError\n");
+  setenv("PYTHONPATH", folder().c_str(), 1);
+  const Result result = poinsot({"figures", "solution_deltas", "--quick", "--out", "results"});
+  unsetenv("PYTHONPATH");
+  const std::string sentence =
+      "no picture was drawn: that needs Python 3 with matplotlib (Debian: python3-matplotlib); the CSV is there";
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err, "poinsot: note: " + sentence + "\n");
+  EXPECT_NE(read("results/figures.md").find(sentence), std::string::npos);
+  EXPECT_FALSE(read("results/solution_deltas.csv").empty());
+}
+
 TEST_F(Figures, SaysWhatItDoesNotKnow) {
   const Result result = poinsot({"figures", "order_paper", "portrait", "--out", "results"});
   EXPECT_EQ(result.status, 2);
