@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/named_files.h"
 #include "app/natural_end.h"
 #include "app/options.h"
 #include "app/reference.h"
@@ -97,14 +98,10 @@ int run(const Options& options) {
   settings.every = every.every > 0 ? every.every : settings.end / kRows;
   std::optional<TrajectoryWriter> trajectory;
   std::optional<OutputFile> beside;
-  if (!options.out.empty()) {
-    const fs::path file = fs::path(options.out).replace_extension(".json");
-    if (fs::weakly_canonical(file) == fs::weakly_canonical(options.scene))
-      throw InputError(
-          fmt::format("{}: the record beside --out would overwrite the scene; choose another name", file.string()));
-    trajectory.emplace(options.out, scene);
-    if (!is_device(options.out)) beside.emplace(file);
-  }
+  const fs::path record_file = record_beside(options.out);
+  refuse_overwriting({{"the scene", options.scene}}, {{"--out", options.out}, {"the record", record_file}});
+  if (!options.out.empty()) trajectory.emplace(options.out, scene);
+  if (!record_file.empty()) beside.emplace(record_file);
 
   std::vector<std::string> notices;
   const Reference r = reference(scene, settings, Cache(options.cache), notices);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/commands.h"
+#include "app/named_files.h"
 #include "app/options.h"
 #include "app/output_file.h"
 #include "app/progress.h"
@@ -12,7 +13,6 @@
 #include "app/settings_options.h"
 #include "app/terminal.h"
 #include "app/trajectory_writer.h"
-#include "core/input_error.h"
 #include "core/scene_reader.h"
 #include "integrators/simulate.h"
 
@@ -25,36 +25,6 @@ struct Options {
   SettingsOptions settings;
   bool quiet = false;
 };
-
-bool same_file(const fs::path& a, const fs::path& b) {
-  return !a.empty() && !b.empty() && fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
-}
-
-// Beside the trajectory, or beside the reactions where only they are asked for; none beside a device.
-fs::path record_path(const Options& options) {
-  const fs::path beside = options.out.empty() ? options.reactions : options.out;
-  return beside.empty() || is_device(beside) ? fs::path() : fs::path(beside).replace_extension(".json");
-}
-
-void refuse_overwriting(const Options& options) {
-  const fs::path record = record_path(options);
-  struct File {
-    const char* what;
-    fs::path path;
-  };
-  const File inputs[] = {{"the scene", options.scene}, {"the configuration", options.settings.config_file()}};
-  const File outputs[] = {{"--out", options.out}, {"--reactions", options.reactions}, {"the run record", record}};
-  for (const File& output : outputs)
-    for (const File& input : inputs)
-      if (same_file(output.path, input.path))
-        throw InputError(fmt::format("{}: {} would overwrite {}; choose another name or folder for the output",
-                                     output.path.string(), output.what, input.what));
-  for (int a = 0; a < 3; ++a)
-    for (int b = a + 1; b < 3; ++b)
-      if (same_file(outputs[a].path, outputs[b].path) && !is_device(outputs[a].path))
-        throw InputError(fmt::format("{}: {} and {} would be the same file; choose different names",
-                                     outputs[a].path.string(), outputs[a].what, outputs[b].what));
-}
 
 // The motion at the last output time, for the summary.
 struct LastState {
@@ -99,14 +69,17 @@ int run(const Options& options) {
   Settings settings = options.settings.resolve(notices);
   settings.reactions = !options.reactions.empty();
   const Scene scene = read_scene(options.scene);
-  refuse_overwriting(options);
+  // Beside the trajectory, or beside the reactions where only they are asked for.
+  const fs::path record_file = record_beside(options.out.empty() ? options.reactions : options.out);
+  refuse_overwriting({{"the scene", options.scene}, {"the configuration", options.settings.config_file()}},
+                     {{"--out", options.out}, {"--reactions", options.reactions}, {"the run record", record_file}});
 
   std::optional<TrajectoryWriter> trajectory;
   std::optional<ReactionsWriter> reactions;
   std::optional<OutputFile> record;
   if (!options.out.empty()) trajectory.emplace(options.out, scene);
   if (!options.reactions.empty()) reactions.emplace(options.reactions, compile(scene));
-  if (const fs::path path = record_path(options); !path.empty()) record.emplace(path);
+  if (!record_file.empty()) record.emplace(record_file);
 
   const bool summary = !trajectory && !reactions && !options.quiet;
   LastState last;

@@ -92,6 +92,10 @@ TEST_F(ReferenceCommand, SaysWhyThereIsNone) {
   const Result same = poinsot({"reference", "pendulum.json", "--out", "pendulum.csv"});
   EXPECT_EQ(same.status, 2);
   EXPECT_EQ(read("pendulum.json"), kPendulum);
+  const Result twice = poinsot({"reference", "pendulum.json", "--out", "motion.json"});
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_EQ(twice.err, "poinsot: motion.json: --out and the record would be the same file; choose different names\n");
+  EXPECT_FALSE(std::filesystem::exists(folder() / "motion.json"));
 }
 
 }  // namespace
