@@ -26,7 +26,8 @@ struct Options {
   bool quiet = false;
 };
 
-// The motion at the last output time, for the summary.
+// The motion at the last output time, for the summary: of the first bodies.
+constexpr std::size_t kShown = 20;
 struct LastState {
   double t = 0;
   std::vector<BodyState> bodies;
@@ -45,12 +46,11 @@ void print_summary(const Scene& scene, const Settings& settings, const Outcome& 
   const auto row = [](const Vector3& x) { return fmt::format("{:12.6g} {:12.6g} {:12.6g}", x.x(), x.y(), x.z()); };
   fmt::print("  {:<{}}  {:>38}  {:>38}  {:>38}\n", "body", width, "position, m", "velocity, m/s",
              "angular velocity (body), rad/s");
-  constexpr std::size_t most = 20;
-  for (std::size_t b = 0; b < std::min(most, last.bodies.size()); ++b)
+  for (std::size_t b = 0; b < last.bodies.size(); ++b)
     fmt::print("  {:<{}}  {}  {}  {}\n", scene.bodies[b].name, width, row(last.bodies[b].r), row(last.bodies[b].rd),
                row(last.bodies[b].w));
-  if (last.bodies.size() > most)
-    fmt::print("  ... and {} more; --out FILE.csv writes all\n", last.bodies.size() - most);
+  if (const std::size_t more = scene.bodies.size() - last.bodies.size(); more > 0 && !last.bodies.empty())
+    fmt::print("  ... and {} more; --out FILE.csv writes all\n", more);
   const double steps = static_cast<double>(std::max<std::int64_t>(s.steps, 1));
   fmt::print("{} steps, {:.2f} Newton iterations, {:.2f} factorizations and {:.2f} solves a step\n", s.steps,
              static_cast<double>(s.newton_iterations) / steps, static_cast<double>(s.factorizations) / steps,
@@ -68,7 +68,7 @@ int run(const Options& options) {
   std::vector<std::string> notices;
   Settings settings = options.settings.resolve(notices);
   settings.reactions = !options.reactions.empty();
-  const Scene scene = read_scene(options.scene);
+  Scene scene = read_scene(options.scene);
   // Beside the trajectory, or beside the reactions where only they are asked for.
   const fs::path record_file = record_beside(options.out.empty() ? options.reactions : options.out);
   refuse_overwriting({{"the scene", options.scene}, {"the configuration", options.settings.config_file()}},
@@ -79,7 +79,10 @@ int run(const Options& options) {
   std::optional<OutputFile> record;
   if (!options.out.empty()) trajectory.emplace(options.out, scene);
   if (!options.reactions.empty()) reactions.emplace(options.reactions, compile(scene));
-  if (!record_file.empty()) record.emplace(record_file);
+  if (!record_file.empty())
+    record.emplace(record_file);
+  else
+    std::string().swap(scene.source);  // memory of large scenes
 
   const bool summary = !trajectory && !reactions && !options.quiet;
   LastState last;
@@ -91,7 +94,7 @@ int run(const Options& options) {
       if (reactions) reactions->write(sample);
       if (summary) {
         last.t = sample.t;
-        last.bodies.resize(scene.bodies.size());
+        last.bodies.resize(std::min(kShown, scene.bodies.size()));
         sample.problem.to_bodies(sample.a, last.bodies);
       }
       progress.at(sample.t);

@@ -213,17 +213,21 @@ class Parser {
 
 }  // namespace
 
-Expression::Expression(double constant) : text_(fmt::format("{}", constant)), value_(constant) {}
+Expression::Expression(double constant) : value_(constant) {}
+
+std::string Expression::text() const {
+  return parsed_ ? parsed_->text : fmt::format("{}", value_);
+}
 
 Expression Expression::parse(std::string_view text, bool with_time) {
+  Parsed parsed{std::string(text), Parser(text, with_time).parse()};
   Expression expression;
-  expression.tape_ = Parser(text, with_time).parse();
-  expression.text_ = text;
-  expression.constant_ = expression.tape_.size() == 1 && expression.tape_[0].op == TapeOp::constant;
+  expression.constant_ = parsed.tape.size() == 1 && parsed.tape[0].op == TapeOp::constant;
   if (expression.constant_) {
-    expression.value_ = expression.tape_[0].value;
-    expression.tape_.clear();
+    expression.value_ = parsed.tape[0].value;
+    parsed.tape.clear();
   }
+  expression.parsed_ = std::make_shared<const Parsed>(std::move(parsed));
   return expression;
 }
 

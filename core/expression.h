@@ -5,6 +5,7 @@
 // differentiate by hand and nothing to step. Evaluation allocates nothing and changes nothing.
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -34,20 +35,23 @@ class Expression {
   static std::vector<std::string_view> function_names();
 
   bool is_constant() const { return constant_; }
-  const std::string& text() const { return text_; }
+  std::string text() const;
 
   template <class T>  // double, long double
   Jet2<T> at(T t) const {
-    return constant_ ? Jet2<T>{T(value_), T(0), T(0)} : run_tape<T>(tape_, t);
+    return constant_ ? Jet2<T>{T(value_), T(0), T(0)} : run_tape<T>(parsed_->tape, t);
   }
 
  private:
   static Expression parse(std::string_view text, bool with_time);
 
-  std::string text_ = "0";
+  struct Parsed {
+    std::string text;
+    std::vector<TapeInstruction> tape;  // empty for a constant
+  };
   bool constant_ = true;
-  double value_ = 0;                   // of a constant
-  std::vector<TapeInstruction> tape_;  // empty for a constant
+  double value_ = 0;                      // of a constant
+  std::shared_ptr<const Parsed> parsed_;  // copies share it; none where there was no text
 };
 
 }  // namespace poinsot

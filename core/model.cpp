@@ -79,7 +79,7 @@ class Compiler {
     r.s_i = c.s_i, r.s_j = c.s_j;
     r.c = c.c;
     r.f = c.f;
-    r.alternate = c.alternate;
+    if (c.alternate) r.alternate = std::make_shared<const Constraint::Alternate>(*c.alternate);
   }
 
   // The paper's Table 1. `axis` is global, at the initial pose, like everything a joint says.

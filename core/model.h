@@ -4,6 +4,7 @@
 // frames once, at the initial pose the scene gives. Everything here is constant; a Model is shared between threads.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,9 @@ struct Row {
   Vector3 s_i = Vector3::Zero(), s_j = Vector3::Zero();
   Vector3 c = Vector3::Zero();
   Expression f;
-  bool squared = false;  // the right-hand side is f(t)², as for a driven distance
-  std::optional<Constraint::Alternate> alternate;
-  int group = 0;  // the constraint, joint or driver it belongs to
+  bool squared = false;                                    // the right-hand side is f(t)², as for a driven distance
+  std::shared_ptr<const Constraint::Alternate> alternate;  // few rows have one
+  int group = 0;                                           // the constraint, joint or driver it belongs to
 };
 
 enum class GroupKind { constraint, joint, driver };

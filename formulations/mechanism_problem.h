@@ -56,8 +56,9 @@ class MechanismProblem final : public Problem {
 
   void to_bodies(std::span<const double> a, std::span<BodyState> states) const override {
     expect(a, nv_);
+    check(states.size() <= static_cast<std::size_t>(bodies_), "states are asked of bodies there are");
     const auto& c = mechanism_.c;
-    for (int b = 0; b < bodies_; ++b) {
+    for (int b = 0; b < static_cast<int>(states.size()); ++b) {
       const std::size_t k = static_cast<std::size_t>(b);
       const double* ab = a.data() + b * M::kV;
       BodyState& state = states[k];

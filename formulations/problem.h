@@ -60,7 +60,7 @@ class Problem {
 
   // State of the model's bodies at the start, in this formulation's coordinates; the same from and to body states.
   virtual Status from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const = 0;
-  // Needs position and velocity set; `a` as solved.
+  // Of the first bodies, as many as there are states. Needs position and velocity set; `a` as solved.
   virtual void to_bodies(std::span<const double> a, std::span<BodyState> states) const = 0;
 
   virtual void retract(std::span<const double> q, std::span<const double> dq, std::span<double> q_out) const = 0;

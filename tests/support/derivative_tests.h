@@ -72,7 +72,8 @@ TYPED_TEST_P(Derivatives, OfAlternateRows) {
     add_row(model, RowType::DP1, 0, 1, random);
     Row& row = model.rows.front();
     row.f = Expression::parse("cos(t)");
-    row.alternate = Constraint::Alternate{random.unit(), random.unit(), Expression::parse("0.3+sin(t)")};
+    row.alternate = std::make_shared<const Constraint::Alternate>(
+        Constraint::Alternate{random.unit(), random.unit(), Expression::parse("0.3+sin(t)")});
     const auto problem = make_problem(TypeParam::name, model);
     Point at = TestFixture::random_point(random, *problem);
     at.t = t;
