@@ -2,7 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace poinsot {
+
+bool NewtonLoop::is_rounding(double position, const Vector& q) const {
+  constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+  return position * delta_.head(problem_.nv()).cwiseAbs().maxCoeff() <=
+         kRounding * std::sqrt(problem_.bodies()) * std::max(1.0, q.cwiseAbs().maxCoeff());
+}
 
 Status NewtonLoop::not_converged(double t, double correction) const {
   if (!std::isfinite(correction)) {

@@ -5,6 +5,7 @@
 
 #include <tuple>
 
+#include "core/scene_generator.h"
 #include "integrators/initial_state.h"
 #include "tests/support/allocations.h"
 #include "tests/support/simulation.h"
@@ -62,6 +63,19 @@ TEST_P(Newton, SpendsItsIterations) {
                            "\\(its row . of 5\\)|body 'body_.' \\(its normalization\\)); try a smaller step, the exact "
                            "jacobian or a larger tolerance"));
   expect_kept(r, 1e-2, 1e-2);
+}
+
+// Rounding adds up along a chain, in rp most: to corrections that stay above any tolerance, and to matrices whose
+// condition is near that of a singular one.
+TEST(NewtonOnLongChains, GoesAsFarAsRoundingLetsItGo) {
+  for (const auto& [bodies, end] : {std::pair(1000, 5e-3), std::pair(3000, 1e-3)}) {
+    for (const char* solver : {"block", "klu"}) {
+      Settings settings = dynamics("rp", 1e-3, end);
+      settings.linear_solver = solver;
+      const Outcome outcome = simulate(find_scene_generator("chain")->make(bodies), settings, {});
+      EXPECT_TRUE(outcome.status.ok()) << bodies << ' ' << solver << ": " << outcome.status.message;
+    }
+  }
 }
 
 TEST_P(Newton, SpendsItsIterationsInKinematics) {
