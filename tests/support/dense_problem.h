@@ -49,9 +49,12 @@ inline MatrixX gradient(Problem& problem) {
 }
 
 // |a − b| relative to the larger of both and of `scale`, in the largest component.
-inline double difference(const VectorX& a, const VectorX& b, double scale) {
-  const double size = std::max({a.lpNorm<Eigen::Infinity>(), b.lpNorm<Eigen::Infinity>(), scale});
-  const double error = (a - b).lpNorm<Eigen::Infinity>();
+template <class A, class B>
+double difference(const Eigen::MatrixBase<A>& of, const Eigen::MatrixBase<B>& from, double scale) {
+  const typename A::PlainObject a = of;
+  const typename B::PlainObject b = from;
+  const double size = std::max({a.template lpNorm<Eigen::Infinity>(), b.template lpNorm<Eigen::Infinity>(), scale});
+  const double error = (a - b).template lpNorm<Eigen::Infinity>();
   return std::isfinite(error) ? error / size : std::numeric_limits<double>::infinity();
 }
 
