@@ -62,7 +62,7 @@ double first_step(double h0, double f, double second, int order, double end);
 // way would take days to the end: with an atol far below rounding a body at rest asks for its noise to be resolved.
 class Creeping {
  public:
-  explicit Creeping(double end) : little_(1e-7 * end) {}
+  explicit Creeping(double end) : little_(1e-6 * end) {}
 
   bool tries(double t, double h) {
     tiny_ = h < kTiny * longest_ ? tiny_ + 1 : 0;

@@ -225,9 +225,8 @@ TEST_P(ErrorControl, StopsWhereAForceGrowsWithoutBound) {
 TEST_P(ErrorControl, SaysThatTheTolerancesAskForTooMuch) {
   Settings s = settings(1e-14, 0.5);
   s.atol = 1e-120;
-  const Recorded r = run(scene_of("double_pendulum"), s);
-  EXPECT_TRUE(GetParam().formulation != "rp" || !r.outcome.status.ok());
-  if (!r.outcome.status.ok()) {
+  if (GetParam().formulation == "rp") {
+    const Recorded r = run(scene_of("double_pendulum"), s);
     EXPECT_EQ(r.outcome.status.failure, Failure::step_size_too_small);
     EXPECT_THAT(r.outcome.status.message, HasSubstr("where a body is at rest, atol alone does"));
   }
@@ -305,7 +304,7 @@ TEST(Creeping, TellsStepsThatDoNotGetOn) {
   EXPECT_TRUE(stops(1e-100, 1, 20000));
   EXPECT_TRUE(stops(0, 1, 20000));
   EXPECT_FALSE(stops(1e-100, 1.1, 20000));  // from a small start
-  EXPECT_FALSE(stops(2e-11, 1, 100000));
+  EXPECT_FALSE(stops(2e-10, 1, 100000));
   EXPECT_TRUE(stops(0.01, 0.9, 1000));  // towards a point
 }
 
