@@ -3,7 +3,7 @@
 //   structure                                 pick    measured: klu's time for factor + solve over the pick's
 //   unsymmetric: kinematics, G alone          klu     1 (block hands these to klu, with a copy: 0.9 to 1.0)
 //   saddle point of bodies and constraints    block   1.1 to 1.7 the paper's mechanisms, 1.3 to 1.5 one hinged body,
-//                                                     2.3 to 3.1 chains of 10, 2.8 to 3.2 of 100 and more,
+//                                                     2.3 to 3.1 chains of 10, 2.7 to 3.2 of 100 and more,
 //                                                     3.8 to 4.5 trees, 2.8 to 4.2 ladders, 1.5 to 2.3 many
 //                                                     four-bars
 //
