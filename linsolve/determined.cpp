@@ -73,22 +73,24 @@ LinearStatus Determined::factor(std::span<const double> values) {
   return status;
 }
 
+// Numbers are scaled as they are gathered and scattered, one by one: a loop over them right after would load as vectors
+// what was stored piece by piece, and processors wait long for that.
 void Determined::solve(const CscLayout& layout, std::span<const double> values, std::span<double> b) {
+  const std::span<const double> row = klu_.row_factors(), column = klu_.column_factors();
   for (std::size_t k = 0; k < v_.size(); ++k) {
-    v_[k] = b[at(multipliers_[k])];
-    f_[k] = b[at(velocities_[k])];
+    v_[k] = row[k] * b[at(multipliers_[k])];
+    f_[k] = column[k] * b[at(velocities_[k])];
   }
-  klu_.solve_untested(v_);
+  klu_.substitute(v_);
   for (std::size_t c = 0; c < v_.size(); ++c) {
     const int j = velocities_[c];
+    const double v = column[c] * v_[c];
+    b[at(j)] = v;
     for (int k = layout.start[at(j)]; k < layout.start[at(j) + 1]; ++k)
-      if (const int r = velocity_of_[at(layout.row[at(k)])]; r >= 0) f_[at(r)] -= values[at(k)] * v_[c];
+      if (const int r = velocity_of_[at(layout.row[at(k)])]; r >= 0) f_[at(r)] -= column[at(r)] * (values[at(k)] * v);
   }
-  klu_.solve_transposed(f_);
-  for (std::size_t k = 0; k < v_.size(); ++k) {
-    b[at(velocities_[k])] = v_[k];
-    b[at(multipliers_[k])] = f_[k];
-  }
+  klu_.substitute_transposed(f_);
+  for (std::size_t k = 0; k < v_.size(); ++k) b[at(multipliers_[k])] = row[k] * f_[k];
 }
 
 }  // namespace poinsot

@@ -74,19 +74,14 @@ void Klu::do_substitute(std::span<double> b) {
   klu_solve(symbolic_, numeric_, layout().n, 1, b.data(), &common_);
 }
 
-void Klu::solve_untested(std::span<double> b) {
-  check(state() == State::factored, "Klu::solve_untested comes after a factor that was ok");
-  equilibration().scale_right_hand_side(b);
+void Klu::substitute(std::span<double> b) {
+  check(state() == State::factored, "Klu::substitute comes after a factor that was ok");
   do_substitute(b);
-  equilibration().scale_solution(b);
 }
 
-// A = D_r⁻¹ S D_c⁻¹, so A⁻ᵀ = D_r S⁻ᵀ D_c.
-void Klu::solve_transposed(std::span<double> b) {
-  check(state() == State::factored, "Klu::solve_transposed comes after a factor that was ok");
-  equilibration().scale_solution(b);
+void Klu::substitute_transposed(std::span<double> b) {
+  check(state() == State::factored, "Klu::substitute_transposed comes after a factor that was ok");
   klu_tsolve(symbolic_, numeric_, layout().n, 1, b.data(), &common_);
-  equilibration().scale_right_hand_side(b);
 }
 
 bool Klu::pivots_still_good() {

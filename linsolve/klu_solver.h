@@ -20,9 +20,12 @@ class Klu final : public ScaledLu {
   Klu();
   ~Klu() override;
 
-  // b ← A⁻¹ b and b ← A⁻ᵀ b for the values of the last factor(); the caller tests whether they are finite.
-  void solve_untested(std::span<double> b);
-  void solve_transposed(std::span<double> b);
+  // The parts of a solve for the values of the last factor(), for callers who scale while they gather, and test results
+  // themselves: b ← S⁻¹ b and b ← S⁻ᵀ b with the equilibrated S = D_r A D_c, so that A⁻¹ = D_c S⁻¹ D_r.
+  void substitute(std::span<double> b);
+  void substitute_transposed(std::span<double> b);
+  std::span<const double> row_factors() const { return equilibration().row(); }
+  std::span<const double> column_factors() const { return equilibration().col(); }
 
  private:
   LinearStatus do_symbolic() override;
