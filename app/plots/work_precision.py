@@ -40,7 +40,7 @@ def panel(axes, rows, column, title, colours, solvers, styles):
                   markerfacecolor="white", markeredgewidth=0.8)
         if column in QUANTITIES:
             best = [row for row in points if row[f"front_{column}"] == "1"]
-            axes.plot([float(row[column]) for row in best], [1e3 * float(row["seconds"]) for row in best], "", ls="",
+            axes.plot([float(row[column]) for row in best], [1e3 * float(row["seconds"]) for row in best], ls="",
                       color=colour, marker=marker, markersize=6.5, zorder=5)
             leaders += [(float(row["seconds"]), method(row, solvers)) for row in best]
     if not axes.lines:
@@ -60,10 +60,12 @@ def panel(axes, rows, column, title, colours, solvers, styles):
 
 def draw(rows, notes):
     resolved = next((row for row in rows if row["status"] == "reference"), {})
+    rows = [row for row in rows if row["status"] != "reference"]
+    # Those that failed count, too: a method has the same colour in the charts of all scenes.
+    colours = dict(zip(in_order(rows, "integrator"), plotting.COLOURS * 3))
+    styles = dict(zip(in_order(rows, "linear_solver"), STYLES * 2))
     rows = [row for row in rows if row["status"] == "ok"]
-    integrators, solvers = in_order(rows, "integrator"), in_order(rows, "linear_solver")
-    colours = dict(zip(integrators, plotting.COLOURS * 3))
-    styles = dict(zip(solvers, STYLES * 2))
+    drawn, solvers = in_order(rows, "integrator"), in_order(rows, "linear_solver")
     figure, axes = pyplot.subplots(2, 3, figsize=(15, 9.6))
     for axis, (column, title) in zip(axes.flat, PANELS):
         panel(axis, rows, column, title, colours, solvers, styles)
@@ -72,7 +74,7 @@ def draw(rows, notes):
 
     leading = {row["integrator"] for row in rows if any(row[f"front_{q}"] == "1" for q in QUANTITIES)}
     entries = [Line2D([], [], color=colours[name], linewidth=2.5, label=name + (" (front)" if name in leading else ""))
-               for name in integrators]
+               for name in colours if name in drawn]
     entries += [Line2D([], [], color="#333333", ls="", marker=FORMULATIONS.get(name, "D"), markerfacecolor="white",
                        label=name) for name in in_order(rows, "formulation")]
     entries += [Line2D([], [], color="#333333", linestyle=styles[name], label=name)
