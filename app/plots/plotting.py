@@ -8,6 +8,7 @@ compute nothing.
 import csv
 import os
 import sys
+import textwrap
 
 try:
     import matplotlib
@@ -56,7 +57,9 @@ def save(figure, stem, notes):
     """Writes STEM.svg and STEM.png, whole or not at all, the origin of the numbers in the foot."""
     program, compiler = note(notes, "program"), note(notes, "compiler")
     foot = [note(notes, "processor"), f"{program}; {compiler}" if compiler else program]
-    figure.text(0.01, 0.004, "\n".join(line[:280] for line in foot if line), fontsize=6.5, color="#555555", va="bottom")
+    characters = int(18 * figure.get_figwidth())  # that fit beside one another
+    figure.text(0.01, 0.004, "\n".join(textwrap.fill(line, characters) for line in foot if line), fontsize=6.5,
+                color="#555555", va="bottom")
     for extension, options in (("svg", {"metadata": {"Date": None}}), ("png", {"dpi": 150})):
         partial = f"{stem}.{os.getpid()}.partial"
         figure.savefig(partial, format=extension, **options)
