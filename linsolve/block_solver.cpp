@@ -6,8 +6,7 @@
 //   fresh      the first factorization, and later ones whose pivots left three decades around those of the last fresh
 //              one. Bodies and groups with a pivot block that is not regular are fused and the order is chosen again;
 //              then Bauer's condition (condition.h) and the residual of a solve decide;
-//   kept       pivots within a factor of 20, a little more than rows that change places within a block bring: as good
-//              as the fresh one. Beyond, every solve checks its residual and refines.
+//   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
 //
 // A mechanism without degrees of freedom needs less: its square G alone is factorized (determined.h).
 //
@@ -35,9 +34,9 @@ namespace poinsot {
 namespace {
 
 constexpr double kSymmetric = 0.9;        // share of mirrored entries that makes a saddle point
-constexpr double kNear = 20, kFar = 1e3;  // drift of pivots that is trusted unseen, and with a look at residuals
+constexpr double kNear = 10, kFar = 1e3;  // drift of pivots that is trusted unseen, and with a look at residuals
 constexpr double kSmallResidual = 2e-15;  // relative; above, residuals of later solutions are looked at
-constexpr double kGoodResidual = 5e-15;   // above, a solution is refined; some ten times klu's where that has good ones
+constexpr double kGoodResidual = 3e-15;   // above, a solution is refined; less than ten times klu's good ones
 constexpr double kFairResidual = 1e-12;   // above, other pivots are tried
 constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not accepted
 constexpr double kCancelled = 1e-6;       // part of its size that is left of a pivot: worth another order
