@@ -2,14 +2,13 @@
 //
 //   structure                                 pick    measured: klu's time for factor + solve over the pick's
 //   unsymmetric: kinematics, G alone          klu     1 (block hands these to klu, with a copy: 0.9 to 1.0)
-//   saddle point of bodies and constraints    block   1.1 to 1.7 the paper's mechanisms, 1.3 to 1.5 one hinged body,
+//   saddle point of bodies and constraints    block   1.1 to 1.8 the paper's mechanisms, 1.3 to 1.5 one hinged body,
 //                                                     2.3 to 3.1 chains of 10, 2.7 to 3.2 of 100 and more,
-//                                                     3.8 to 4.5 trees, 2.8 to 4.2 ladders, 1.5 to 2.3 many
+//                                                     3.7 to 4.5 trees, 2.8 to 4.2 ladders, 1.5 to 2.3 many
 //                                                     four-bars
 //
-// Measured: bench/linear_solver_bench, exact Newton matrices in rA, rp and reps, all in one run in turn; cycles of an
-// AMD EPYC with AVX-512. The other solvers of the registry won nowhere; dense comes nearest, 5 % behind block on the
-// heavy top in rA.
+// Measured: bench/linear_solver_bench, exact Newton matrices in rA, rp and reps, all in one run in turn, on an AMD EPYC
+// with AVX-512. In whole steps dense is up to a tenth faster on the single pendulum.
 #include "linsolve/back_ends.h"
 #include "linsolve/registry.h"
 
