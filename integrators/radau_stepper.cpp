@@ -14,6 +14,7 @@ namespace {
 using Matrix = Eigen::Matrix3d;
 
 constexpr int kIterations = 10;
+constexpr int kPatience = 30;      // iterations for a sample, which no shorter step takes the place of
 constexpr int kSweeps = 3;         // of δq in a Newton iteration
 constexpr int kFirstSweeps = 8;    // from the predicted stages
 constexpr double kFast = 0.03;     // rate of convergence up to which a matrix is kept
@@ -228,7 +229,8 @@ Status RadauStepper::stages(const Point& from, double to, Linearized& linear) {
   return newton(from, to, linear);
 }
 
-// Newton's iteration; ends where what is left, by the rate of convergence θ, is far below the tolerance.
+// Newton's iteration; ends where what is left, by the rate of convergence θ, is far below the tolerance. A step that
+// will not get there is given up soon, because it is tried again with a shorter one.
 Status RadauStepper::newton(const Point& from, double to, Linearized& linear) {
   const double h = to - from.t;
   predict(from, h);
@@ -237,8 +239,9 @@ Status RadauStepper::newton(const Point& from, double to, Linearized& linear) {
   set_scale(from, stage_.q, stage_.v);
   const double enough = std::max(10 * kEpsilon / rtol_, std::min(0.03, std::sqrt(rtol_)));
   convergence_ = std::max(std::pow(convergence_, 0.8), kTrusted);
+  const bool patient = &linear == &within_;
   double before = 0, rate_before = 0;
-  for (int k = 0; k < kIterations; ++k) {
+  for (int k = 0; k < (patient ? kPatience : kIterations); ++k) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       stand_at_stage(from, to, i);
       points_.residual(stage_, column(R_, i));
@@ -263,9 +266,9 @@ Status RadauStepper::newton(const Point& from, double to, Linearized& linear) {
       statistics_.convergence.sum += ratio;
       ++statistics_.convergence.count;
       fast_ = rate < kFast;
-      if (rate >= 0.99) break;
-      convergence_ = rate / (1 - rate);
-      if (convergence_ * change * std::pow(rate, kIterations - 2 - k) > enough) break;
+      if (!patient && rate >= 0.99) break;
+      convergence_ = rate < 0.99 ? rate / (1 - rate) : 100;
+      if (!patient && convergence_ * change * std::pow(rate, kIterations - 2 - k) > enough) break;
       rate_before = ratio;
     }
     if (convergence_ * change <= enough) {
@@ -321,10 +324,9 @@ Status RadauStepper::interpolate(double t) {
   within_.h = 0;
   const bool fast = fast_;
   const double convergence = convergence_;
-  const Status status = stages(before_, t, within_);
+  if (!stages(before_, t, within_).ok()) predict(before_, t - before_.t);  // the polynomial of the completed step
   fast_ = fast;
   convergence_ = convergence;
-  if (!status.ok()) return step_too_small(before_.t, t - before_.t, status);
   end_of_step(before_, t, sample_);
   return points_.complete(sample_);
 }

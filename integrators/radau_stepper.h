@@ -49,7 +49,8 @@ class RadauStepper {
   // Makes the end of the attempted step the state; fails where it cannot be projected.
   Status complete();
   // The motion within the completed step at time t, consistent, in interpolated(): a shorter step from where that one
-  // began, because the collocation polynomial has order 3 only.
+  // began, because the collocation polynomial has order 3 only; that polynomial where Newton's method does not take the
+  // shorter step.
   Status interpolate(double t);
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
   void settle();

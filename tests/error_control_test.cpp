@@ -262,6 +262,20 @@ TEST_P(ErrorControl, LooseTolerancesGiveSamples) {
   }
 }
 
+// Fast spin and loose tolerances: samples between the steps neither stop a run nor stand out from it.
+TEST_P(ErrorControl, SamplesDoNotStopARun) {
+  const Scene scene = scene_of("heavy_top");
+  const double end = 0.1, every = 1e-3;
+  const auto exact = motion(scene, controlled("dop853", "rA", 1e-12, end, every));
+  for (const double rtol : {1e-3, 3e-4, 1e-4, 3e-5}) {
+    const Recorded ends = run(scene, settings(rtol, end, end)), r = run(scene, settings(rtol, end, every));
+    ASSERT_TRUE(ends.outcome.status.ok()) << ends.outcome.status.message;
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    EXPECT_EQ(ends.outcome.statistics.steps, r.outcome.statistics.steps);
+    EXPECT_LT(distance(r.samples, exact).largest(), GetParam().of.growth * rtol) << rtol;
+  }
+}
+
 TEST_P(ErrorControl, StopsAtASingularStart) {
   Scene scene = scene_of("double_pendulum");
   scene.bodies[1].mass = 0;

@@ -81,6 +81,18 @@ TEST_P(Radau, TakesStiffScenesWithLongSteps) {
             50 * static_cast<double>(radau.outcome.statistics.steps) / end);
 }
 
+// Within steps that are long beside a stiff spring Newton's method may not take a shorter one; then a sample is of the
+// polynomial of the step.
+TEST_P(Radau, SamplesOfLongStepsAreThere) {
+  const Scene scene = scene_of("stiff_pendulum");
+  const double end = 1.2, every = 0.002;
+  const auto exact = motion(scene, controlled("radau5", "rA", 1e-9, end, every));
+  for (const double rtol : {0.1, 3e-2}) {
+    const Distance d = distance(motion(scene, controlled("radau5", GetParam(), rtol, end, every)), exact);
+    EXPECT_LT(std::max(d.r, d.A), 5 * rtol) << d;
+  }
+}
+
 // The stiff reference itself, against a method that knows nothing of stiffness.
 TEST(RadauStiff, AgreesWithAnExplicitMethod) {
   const double end = 0.02;
