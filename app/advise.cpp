@@ -46,8 +46,13 @@ Asked asked(const Options& options) {
   return result;
 }
 
-bool without_freedom(const Scene& scene) {
-  const auto model = std::make_shared<const Model>(compile(scene));
+void require_multipliers(const Asked& asked, const Model& model) {
+  for (const std::size_t quantity : asked.quantities)
+    if (kQuantities[quantity] == "multiplier" && model.rows.empty())
+      throw InputError("--of: found \"multiplier\", but the scene has no constraints");
+}
+
+bool without_freedom(const std::shared_ptr<const Model>& model) {
   const auto pfaffian = [](const Row& row) { return row.type == RowType::pfaffian; };
   return std::none_of(model->rows.begin(), model->rows.end(), pfaffian) &&
          analyze_rank(model, given_state(*model)).degrees_of_freedom() == 0;
@@ -126,6 +131,8 @@ void print_advice(const Options& options, const Scene& scene, const Asked& asked
 int advise(const Options& options) {
   const Asked what = asked(options);
   const Scene scene = read_scene(options.scene);
+  const auto model = std::make_shared<const Model>(compile(scene));
+  require_multipliers(what, *model);
   const double end = end_time(options.end, scene);
   pin_to_one_core();
   std::vector<std::string> notices;
@@ -139,7 +146,7 @@ int advise(const Options& options) {
     if (r.agreement[quantity] > what.accuracy)
       print_notice(fmt::format("{:g} cannot be checked: in {} the reference resolves {:.2g}", what.accuracy,
                                kQuantities[quantity], r.agreement[quantity]));
-  const Calibration found = calibrate(Sweep(scene, end, r), r, what, without_freedom(scene));
+  const Calibration found = calibrate(Sweep(scene, end, r), r, what, without_freedom(model));
   print_advice(options, scene, what, r, found);
   return found.reaching.empty() ? kNumericsFailed : kDone;
 }

@@ -137,8 +137,10 @@ class Search {
 double error(const Measured& measured, const Reference& reference, const Asked& asked) {
   if (!measured.ok()) return std::numeric_limits<double>::infinity();
   double largest = 0;
-  for (const std::size_t quantity : asked.quantities)
+  for (const std::size_t quantity : asked.quantities) {
+    if (std::isnan(measured.error[quantity])) return std::numeric_limits<double>::infinity();
     largest = std::max({largest, measured.error[quantity], reference.agreement[quantity]});
+  }
   return largest;
 }
 
@@ -148,7 +150,7 @@ Calibration calibrate(const Sweep& sweep, const Reference& reference, const Aske
     for (const IntegratorEntry& integrator : integrators())
       for (const FormulationEntry& entry : formulations()) {
         const std::string formulation(entry.name);
-        if (integrator.controls_error != controls_error || refuses(integrator, formulation)) continue;
+        if (integrator.controls_error != controls_error || refusal_of(integrator, formulation)) continue;
         if (integrator.analysis == Analysis::kinematics && !kinematics) continue;
         controls_error ? search.by_tolerance(formulation, integrator) : search.by_step(formulation, integrator);
       }

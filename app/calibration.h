@@ -29,7 +29,8 @@ struct Calibration {
 
 Calibration calibrate(const Sweep& sweep, const Reference& reference, const Asked& asked, bool kinematics);
 
-// The largest error of the quantities asked for, no smaller than the reference resolves; infinite for a failure.
+// The largest error of the quantities asked for, no smaller than the reference resolves; infinite for a failure and for
+// what there is none of.
 double error(const Measured& measured, const Reference& reference, const Asked& asked);
 
 }  // namespace poinsot::app

@@ -70,6 +70,19 @@ SweepPlan plan_of(const Options& options) {
           names_given("linear_solver", options.linear_solvers), options.extent().steps, options.extent().tolerances};
 }
 
+// Names that fit each other nowhere: there would be nothing to measure.
+void require_cases(const SweepPlan& plan) {
+  std::string why;
+  for (const std::string& integrator : plan.integrators)
+    for (const std::string& formulation : plan.formulations) {
+      const Refusal* refusal = refusal_of(*find_integrator(integrator), formulation);
+      if (!refusal) return;
+      if (why.empty())
+        why = fmt::format("integrator '{}' refuses formulation '{}': {}", integrator, formulation, refusal->why);
+    }
+  throw InputError(fmt::format("--integrators, --formulations: {}", why));
+}
+
 std::vector<std::string> notes(const Scene& scene, double end, const Reference& r, const Options& options,
                                const SweepPlan& plan, int core) {
   std::vector<std::string> lines{fmt::format("scene: {}, content {:016x}", scene.name, content_hash(scene.source))};
@@ -155,6 +168,7 @@ void measure_scene(const Sweep& sweep, const std::vector<std::vector<Case>>& lev
 int chart(const Options& options) {
   const std::vector<fs::path> files = scene_files(options);
   const SweepPlan plan = plan_of(options);
+  require_cases(plan);
   std::vector<Scene> scenes;
   for (const fs::path& file : files) scenes.push_back(read_scene(file));
   if (!options.end.empty()) (void)end_time(options.end, scenes.front());  // a wrong one, before anything is written

@@ -28,10 +28,14 @@ Standing standing(std::vector<std::string> names, const std::vector<Chart>& char
   return s;
 }
 
+// In the order of the integrators; those no chart has a row of are left out, they refuse all formulations asked for.
 std::vector<Standing> of_integrators(const std::vector<std::string>& integrators, const std::vector<Chart>& charts) {
   std::vector<Standing> all;
-  for (const std::string& name : integrators)
-    all.push_back(standing({name}, charts, [&](const ChartRow& row) { return row.integrator == name; }));
+  for (const std::string& name : integrators) {
+    const auto its = [&](const ChartRow& row) { return row.integrator == name; };
+    if (std::ranges::any_of(charts, [&](const Chart& chart) { return std::ranges::any_of(chart.rows, its); }))
+      all.push_back(standing({name}, charts, its));
+  }
   return all;
 }
 
@@ -39,7 +43,7 @@ std::vector<std::string> method_of(const ChartRow& row) {
   return {row.integrator, row.formulation, row.linear_solver};
 }
 
-// In the order of the integrators; methods no chart has a row of are left out.
+// In the same order and with the same omission.
 std::vector<Standing> of_methods(const std::vector<std::string>& integrators, const std::vector<Chart>& charts) {
   std::vector<std::vector<std::string>> methods;
   for (const std::string& name : integrators)

@@ -14,11 +14,14 @@ std::vector<std::string> names_in(std::string_view option, const std::string& li
   std::vector<std::string> names;
   for (std::size_t begin = 0; begin <= list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
-    names.push_back(list.substr(begin, end - begin));
-    if (std::find(known.begin(), known.end(), names.back()) == known.end()) {
-      throw InputError(fmt::format("{}: found \"{}\", expected one or more of {}, with commas between", option,
-                                   names.back(), fmt::join(known, ", ")));
+    const std::string name = list.substr(begin, end - begin);
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw InputError(fmt::format("{}: found \"{}\", expected one or more of {}, with commas between", option, name,
+                                   fmt::join(known, ", ")));
     }
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      throw InputError(fmt::format("{}: found \"{}\" twice, expected each name once", option, name));
+    names.push_back(name);
     begin = end + 1;
   }
   return names;

@@ -7,7 +7,7 @@
 
 namespace poinsot::app {
 
-// Throws InputError where one is not among the `known`, and says which are.
+// Throws InputError where one is not among the `known`, and says which are; and where one stands twice.
 std::vector<std::string> names_in(std::string_view option, const std::string& list,
                                   const std::vector<std::string>& known);
 

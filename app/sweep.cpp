@@ -24,9 +24,9 @@ std::string Case::method() const {
   return settings.linear_solver == kUsualSolver ? name : fmt::format("{} with {}", name, settings.linear_solver);
 }
 
-bool refuses(const IntegratorEntry& integrator, std::string_view formulation) {
-  return std::any_of(integrator.refuses.begin(), integrator.refuses.end(),
-                     [&](const Refusal& refusal) { return refusal.formulation == formulation; });
+const Refusal* refusal_of(const IntegratorEntry& integrator, std::string_view formulation) {
+  const auto found = std::ranges::find(integrator.refuses, formulation, &Refusal::formulation);
+  return found == integrator.refuses.end() ? nullptr : &*found;
 }
 
 Sweep::Sweep(const Scene& scene, double end, const Reference& reference)
@@ -67,7 +67,7 @@ std::vector<std::vector<Case>> Sweep::cases(const SweepPlan& plan) const {
       const IntegratorEntry& integrator = *find_integrator(name);
       if (level >= (integrator.controls_error ? plan.tolerances.size() : plan.steps.size())) continue;
       for (const std::string& formulation : plan.formulations) {
-        if (refuses(integrator, formulation)) continue;
+        if (refusal_of(integrator, formulation)) continue;
         for (const std::string& linear_solver : plan.linear_solvers) {
           Case one = make_case(formulation, integrator, integrator.controls_error ? 1 : plan.steps[level],
                                integrator.controls_error ? plan.tolerances[level] : 0);

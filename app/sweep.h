@@ -42,7 +42,7 @@ struct SweepPlan {
 inline constexpr int kOutputs = 20;  // output times after 0
 inline const std::string kUsualSolver = Settings{}.linear_solver;
 
-bool refuses(const IntegratorEntry& integrator, std::string_view formulation);
+const Refusal* refusal_of(const IntegratorEntry& integrator, std::string_view formulation);
 
 class Sweep {
  public:

@@ -103,6 +103,11 @@ TEST_F(Advise, SaysWhatIsWrong) {
   says({"--of", "speed"},
        "--of: found \"speed\", expected one or more of position, velocity, acceleration, multiplier, with commas "
        "between");
+  says({"--of", "position,velocity,position"}, "--of: found \"position\" twice, expected each name once");
+  std::string free_body = kPendulum;
+  free_body.erase(free_body.find("\"joints\"") - 4, free_body.rfind(']') + 1 - (free_body.find("\"joints\"") - 4));
+  write("pendulum.json", free_body);
+  says({"--of", "position,multiplier"}, "--of: found \"multiplier\", but the scene has no constraints");
 }
 
 }  // namespace

@@ -117,6 +117,14 @@ TEST_F(Chart, CountsTheFrontsOfSeveralScenes) {
   EXPECT_GT(found, 0);
 }
 
+TEST_F(Chart, CountsOnlyWhatItMeasured) {
+  const Result result = poinsot({"chart", "pendulum.json", "--quick", "--end", "0.5", "--cache", "cache", "--out",
+                                 "out", "--formulations", "rA", "--integrators", "ida,implicit_euler,dop853"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out.find("ida"), std::string::npos) << result.out;  // refuses rA
+  EXPECT_NE(result.out.find("on no front: implicit_euler\n"), std::string::npos) << result.out;
+}
+
 TEST_F(Chart, SaysWhatIsWrong) {
   const auto says = [&](const std::vector<std::string>& arguments, const std::string& message) {
     const Result result = poinsot(arguments);
@@ -127,6 +135,12 @@ TEST_F(Chart, SaysWhatIsWrong) {
   says({"chart", "pendulum.json", "--formulations", "rA,magic"},
        "--formulations: found \"magic\", expected one or more of rA, rp, reps, with commas between");
   const auto before = files();
+  says({"chart", "pendulum.json", "--formulations", "rp,rA,rp"},
+       "--formulations: found \"rp\" twice, expected each name once");
+  says({"chart", "pendulum.json", "--formulations", "rA,reps", "--integrators", "ida"},
+       "--integrators, --formulations: integrator 'ida' refuses formulation 'rA': it needs a vector space of "
+       "coordinates "
+       "with their rates as velocities, which is rp");
   says({"chart", "pendulum.json", "--end", "0"}, "--end: found \"0\", expected a number greater than 0");
   EXPECT_EQ(files(), before);
   write("other.csv", "1,2\n");
