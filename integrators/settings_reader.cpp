@@ -52,7 +52,7 @@ const std::array kEntries{
     SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false},
     SettingEntry{"tolerance", "Newton: 2-norm of the correction", &Settings::tolerance, nullptr, false},
     SettingEntry{"spectral_radius", "generalized_alpha: spectral radius at infinity, at most 1",
-                 &Settings::spectral_radius, nullptr, true},
+                 &Settings::spectral_radius, nullptr, true, 0, 1},
     SettingEntry{"rtol", "relative tolerance of integrators with error control", &Settings::rtol, nullptr, false,
                  kLeastRtol},
     SettingEntry{"atol", "absolute tolerance of integrators with error control", &Settings::atol, nullptr, false},
@@ -81,17 +81,21 @@ std::string one_of(const SettingEntry& entry) {
 std::string allowed_number(const SettingEntry& entry) {
   if (std::holds_alternative<int Settings::*>(entry.member)) return "a whole number, at least 1";
   if (entry.least > 0) return fmt::format("a number, at least {:.2g}", entry.least);
+  if (std::isfinite(entry.most)) return fmt::format("a number from 0 to {:g}", entry.most);
   return entry.zero_allowed ? "a number, at least 0" : "a number greater than 0";
 }
 
+bool in_range(const SettingEntry& entry, double value) {
+  return std::isfinite(value) && value >= entry.least && value <= entry.most &&
+         (value > 0 || (entry.zero_allowed && value == 0));
+}
+
 void set_number(const SettingEntry& entry, double value, const Source& source, Settings& settings) {
-  const bool in_range =
-      std::isfinite(value) && value >= entry.least && (value > 0 || (entry.zero_allowed && value == 0));
+  if (!in_range(entry, value)) source.expected(allowed_number(entry));
   if (const auto* number = std::get_if<double Settings::*>(&entry.member)) {
-    if (!in_range) source.expected(allowed_number(entry));
     settings.*(*number) = value;
   } else {
-    if (!in_range || value != std::floor(value) || value > 1e9) source.expected(allowed_number(entry));
+    if (value != std::floor(value) || value > 1e9) source.expected(allowed_number(entry));
     settings.*std::get<int Settings::*>(entry.member) = static_cast<int>(value);
   }
 }
@@ -143,6 +147,20 @@ std::string value_text(const SettingEntry& entry, const Settings& settings) {
       break;
   }
   return "where the violation is small";
+}
+
+void check_numbers(const Settings& settings) {
+  for (const SettingEntry& entry : kEntries) {
+    double value = 0;
+    if (const auto* number = std::get_if<double Settings::*>(&entry.member))
+      value = settings.*(*number);
+    else if (const auto* count = std::get_if<int Settings::*>(&entry.member))
+      value = settings.*(*count);
+    else
+      continue;
+    if (!in_range(entry, value))
+      throw InputError(fmt::format("{}: found {}, expected {}", entry.key, value, allowed_number(entry)));
+  }
 }
 
 void set_setting(const SettingEntry& entry, std::string_view text, Settings& settings) {

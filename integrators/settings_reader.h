@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,7 @@ struct SettingEntry {
   std::vector<std::string> (*names)();  // what a key with a name may be; nullptr for numbers and switches
   bool zero_allowed;                    // numbers: at least 0 instead of greater than 0
   double least = 0;                     // numbers: at least this, where it is not 0
+  double most = std::numeric_limits<double>::infinity();
 };
 
 std::span<const SettingEntry> setting_entries();
@@ -30,6 +32,9 @@ const SettingEntry* find_setting(std::string_view key);  // nullptr where no ent
 std::string option_name(const SettingEntry& entry);      // "--linear-solver"
 // "rA", "0.001": a setting as it would be written in the file, without quotes.
 std::string value_text(const SettingEntry& entry, const Settings& settings);
+
+// Throws InputError that begins with the key of the first number that is not allowed.
+void check_numbers(const Settings& settings);
 
 // Sets one key from text, as after an option on the command line. Throws InputError that begins with the option's name.
 void set_setting(const SettingEntry& entry, std::string_view text, Settings& settings);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
 
 #include "core/check.h"
@@ -11,6 +10,7 @@
 #include "integrators/consistent.h"
 #include "integrators/initial_state.h"
 #include "integrators/jacobian_policy.h"
+#include "integrators/settings_reader.h"
 #include "integrators/singular_position.h"
 #include "linsolve/registry.h"
 
@@ -23,24 +23,6 @@ const Entry& find(const Entry* entry, std::string_view key, std::string_view nam
   std::string names;
   for (const Entry& e : all) names += (names.empty() ? "" : ", ") + std::string(e.name);
   throw InputError(fmt::format("{} '{}' is not known; there are {}", key, name, names));
-}
-
-void check_numbers(const Settings& s) {
-  const auto positive = [](std::string_view key, double value) {
-    if (!(value > 0) || !std::isfinite(value)) {
-      throw InputError(fmt::format("{} is {}; it must be greater than 0", key, value));
-    }
-  };
-  positive("step", s.step);
-  positive("end", s.end);
-  positive("tolerance", s.tolerance);
-  if (!(s.rtol >= kLeastRtol) || !std::isfinite(s.rtol))
-    throw InputError(fmt::format("rtol is {}; it must be at least {:.2g}", s.rtol, kLeastRtol));
-  positive("atol", s.atol);
-  if (!(s.spectral_radius >= 0 && s.spectral_radius <= 1))
-    throw InputError(fmt::format("spectral_radius is {}; it must be between 0 and 1", s.spectral_radius));
-  if (s.max_iterations < 1)
-    throw InputError(fmt::format("max_iterations is {}; it must be at least 1", s.max_iterations));
 }
 
 const IntegratorEntry& integrator_of(const Settings& settings) {

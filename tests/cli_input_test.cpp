@@ -81,6 +81,9 @@ TEST_F(WrongInput, CommandLineValues) {
   refused("--step", "0", "--step: found \"0\", expected a number greater than 0");
   refused("--step", "-1", "--step: found \"-1\", expected a number greater than 0");
   refused("--rtol", "1e-15", "--rtol: found \"1e-15\", expected a number, at least 2.2e-15");
+  for (const char* radius : {"3", "-1", "1.001"})
+    refused("--spectral-radius", radius,
+            fmt::format("--spectral-radius: found \"{}\", expected a number from 0 to 1", radius));
   refused("--every", "-1", "--every: found \"-1\", expected a number, at least 0");
   refused("--max-iterations", "2.5", "--max-iterations: found \"2.5\", expected a whole number, at least 1");
   for (const char* key : {"analysis", "formulation", "integrator", "linear_solver", "jacobian"}) {
@@ -107,6 +110,8 @@ TEST_F(WrongInput, Configuration) {
                                "poinsot: config.json: /step: found 0, expected a number greater than 0");
   expect_configuration_refused(R"({"rtol": 1e-15})",
                                "poinsot: config.json: /rtol: found 1e-15, expected a number, at least 2.2e-15");
+  expect_configuration_refused(R"({"spectral_radius": 3})",
+                               "poinsot: config.json: /spectral_radius: found 3, expected a number from 0 to 1");
   expect_configuration_refused(R"({"max_iterations": 0})",
                                "poinsot: config.json: /max_iterations: found 0, expected a whole number, at least 1");
   expect_configuration_refused(
