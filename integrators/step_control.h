@@ -60,26 +60,41 @@ double first_step(double h0, double f, double second, int order, double end);
 // dozen: they creep towards a singular position, where less and less of the accelerations is more than rounding, or to
 // where the motion grows without bound. And from a start whose steps do not grow, so many that cover so little of the
 // way would take days to the end: with an atol far below rounding a body at rest asks for its noise to be resolved.
+// Where the errors are noise every other step is rejected, and a hundred times the way is still little.
 class Creeping {
  public:
-  explicit Creeping(double end) : little_(1e-6 * end) {}
+  explicit Creeping(double end) : slow_{1e-6 * end}, noisy_{1e-4 * end} {}
 
   bool tries(double t, double h) {
     tiny_ = h < kTiny * longest_ ? tiny_ + 1 : 0;
-    if (!(t < from_ + little_)) {
-      from_ = t;
-      tried_ = 0;
-    }
-    return tiny_ > kMostTiny || ++tried_ > kMost;
+    slow_.tries(t);
+    noisy_.tries(t);
+    return tiny_ > kMostTiny || slow_.tried > kMost || (noisy_.tried > kMost && noisy_.rejected() > noisy_.tried / 4);
   }
-  void completed(double h) { longest_ = std::max(longest_, h); }
+  void completed(double h) {
+    longest_ = std::max(longest_, h);
+    ++noisy_.completed;
+  }
 
  private:
   static constexpr int kMostTiny = 100, kMost = 10000;
   static constexpr double kTiny = 1e-6;
 
-  double little_, longest_ = 0, from_ = 0;
-  int tiny_ = 0, tried_ = 0;
+  // What was tried since the motion came to where this stretch of it begins.
+  struct Stretch {
+    double length, from = 0;
+    int tried = 0, completed = 0;
+
+    void tries(double t) {
+      if (!(t < from + length)) *this = {length, t};
+      ++tried;
+    }
+    int rejected() const { return tried - completed; }
+  };
+
+  Stretch slow_, noisy_;
+  double longest_ = 0;
+  int tiny_ = 0;
 };
 
 // Error control has come to an end at time t with steps of length h; `cause` is what the last attempt failed of;

@@ -225,17 +225,20 @@ TEST_P(ErrorControl, StopsWhereAForceGrowsWithoutBound) {
 TEST_P(ErrorControl, SaysThatTheTolerancesAskForTooMuch) {
   Settings s = settings(1e-14, 0.5);
   s.atol = 1e-120;
-  if (GetParam().formulation == "rp") {
-    const Recorded r = run(scene_of("double_pendulum"), s);
-    EXPECT_EQ(r.outcome.status.failure, Failure::step_size_too_small);
-    EXPECT_THAT(r.outcome.status.message, HasSubstr("where a body is at rest, atol alone does"));
+  for (const double end : {0.5, 0.01}) {
+    if (GetParam().formulation != "rp") continue;
+    s.end = end;
+    const Outcome outcome = simulate(scene_of("double_pendulum"), s, {});
+    EXPECT_EQ(outcome.status.failure, Failure::step_size_too_small) << end;
+    EXPECT_THAT(outcome.status.message, HasSubstr("where a body is at rest, atol alone does")) << end;
+    EXPECT_LT(outcome.statistics.steps + outcome.statistics.rejected_steps, 30000) << end;
   }
   s.rtol = 1e-15;
   try {
     (void)simulate(scene_of("double_pendulum"), s, {});
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "rtol is 1e-15; it must be at least 2.2e-15");
+    EXPECT_STREQ(error.what(), "rtol: found 1e-15, expected a number, at least 2.2e-15");
   }
 }
 
@@ -320,6 +323,22 @@ TEST(Creeping, TellsStepsThatDoNotGetOn) {
   EXPECT_FALSE(stops(1e-100, 1.1, 20000));  // from a small start
   EXPECT_FALSE(stops(2e-10, 1, 100000));
   EXPECT_TRUE(stops(0.01, 0.9, 1000));  // towards a point
+
+  // Of steps that cover 1e-9 each, every `period`-th is rejected.
+  const auto stops_rejecting = [](int period) {
+    Creeping creeping(1);
+    double t = 0;
+    for (int k = 1; k <= 100000; ++k) {
+      if (creeping.tries(t, 1e-9)) return true;
+      if (k % period == 0) continue;
+      creeping.completed(1e-9);
+      t += 1e-9;
+    }
+    return false;
+  };
+  EXPECT_TRUE(stops_rejecting(2));
+  EXPECT_TRUE(stops_rejecting(3));
+  EXPECT_FALSE(stops_rejecting(5));
 }
 
 TEST(StepController, KeepsWithinItsBounds) {
