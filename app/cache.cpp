@@ -15,7 +15,9 @@ namespace poinsot::app {
 namespace fs = std::filesystem;
 namespace {
 
+// Empty where nothing can be read.
 std::string content(const fs::path& file) {
+  if (fs::is_directory(file)) return {};
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }

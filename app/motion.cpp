@@ -15,13 +15,16 @@
 namespace poinsot::app {
 namespace {
 
-constexpr double kNone = 1e-6;  // of the other kind of motion
+constexpr double kNone = 1e-6;       // of the other kind of motion
+constexpr double kRest = 1e-10;      // of what takes its place then: rounding
+constexpr double kNoLength = 1e-12;  // m: rounding
 
-// Sizes of linear and angular motion; where one is rounding, the other stands in.
-void settle(double& linear, double& angular, double length) {
+// Sizes of linear and angular motion; where one is rounding, the other stands in, and where both are, `usual`, a linear
+// one.
+void settle(double& linear, double& angular, double length, double usual) {
+  if (std::max(linear, length * angular) < kRest * usual) linear = usual;
   if (linear < kNone * length * angular) linear = length * angular;
   if (angular * length < kNone * linear) angular = linear / length;
-  if (linear == 0) linear = angular = 1;
 }
 
 // A multiplier as a force, N.
@@ -91,13 +94,16 @@ Sizes sizes(const Motion& motion, const Model& model) {
       s.angular_acceleration = std::max(s.angular_acceleration, body.wd.norm());
     }
   }
-  if (s.length == 0) s.length = 1;
-  settle(s.velocity, s.angular_velocity, s.length);
-  settle(s.acceleration, s.angular_acceleration, s.length);
+  if (s.length < kNoLength) s.length = 1;
+  const double time = motion.t.back();
+  settle(s.velocity, s.angular_velocity, s.length, s.length / time);
+  settle(s.acceleration, s.angular_acceleration, s.length, s.velocity / time);
   for (const auto& lambda : motion.lambda)
     for (std::size_t row = 0; row < lambda.size(); ++row)
       s.force = std::max(s.force, std::abs(as_force(model.rows[row], lambda[row], s.length)));
-  if (s.force == 0) s.force = 1;
+  double mass = 0;
+  for (const auto& body : model.bodies) mass += body.mass;
+  if (s.force < kRest * mass * s.acceleration) s.force = mass * s.acceleration;
   return s;
 }
 

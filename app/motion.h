@@ -2,12 +2,14 @@
 //
 // Differences are the largest over all output times and bodies (multipliers: constraint rows), relative to the size of
 // what they are differences of, found in the motion that is compared with:
-//   positions      |Δr| / L and the angle of AᵀA', rad         L = max |r|, 1 m where every r is 0
+//   positions      |Δr| / L and the angle of AᵀA', rad         L = max |r|, 1 m where every r is 0 but for rounding
 //   velocities     |Δṙ| / max |ṙ| and |Δω̄| / max |ω̄|
 //   accelerations  |Δr̈| / max |r̈| and |Δω̄̇| / max |ω̄̇|
 //   multipliers    |Δλ| in newtons / max |λ|: moments divided by L, the λ of D, which are forces per length, times L
 // Where there is no motion of one kind (max |ṙ| below 1e-6 L max |ω̄|, or the other way round, which is rounding), the
-// other kind measures both, by way of L.
+// other kind measures both, by way of L. Where there is none of either (below 1e-10 of what follows), L over the time
+// of the motion measures velocities, and the size of velocities over that time accelerations; forces then those that
+// would give the masses such accelerations.
 #pragma once
 
 #include <array>

@@ -40,8 +40,11 @@ std::vector<std::string> scene_waste(const Scene& scene, const Motion& motion) {
     double moved = 0, turned = 0;
     for (const auto& bodies : motion.bodies) {
       const BodyState &now = bodies[b], &first = motion.bodies.front()[b];
-      moved = std::max({moved, (now.r - first.r).norm() / scale.length, now.rd.norm() / scale.velocity});
-      turned = std::max({turned, (now.A - first.A).norm(), now.w.norm() / scale.angular_velocity});
+      // A driver may come back to the same place at rest at every output time: its acceleration gives it away.
+      moved = std::max({moved, (now.r - first.r).norm() / scale.length, now.rd.norm() / scale.velocity,
+                        now.rdd.norm() / scale.acceleration});
+      turned = std::max({turned, (now.A - first.A).norm(), now.w.norm() / scale.angular_velocity,
+                         now.wd.norm() / scale.angular_acceleration});
     }
     const std::string name = fmt::format("'{}'", scene.bodies[b].name);
     if (moved < kStill && turned < kStill)

@@ -92,6 +92,17 @@ TEST_F(Advise, NamesWhatCostsWithoutMattering) {
         << result.out;
 }
 
+// It is at the same place and at rest at each of the times compared.
+TEST_F(Advise, DoesNotTakeAShakenBodyForAStillOne) {
+  std::string scene = kPendulum;
+  scene.insert(scene.rfind('}'), R"--(, "drivers": [{"type": "angle", "bodies": ["ground", "rod"], "axis": [1, 0, 0],
+      "angle": "0.3*sin(20*pi*t)*sin(20*pi*t)"}])--");
+  write("shaken.json", scene);
+  const Result result = advise("shaken.json", {"--accuracy", "1e-3", "--end", "1"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out.find("costs without mattering"), std::string::npos) << result.out;
+}
+
 TEST_F(Advise, SaysWhatIsWrong) {
   write("pendulum.json", kPendulum);
   const auto says = [&](const std::vector<std::string>& arguments, const std::string& message) {

@@ -73,11 +73,43 @@ TEST_F(ReferenceCommand, KeepsItByContent) {
     EXPECT_EQ(test::read(kept()), good);
   }
 
+  const auto name = kept();
+  std::filesystem::remove(name);
+  std::filesystem::create_directory(name);
+  const Result unkept = reference("third.csv");
+  EXPECT_EQ(unkept.status, 0);
+  EXPECT_NE(unkept.err.find("damaged"), std::string::npos) << unkept.err;
+  EXPECT_NE(unkept.err.find("not kept for the next time"), std::string::npos) << unkept.err;
+  EXPECT_EQ(read("third.csv"), read("first.csv"));
+
   std::string heavier = kPendulum;
   heavier.replace(heavier.find("\"mass\": 3"), 9, "\"mass\": 4");
   write("pendulum.json", heavier);
   ASSERT_EQ(reference("heavier.csv").status, 0);
   EXPECT_NE(read("heavier.csv"), read("first.csv"));
+}
+
+TEST_F(ReferenceCommand, TakesRoundingForNoMotion) {
+  write("at_origin.json", R"({"scene": 1, "name": "rotor about its centre, at the origin", "bodies": [
+    {"name": "rotor", "mass": 1, "inertia": [0.1, 0.2, 0.3], "position": [0, 0, 0],
+     "orientation": {"axis": [0.6, 0.64, 0.48], "angle": 1}}],
+    "joints": [{"type": "revolute", "bodies": ["ground", "rotor"], "point": [0.1, 0.2, -0.3], "axis": [0.1, 0.2, -0.3]}],
+    "forces": [{"type": "torque", "body": "rotor", "torque": ["0.1", "0", "0.5"], "frame": "global"}]})");
+  write("at_rest.json", R"({"scene": 1, "name": "mass on a spring, at rest", "gravity": [0, 0, -9.81], "bodies": [
+    {"name": "bob", "mass": 1.3, "inertia": [0.1, 0.2, 0.3], "position": [0, 0, "-1 - 1.3*9.81/70"]}],
+    "forces": [{"type": "spring", "bodies": ["ground", "bob"], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "stiffness": 70,
+                "damping": 0.5, "length": 1}]})");
+  write("drifting.json", R"({"scene": 1, "name": "without any force", "bodies": [
+    {"name": "ball", "mass": 1.3, "inertia": [0.1, 0.1, 0.1], "position": [0.1, 0.2, 0.3], "velocity": [1, 0.3, 0.7],
+     "angular_velocity": [2, 0.1, 7]}]})");
+  for (const std::string scene : {"at_origin", "at_rest", "drifting"}) {
+    const Result result =
+        poinsot({"reference", scene + ".json", "--end", "1", "--cache", "", "--quiet", "--out", scene + "_motion.csv"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto record = read_json(scene + "_motion.json");
+    for (const char* quantity : {"position", "velocity", "acceleration", "multiplier"})
+      EXPECT_LT(record["agreement"][quantity].get<double>(), 1e-9) << scene << ": " << quantity;
+  }
 }
 
 TEST_F(ReferenceCommand, SaysWhyThereIsNone) {
