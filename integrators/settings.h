@@ -12,10 +12,10 @@ enum class Assembly { small, always, never };  // project an initial state that 
 // Below this relative tolerance error control would chase rounding (Hairer's codes set the same bound).
 inline constexpr double kLeastRtol = 10 * std::numeric_limits<double>::epsilon();
 
-// `jacobian` is "exact" although others are cheaper: with implicit Euler over all models "kept" takes 0.70 (tolerance
-// 1e-3) and 0.74 (1e-8) of its instructions, "simplified" 0.75 and 0.74. But "simplified" stops on the double four-bar
-// before a second is over, where "exact" and "kept" do not; and "kept" as the default stopped generalized_alpha (four
-// link, rA, tolerance 1e-9) and spoiled the order of implicit Euler at the default tolerance (free body, reps).
+// `jacobian` is "exact" although others are cheaper: with implicit Euler over all models and formulations "kept" takes
+// 0.65 (tolerance 1e-3) and 0.74 (1e-8) of its instructions, "simplified" 0.73 and 0.75 (commit 4309907). But
+// "simplified" stops on the double four-bar and on Andrews' mechanism before a second is over, where at 1e-3 "exact"
+// and "kept" do not; and "kept" spoils the order of implicit Euler at the default tolerance (free body, reps).
 struct Settings {
   Analysis analysis = Analysis::dynamics;
   std::string formulation = "rA";

@@ -70,7 +70,9 @@ TEST_F(Tables, WritesThePapersTables) {
   for (const std::string& line : lines(read("results/dynamics_speed_up.csv"))) {
     const auto f = fields(line);
     if (f.size() < 3 || !us.contains(f[0] + f[1])) continue;
-    EXPECT_NEAR(std::stod(f[2]), us.at(f[0] + "rp") / us.at(f[0] + f[1]), 0.011) << line;
+    const double of_rp = us.at(f[0] + "rp"), own = us.at(f[0] + f[1]), speed_up = of_rp / own;
+    // Two digits of the speed-up are printed and three of the times, which a busy machine may set far apart.
+    EXPECT_NEAR(std::stod(f[2]), speed_up, 0.0051 + 0.00051 * (1 + speed_up) / own) << line;
   }
 }
 
