@@ -12,10 +12,10 @@
 #include "app/natural_end.h"
 #include "app/options.h"
 #include "app/scene_waste.h"
+#include "app/startable_scene.h"
 #include "app/terminal.h"
 #include "core/expression.h"
 #include "core/input_error.h"
-#include "core/scene_reader.h"
 #include "integrators/initial_state.h"
 #include "integrators/rank.h"
 
@@ -130,7 +130,7 @@ void print_advice(const Options& options, const Scene& scene, const Asked& asked
 
 int advise(const Options& options) {
   const Asked what = asked(options);
-  const Scene scene = read_scene(options.scene);
+  const Scene scene = read_startable_scene(options.scene);
   const auto model = std::make_shared<const Model>(compile(scene));
   require_multipliers(what, *model);
   const double end = end_time(options.end, scene);

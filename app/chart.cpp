@@ -16,9 +16,9 @@
 #include "app/plot.h"
 #include "app/progress.h"
 #include "app/report.h"
+#include "app/startable_scene.h"
 #include "app/terminal.h"
 #include "core/input_error.h"
-#include "core/scene_reader.h"
 
 namespace poinsot::app {
 namespace {
@@ -170,7 +170,7 @@ int chart(const Options& options) {
   const SweepPlan plan = plan_of(options);
   require_cases(plan);
   std::vector<Scene> scenes;
-  for (const fs::path& file : files) scenes.push_back(read_scene(file));
+  for (const fs::path& file : files) scenes.push_back(read_startable_scene(file));
   if (!options.end.empty()) (void)end_time(options.end, scenes.front());  // a wrong one, before anything is written
   make_folder(options.out);
   const int core = pin_to_one_core();

@@ -9,10 +9,10 @@
 #include "app/options.h"
 #include "app/reference.h"
 #include "app/run_record.h"
+#include "app/startable_scene.h"
 #include "app/terminal.h"
 #include "app/trajectory_writer.h"
 #include "core/input_error.h"
-#include "core/scene_reader.h"
 #include "integrators/settings_reader.h"
 
 namespace poinsot::app {
@@ -91,7 +91,7 @@ int run(const Options& options) {
   if (options.digits < 4 || options.digits > 12)
     throw InputError(fmt::format("--digits: found {}, expected a whole number from 4 to 12", options.digits));
   settings.digits = options.digits;
-  const Scene scene = read_scene(options.scene);
+  const Scene scene = read_startable_scene(options.scene);
   settings.end = end_time(options.end, scene);
   Settings every;
   if (!options.every.empty()) set_setting(*find_setting("every"), options.every, every);

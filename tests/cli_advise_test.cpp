@@ -95,6 +95,8 @@ TEST_F(Advise, NamesWhatCostsWithoutMattering) {
 // It is at the same place and at rest at each of the times compared.
 TEST_F(Advise, DoesNotTakeAShakenBodyForAStillOne) {
   std::string scene = kPendulum;
+  scene.insert(scene.find("{\"name\": \"rod\""), R"({"name": "stone", "mass": 1, "inertia": [1, 2, 3],
+      "position": [5, 0, 0], "angular_velocity": [1, 1, 1]}, )");
   scene.insert(scene.rfind('}'), R"--(, "drivers": [{"type": "angle", "bodies": ["ground", "rod"], "axis": [1, 0, 0],
       "angle": "0.3*sin(20*pi*t)*sin(20*pi*t)"}])--");
   write("shaken.json", scene);
@@ -117,6 +119,10 @@ TEST_F(Advise, SaysWhatIsWrong) {
   says({"--of", "position,velocity,position"}, "--of: found \"position\" twice, expected each name once");
   std::string free_body = kPendulum;
   free_body.erase(free_body.find("\"joints\"") - 4, free_body.rfind(']') + 1 - (free_body.find("\"joints\"") - 4));
+  write("conflicting.json", kConflicting);
+  const Result wrong = advise("conflicting.json", {});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_TRUE(wrong.err.starts_with("poinsot: conflicting.json: the constraints conflict: ")) << wrong.err;
   write("pendulum.json", free_body);
   says({"--of", "position,multiplier"}, "--of: found \"multiplier\", but the scene has no constraints");
 }

@@ -143,6 +143,11 @@ TEST_F(Chart, SaysWhatIsWrong) {
        "with their rates as velocities, which is rp");
   says({"chart", "pendulum.json", "--end", "0"}, "--end: found \"0\", expected a number greater than 0");
   EXPECT_EQ(files(), before);
+  write("conflicting.json", kConflicting);
+  const Result wrong = poinsot({"chart", "pendulum.json", "conflicting.json", "--out", "out", "--cache", "cache"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_TRUE(wrong.err.starts_with("poinsot: conflicting.json: the constraints conflict: ")) << wrong.err;
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
   write("other.csv", "1,2\n");
   says({"chart", "pendulum.json", "./pendulum.json"}, "pendulum.json: two tables would be written as pendulum.csv");
 }

@@ -118,6 +118,12 @@ TEST_F(ReferenceCommand, SaysWhyThereIsNone) {
   EXPECT_EQ(none.status, 3);
   EXPECT_TRUE(none.err.starts_with("poinsot: no reference could be computed; ")) << none.err;
   EXPECT_FALSE(std::filesystem::exists(folder() / "motion.csv"));
+  write("conflicting.json", kConflicting);
+  const Result wrong = poinsot({"reference", "conflicting.json", "--cache", "cache", "--out", "motion.csv"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_TRUE(wrong.err.starts_with("poinsot: conflicting.json: the constraints conflict: ")) << wrong.err;
+  EXPECT_EQ(wrong.err.find("dop853"), std::string::npos) << wrong.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"conflicting.json", "overstretched.json", "pendulum.json"}));
   const Result many = poinsot({"reference", "pendulum.json", "--digits", "30"});
   EXPECT_EQ(many.status, 2);
   EXPECT_EQ(many.err, "poinsot: --digits: found 30, expected a whole number from 4 to 12\n");

@@ -117,4 +117,14 @@ inline const char* const kOverstretched = R"({
                "length": "sqrt(13) + (5 - sqrt(13))*t"}]
 })";
 
+// Two constraints that cannot hold together.
+inline const char* const kConflicting = R"({
+  "scene": 1,
+  "name": "conflicting",
+  "bodies": [{"name": "ball", "mass": 1, "inertia": [1, 1, 1], "position": [1, 0, 0]}],
+  "constraints": [
+    {"type": "CD", "bodies": ["ground", "ball"], "c": [1, 0, 0], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "f": 1},
+    {"type": "CD", "bodies": ["ground", "ball"], "c": [1, 0, 0], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "f": "1 + t"}]
+})";
+
 }  // namespace poinsot::test
