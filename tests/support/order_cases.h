@@ -7,6 +7,7 @@
 #include <array>
 
 #include "tests/support/forced_scene.h"
+#include "tests/support/rows_scene.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -39,7 +40,8 @@ inline std::vector<Case> cases(std::string_view formulation) {
                         {"four_link", scene_of("four_link"), 0.8, 0.005},
                         {"double_pendulum", turning("double_pendulum", {0, 0, 1}), 0.8, 0.01},
                         {"slow top", turning("heavy_top", {2.6, -4.2, 1.4}), 0.4, 0.005},
-                        {"forced", forced(), 0.8, 0.01}};
+                        {"forced", forced(), 0.8, 0.01},
+                        {"rows", rows_of_every_kind(), 0.4, 0.005}};
   if (formulation != "reps") all.push_back({"heavy_top", scene_of("heavy_top"), 0.04, 2.5e-4});
   return all;
 }
