@@ -65,6 +65,20 @@ TEST_F(Chart, MeasuresEveryCaseAndFindsTheFront) {
   }
 }
 
+// Also where errors are so large that the panel is cut on the left.
+TEST_F(Chart, ThePictureShowsWhatTheReferenceResolves) {
+  const Result result = poinsot({"chart", "pendulum.json", "--quick", "--end", "20", "--cache", "cache", "--out", "out",
+                                 "--formulations", "rA", "--integrators", "implicit_euler,dop853"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  if (!result.err.empty()) GTEST_SKIP() << result.err;  // no matplotlib
+  const std::string svg = read("out/pendulum.svg");
+  const std::size_t line = svg.find("<g id=\"resolved_position\">");
+  ASSERT_NE(line, std::string::npos);
+  const double x = std::stod(svg.substr(svg.find("d=\"M ", line) + 5));
+  EXPECT_GT(x, 0);
+  EXPECT_LT(x, 360);  // the first of three panels beside one another on 1080 points
+}
+
 TEST_F(Chart, GoesOnWhereItStopped) {
   ASSERT_EQ(chart().status, 0);
   const std::vector<Row> whole = rows();

@@ -28,7 +28,7 @@ def method(row, solvers):
     return f"{row['integrator']} {row['formulation']}" + (f" {row['linear_solver']}" if len(solvers) > 1 else "")
 
 
-def panel(axes, rows, column, title, colours, solvers, styles):
+def panel(axes, rows, column, title, colours, solvers, styles, resolved):
     leaders = []
     for name in dict.fromkeys(key(row) for row in rows):
         points = [row for row in rows if key(row) == name and row[column] and float(row[column]) > 0]
@@ -49,6 +49,8 @@ def panel(axes, rows, column, title, colours, solvers, styles):
                   color="#555555", transform=axes.transAxes)
         return
     axes.set(xscale="log", yscale="log", xlabel=title, ylabel="time, ms")
+    if resolved:
+        axes.axvline(resolved, color="#555555", linewidth=0.9, linestyle="--", gid=f"resolved_{column}")
     axes.invert_xaxis()
     if column in QUANTITIES and axes.get_xlim()[0] > 3:
         axes.set_xlim(left=3)  # what is wrong altogether needs no room
@@ -68,9 +70,7 @@ def draw(rows, notes):
     drawn, solvers = in_order(rows, "integrator"), in_order(rows, "linear_solver")
     figure, axes = pyplot.subplots(2, 3, figsize=(15, 9.6))
     for axis, (column, title) in zip(axes.flat, PANELS):
-        panel(axis, rows, column, title, colours, solvers, styles)
-        if axis.lines and plotting.number(resolved.get(column, "")):
-            axis.axvline(float(resolved[column]), color="#555555", linewidth=0.9, linestyle="--")
+        panel(axis, rows, column, title, colours, solvers, styles, plotting.number(resolved.get(column, "")))
 
     leading = {row["integrator"] for row in rows if any(row[f"front_{q}"] == "1" for q in QUANTITIES)}
     entries = [Line2D([], [], color=colours[name], linewidth=2.5, label=name + (" (front)" if name in leading else ""))
