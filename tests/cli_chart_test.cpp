@@ -68,7 +68,7 @@ TEST_F(Chart, MeasuresEveryCaseAndFindsTheFront) {
 // Also where errors are so large that the panel is cut on the left.
 TEST_F(Chart, ThePictureShowsWhatTheReferenceResolves) {
   const Result result = poinsot({"chart", "pendulum.json", "--quick", "--end", "20", "--cache", "cache", "--out", "out",
-                                 "--formulations", "rA", "--integrators", "implicit_euler,dop853"});
+                                 "--formulations", "rA", "--integrators", "implicit_euler,rattle"});
   ASSERT_EQ(result.status, 0) << result.err;
   if (!result.err.empty()) GTEST_SKIP() << result.err;  // no matplotlib
   const std::string svg = read("out/pendulum.svg");
