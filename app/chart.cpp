@@ -31,13 +31,15 @@ struct Extent {
   std::vector<double> tolerances;
   double longest;
   int repetitions;
+  int digits;  // of the reference
 };
 constexpr double kPatience = 5;
 const Extent kFull{{100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000},
                    {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12},
                    1,
-                   5};
-const Extent kQuick{{100, 300, 1000, 3000, 10000}, {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}, 0.02, 3};
+                   5,
+                   12};
+const Extent kQuick{{100, 300, 1000, 3000, 10000}, {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}, 0.02, 3, 11};
 
 struct Options {
   std::vector<std::string> scenes;
@@ -182,7 +184,8 @@ int chart(const Options& options) {
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const double end = end_time(options.end, scenes[k]);
     std::vector<std::string> said;
-    const Reference r = reference(scenes[k], {end, end / kOutputs}, Cache(options.cache), said);
+    const Reference r =
+        reference(scenes[k], {end, end / kOutputs, options.extent().digits}, Cache(options.cache), said);
     for (const std::string& notice : said) {
       progress.clear();
       if (!options.quiet) print_notice(notice);
@@ -226,7 +229,7 @@ void add_chart(CLI::App& app, int& status) {
   command->add_flag("--all", options->all, "the models that came with the program, too");
   add_models(*command, options->models);
   add_out_folder(*command, options->out, "a CSV, SVG and PNG for each scene, and of several a summary of the fronts");
-  command->add_flag("--quick", options->quick, "a reduced set: fewer and shorter runs");
+  command->add_flag("--quick", options->quick, "a reduced set: fewer and shorter runs, a reference of eleven digits");
   add_end(*command, options->end);
   add_names(*command, "formulation", options->formulations);
   add_names(*command, "integrator", options->integrators);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -21,8 +22,12 @@ struct MethodEntry {
 };
 constexpr MethodEntry kMethods[] = {
     {"dop853", "rA", 1e-13}, {"dop853", "rp", 1e-13}, {"ida", "rp", 1e-12}, {"radau5", "rA", 1e-13}};
-constexpr double kLongest = 30;  // s, of a run: an explicit method on a stiff scene is given up
-constexpr double kApart = 100;   // ratio of a method's two tolerances
+constexpr double kLongest = 30;      // s, of a run: an explicit method on a stiff scene is given up
+constexpr double kApart = 100;       // ratio of a method's two tolerances
+constexpr double kCreeping = 5;      // a tight run this many times as long as the loose one is lost in rounding
+constexpr double kLeastLongest = 1;  // s, that a tight run is always given
+constexpr int kRetreats = 2;
+constexpr double kRetreat = 30;  // times the tolerance: no whole decade, which charts would measure against themselves
 
 Settings settings_of(const Reference::Method& method, double rtol, const ReferenceSettings& asked) {
   Settings settings;
@@ -95,25 +100,57 @@ Reference unpacked(const std::string& data, std::size_t bodies) {
   return reference;
 }
 
+struct Timed {
+  Motion motion;
+  std::string failure;
+  double seconds = 0;
+};
+
+Timed timed(const Scene& scene, const Settings& settings, double longest) {
+  const auto start = std::chrono::steady_clock::now();
+  MotionRun run = run_motion(scene, settings, longest);
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+  return {std::move(run.motion), std::move(run.outcome.status.message), passed.count()};
+}
+
+struct Pair {
+  Reference::Method method;
+  Motion loose, tight;
+};
+
+// The method at its two tolerances. Where the tight one asks for more than rounding leaves (stiff forces), both are
+// taken back until the two runs pass.
+Pair tightest_pair(const Scene& scene, const MethodEntry& entry, const ReferenceSettings& asked) {
+  Pair pair{{entry.integrator, entry.formulation, 0, 0, {}, {}, {}}, {}, {}};
+  Reference::Method& method = pair.method;
+  method.apart.fill(kInfinity);
+  method.tight = std::max(std::pow(10.0, -asked.digits - 1), entry.smallest);
+  for (int retreat = 0;; ++retreat, method.tight *= kRetreat) {
+    method.loose = kApart * method.tight;
+    Timed run = timed(scene, settings_of(method, method.loose, asked), kLongest);
+    const bool hopeless = run.seconds >= kLongest;
+    const double longest = std::clamp(kCreeping * run.seconds, kLeastLongest, kLongest);
+    method.failure = run.failure;
+    pair.loose = std::move(run.motion);
+    if (method.failure.empty()) {
+      run = timed(scene, settings_of(method, method.tight, asked), longest);
+      method.failure = run.failure;
+      pair.tight = std::move(run.motion);
+    }
+    if (method.failure.empty() || hopeless || retreat == kRetreats) return pair;
+  }
+}
+
 Reference compute(const Scene& scene, const ReferenceSettings& asked) {
   const Model model = compile(scene);
   Reference reference;
   std::vector<Motion> tight;
   for (const MethodEntry& entry : kMethods) {
-    Reference::Method method{entry.integrator, entry.formulation, 0, 0, {}, {}, {}};
-    method.tight = std::max(std::pow(10.0, -asked.digits - 1), entry.smallest);
-    method.loose = kApart * method.tight;
-    MotionRun last = run_motion(scene, settings_of(method, method.tight, asked), kLongest);
-    MotionRun before;
-    method.failure = last.outcome.status.message;
-    method.apart.fill(kInfinity);
-    if (method.failure.empty()) {
-      before = run_motion(scene, settings_of(method, method.loose, asked), kLongest);
-      method.failure = before.outcome.status.message;
-    }
-    if (method.failure.empty()) method.apart = difference(before.motion, last.motion, sizes(last.motion, model), model);
-    reference.methods.push_back(method);
-    tight.push_back(std::move(last.motion));
+    Pair pair = tightest_pair(scene, entry, asked);
+    if (pair.method.failure.empty())
+      pair.method.apart = difference(pair.loose, pair.tight, sizes(pair.tight, model), model);
+    reference.methods.push_back(pair.method);
+    tight.push_back(std::move(pair.tight));
   }
   for (std::size_t m = 0; m < reference.methods.size(); ++m)
     if (reference.methods[m].failure.empty() &&

@@ -17,7 +17,8 @@ namespace poinsot::app {
 struct ReferenceSettings {
   double end = 1;    // s
   double every = 1;  // s between output times
-  int digits = 12;   // asked for: the tighter tolerance is 10^−(digits + 1), the other one a hundred times that
+  int digits = 12;   // asked for: the tighter tolerance is 10^−(digits + 1), the other one a hundred times that; a
+                     // method that does not pass so is taken back to larger ones
 };
 
 struct Reference {

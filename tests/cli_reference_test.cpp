@@ -112,6 +112,28 @@ TEST_F(ReferenceCommand, TakesRoundingForNoMotion) {
   }
 }
 
+// A force that jumps from 0 to 2e4 N at 0.1 s lets no method pass at the tolerances asked for.
+TEST_F(ReferenceCommand, WhereTheTolerancesAskForTooMuchGoesBackToSuchAsPass) {
+  write("jump.json",
+        R"~({"scene": 1, "name": "jump",
+    "bodies": [{"name": "sledge", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]}],
+    "forces": [{"type": "force", "body": "sledge", "point": [0, 0, 0],
+                "force": ["1e4*(1 + abs(t - 0.1)/(t - 0.1))", "0", "0"]}]})~");
+  const Result result =
+      poinsot({"reference", "jump.json", "--end", "0.3", "--every", "0.3", "--cache", "", "--out", "motion.csv"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NEAR(std::stod(fields(lines(read("motion.csv")).back())[1]), 1e4 * 0.2 * 0.2, 1e-8);
+  const auto record = read_json("motion.json");
+  int went_back = 0;
+  for (const auto& method : record["methods"]) {
+    EXPECT_EQ(method["failure"], "") << method;
+    const double loose = method["rtol"][0], tight = method["rtol"][1];
+    EXPECT_NEAR(loose / tight, 100, 1e-9) << method;
+    went_back += tight > 1.1e-12;
+  }
+  EXPECT_GT(went_back, 0);
+}
+
 TEST_F(ReferenceCommand, SaysWhyThereIsNone) {
   write("overstretched.json", kOverstretched);
   const Result none = poinsot({"reference", "overstretched.json", "--end", "2", "--cache", "", "--out", "motion.csv"});
