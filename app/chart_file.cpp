@@ -27,6 +27,13 @@ std::string header() {
   return line;
 }
 
+// Names of scenes and messages of failures have lines of their own in no CSV.
+std::string on_one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
 // Shortest text that is read back as the same number; empty for none.
 std::string text(double x) {
   return std::isfinite(x) ? fmt::format("{}", x) : "";
@@ -90,12 +97,6 @@ ChartRow row_of(const std::vector<std::string>& f) {
   return row;
 }
 
-// Messages of failures have a line of their own in no CSV.
-std::string on_one_line(std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  return message;
-}
-
 }  // namespace
 
 bool ChartRow::of(const Case& one) const {
@@ -105,7 +106,8 @@ bool ChartRow::of(const Case& one) const {
 
 ChartFile::ChartFile(fs::path file, std::vector<std::string> notes, bool fresh)
     : file_(std::move(file)), notes_(std::move(notes)) {
-  if (!fresh && fs::exists(file_)) read();
+  for (std::string& note : notes_) note = on_one_line(note);
+  if (!fresh && fs::exists(file_) && !fs::is_directory(file_)) read();
   write_all(nullptr);
   out_.open(file_, std::ios::app | std::ios::binary);
 }

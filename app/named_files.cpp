@@ -10,7 +10,13 @@ namespace fs = std::filesystem;
 namespace {
 
 bool same_file(const fs::path& a, const fs::path& b) {
-  return !a.empty() && !b.empty() && fs::weakly_canonical(fs::absolute(a)) == fs::weakly_canonical(fs::absolute(b));
+  if (a.empty() || b.empty()) return false;
+  std::error_code none;  // a pipe has no path: /dev/stdout stands for itself then
+  const auto path = [&](const fs::path& file) {
+    const fs::path real = fs::weakly_canonical(fs::absolute(file), none);
+    return none ? fs::absolute(file) : real;
+  };
+  return path(a) == path(b);
 }
 
 }  // namespace

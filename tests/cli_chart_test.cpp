@@ -79,6 +79,17 @@ TEST_F(Chart, ThePictureShowsWhatTheReferenceResolves) {
   EXPECT_LT(x, 360);  // the first of three panels beside one another on 1080 points
 }
 
+TEST_F(Chart, TakesAnyNameOfAScene) {
+  std::string scene = kPendulum;
+  scene.replace(scene.find("\"name\": \"pendulum\""), 18, R"("name": "at $5,\n \"only\" $\\frac{ $")");
+  write("pendulum.json", scene);
+  const Result result = chart();
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(result.err.empty() || result.err.find("matplotlib") != std::string::npos) << result.err;
+  EXPECT_EQ(rows().size(), 1u + 2 * 5 + 2 * 5);
+  EXPECT_EQ(chart().status, 0) << "goes on";
+}
+
 TEST_F(Chart, GoesOnWhereItStopped) {
   ASSERT_EQ(chart().status, 0);
   const std::vector<Row> whole = rows();
@@ -155,6 +166,7 @@ TEST_F(Chart, SaysWhatIsWrong) {
        "--integrators, --formulations: integrator 'ida' refuses formulation 'rA': it needs a vector space of "
        "coordinates "
        "with their rates as velocities, which is rp");
+  says({"chart", "pendulum.json", "--out", ""}, "--out: found \"\", expected a folder");
   says({"chart", "pendulum.json", "--end", "0"}, "--end: found \"0\", expected a number greater than 0");
   EXPECT_EQ(files(), before);
   write("conflicting.json", kConflicting);
@@ -163,6 +175,9 @@ TEST_F(Chart, SaysWhatIsWrong) {
   EXPECT_TRUE(wrong.err.starts_with("poinsot: conflicting.json: the constraints conflict: ")) << wrong.err;
   EXPECT_FALSE(std::filesystem::exists(folder() / "out"));
   write("other.csv", "1,2\n");
+  std::filesystem::create_directories(folder() / "taken" / "pendulum.csv");
+  says({"chart", "pendulum.json", "--quick", "--end", "0.1", "--cache", "cache", "--out", "taken"},
+       "taken/pendulum.csv: cannot be written: it is a directory; give a file name");
   says({"chart", "pendulum.json", "./pendulum.json"}, "pendulum.json: two tables would be written as pendulum.csv");
 }
 

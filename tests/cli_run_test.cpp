@@ -151,6 +151,16 @@ TEST_F(Run, ADeviceIsWrittenDirectly) {
   EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
 }
 
+TEST_F(Run, TakesPipesForInputAndOutput) {
+  for (const char* const arguments : {"run pendulum.json --out /dev/stdout", "run /dev/stdin --out /dev/stdout",
+                                      "reference /dev/stdin --out /dev/stdout --every 0.001"}) {
+    const std::string command = fmt::format("cd '{}' && cat pendulum.json | '{}' {} --end 0.01 --quiet | cat > .piped",
+                                            folder().string(), POINSOT_PROGRAM, arguments);
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    EXPECT_EQ(lines(read(".piped")).size(), 12u) << arguments;
+  }
+}
+
 TEST_F(Run, WhatWasComputedBeforeANumericalFailureIsKept) {
   write("overstretched.json", kOverstretched);
   for (const FormulationEntry& formulation : formulations()) {

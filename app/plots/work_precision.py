@@ -83,7 +83,8 @@ def draw(rows, notes):
                 Line2D([], [], color="#555555", linestyle="--", label="resolved by the reference")]
     figure.legend(handles=entries, loc="lower center", bbox_to_anchor=(0.5, 0.035), ncols=7, fontsize=9)
     name = plotting.note(notes, "scene").rsplit(", content", 1)[0]
-    figure.suptitle(f"{name}: time against accuracy, {plotting.note(notes, 'settings').split(';')[0]}", fontsize=13)
+    figure.suptitle(f"{name}: time against accuracy, {plotting.note(notes, 'settings').split(';')[0]}", fontsize=13,
+                    parse_math=False)
     figure.tight_layout(rect=(0, 0.13, 1, 0.99))
     return figure
 
