@@ -35,6 +35,7 @@ struct FigureEntry {
 
 FigureResult order_paper(const FigureRequest& request);
 FigureResult order_integrators(const FigureRequest& request);
+FigureResult order_controlled(const FigureRequest& request);
 FigureResult solution_deltas(const FigureRequest& request);
 FigureResult iterations(const FigureRequest& request);
 FigureResult energy(const FigureRequest& request);

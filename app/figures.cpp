@@ -21,6 +21,8 @@ constexpr FigureEntry kFigures[] = {
     {"order_integrators",
      "orders of every integrator of fixed step in positions, velocities, accelerations, multipliers",
      order_integrators},
+    {"order_controlled", "the same of the one-step methods with error control, driven with equal steps",
+     order_controlled},
     {"solution_deltas", "the paper's double pendulum: Δz from the reference over 5 s", solution_deltas},
     {"iterations", "the paper's two figures of Newton iterations over the step size, exact and simplified", iterations},
     {"energy", "energy of the free double pendulum over 1000 s, every integrator of fixed step", energy},

@@ -7,10 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "core/input_error.h"
-#include "integrators/reactions.h"
 
 namespace poinsot::app {
 namespace {
@@ -49,6 +47,15 @@ bool is_zero(const Expression& f) {
 
 }  // namespace
 
+void MotionRecorder::add(const Sample& sample) {
+  motion_.t.push_back(sample.t);
+  sample.problem.to_bodies(sample.a, motion_.bodies.emplace_back(static_cast<std::size_t>(sample.problem.bodies())));
+  if (!reactions_) reactions_.emplace(sample.problem);
+  reactions_->update(sample);
+  std::vector<double>& lambda = motion_.lambda.emplace_back(sample.problem.model().rows.size());
+  for (std::size_t row = 0; row < lambda.size(); ++row) lambda[row] = reactions_->lambda(static_cast<int>(row));
+}
+
 MotionRun run_motion(const Scene& scene, const Settings& settings, double longest) {
   using Clock = std::chrono::steady_clock;
   struct TooLong {
@@ -56,20 +63,12 @@ MotionRun run_motion(const Scene& scene, const Settings& settings, double longes
   };
   const auto began = Clock::now();
   MotionRun run;
-  std::optional<Reactions> reactions;
+  MotionRecorder recorder(run.motion);
   double energy = 0;
   const auto keep = [&](const Sample& sample) {
     if (std::chrono::duration<double>(Clock::now() - began).count() > longest) throw TooLong{sample.t};
-    Motion& motion = run.motion;
-    motion.t.push_back(sample.t);
-    sample.problem.to_bodies(sample.a, motion.bodies.emplace_back(scene.bodies.size()));
-    if (!reactions) {
-      reactions.emplace(sample.problem);
-      energy = sample.problem.energy();
-    }
-    reactions->update(sample);
-    std::vector<double>& lambda = motion.lambda.emplace_back(sample.problem.model().rows.size());
-    for (std::size_t row = 0; row < lambda.size(); ++row) lambda[row] = reactions->lambda(static_cast<int>(row));
+    if (run.motion.t.empty()) energy = sample.problem.energy();
+    recorder.add(sample);
     run.energy_drift = std::max(run.energy_drift, std::abs(sample.problem.energy() - energy));
   };
   try {

@@ -14,11 +14,13 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "core/body_state.h"
 #include "core/model.h"
+#include "integrators/reactions.h"
 #include "integrators/simulate.h"
 
 namespace poinsot::app {
@@ -30,6 +32,17 @@ struct Motion {
   std::vector<double> t;                       // s
   std::vector<std::vector<BodyState>> bodies;  // by time
   std::vector<std::vector<double>> lambda;     // by time, for every row of the model
+};
+
+// Adds samples of one run to a motion.
+class MotionRecorder {
+ public:
+  explicit MotionRecorder(Motion& motion) : motion_(motion) {}
+  void add(const Sample& sample);
+
+ private:
+  Motion& motion_;
+  std::optional<Reactions> reactions_;
 };
 
 struct MotionRun {

@@ -44,19 +44,19 @@ std::optional<Motion> exact_motion(const Scene& scene, bool driven, double end, 
   return motion_of(scene, settings, result);
 }
 
-bool is_exact(const Curve& curve, const Window& window) {
+bool is_exact(const Curve& curve, const Window& window, double rounding) {
   for (const Point& point : points_in(curve, window))
-    if (!(point.y < kRounding)) return false;
+    if (!(point.y < rounding)) return false;
   return true;
 }
 
-std::optional<Power> fit_order(Curve& curve, const Window& window) {
+std::optional<Power> fit_order(Curve& curve, const Window& window, double rounding) {
   std::vector<double> x, y;
   for (const Point& point : points_in(curve, window)) {
     x.push_back(point.x);
     y.push_back(point.y);
   }
-  if (x.size() < kFewest || is_exact(curve, window)) return std::nullopt;
+  if (x.size() < kFewest || is_exact(curve, window, rounding)) return std::nullopt;
   for (Point& point : curve.points) point.in_fit = window.holds(point.x);
   return fit_power(x, y);
 }

@@ -24,10 +24,10 @@ struct Window {
 
 // Errors that are rounding alone show no order.
 inline constexpr double kRounding = 1e-10;
-bool is_exact(const Curve& curve, const Window& window);
+bool is_exact(const Curve& curve, const Window& window, double rounding = kRounding);
 
 // Marks the points in the window and fits them. Nothing where errors are rounding or fewer than five points are there.
-std::optional<Power> fit_order(Curve& curve, const Window& window);
+std::optional<Power> fit_order(Curve& curve, const Window& window, double rounding = kRounding);
 
 // A line of slope `order` below the fitted points.
 Curve guide(const Curve& curve, int order);

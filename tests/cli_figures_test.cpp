@@ -26,8 +26,8 @@ std::set<std::string> listed(const std::string& help) {
 TEST_F(Figures, HelpListsThem) {
   const Result result = poinsot({"figures", "--help"});
   EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(listed(result.out),
-            (std::set<std::string>{"order_paper", "order_integrators", "solution_deltas", "iterations", "energy"}));
+  EXPECT_EQ(listed(result.out), (std::set<std::string>{"order_paper", "order_integrators", "order_controlled",
+                                                       "solution_deltas", "iterations", "energy"}));
 }
 
 TEST_F(Figures, OrdersFollowFromThePoints) {
@@ -75,6 +75,27 @@ TEST_F(Figures, OrdersFollowFromThePoints) {
   EXPECT_TRUE(result.out.starts_with("order_paper\n  implicit_euler (order 1): exponents ")) << result.out;
 }
 
+TEST_F(Figures, OrdersOfErrorControlledMethods) {
+  const Result result = poinsot({"figures", "order_controlled", "--out", "results"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::set<std::string> methods;
+  int rows = 0;
+  for (const std::string& line : lines(read("results/order_controlled_table.csv"))) {
+    if (line.starts_with('#') || line.starts_with("mechanism,")) continue;
+    const std::size_t quote = line.rfind('"');  // mechanisms may hold commas
+    const auto f = fields(quote == std::string::npos ? line.substr(line.find(',') + 1) : line.substr(quote + 2));
+    ASSERT_EQ(f.size(), 10u) << line;  // integrator, formulation, order, four exponents, neighbours, from, to
+    methods.insert(f[0]);
+    const double order = std::stod(f[2]);
+    for (std::size_t k = 3; k < 7; ++k) EXPECT_NEAR(std::stod(f[k]), order, 0.1) << line;
+    EXPECT_NEAR(std::stod(f[7]), order, 0.1) << line;
+    EXPECT_NEAR(std::stod(f[7].substr(f[7].find(" to ") + 4)), order, 0.1) << line;
+    ++rows;
+  }
+  EXPECT_EQ(methods, (std::set<std::string>{"dopri5", "dop853", "radau5"}));
+  EXPECT_EQ(rows, 15);
+}
+
 TEST_F(Figures, WithoutMatplotlibTheNumbersAreThere) {
   write("matplotlib.py", "raise ImportError\n");
   setenv("PYTHONPATH", folder().c_str(), 1);
@@ -92,7 +113,8 @@ TEST_F(Figures, SaysWhatItDoesNotKnow) {
   const Result result = poinsot({"figures", "order_paper", "portrait", "--out", "results"});
   EXPECT_EQ(result.status, 2);
   EXPECT_EQ(result.err,
-            "poinsot: NAME: found \"portrait\", expected one of order_paper, order_integrators, solution_deltas, "
+            "poinsot: NAME: found \"portrait\", expected one of order_paper, order_integrators, order_controlled, "
+            "solution_deltas, "
             "iterations, energy\n");
   EXPECT_TRUE(files().empty());
 }

@@ -76,13 +76,13 @@ TEST_P(Explicit, OrderIsTheTheoreticalOneInEveryQuantity) {
     Scene scene = c.model == "forced" ? forced() : scene_of(c.model);
     if (c.model == "heavy_top") scene.bodies[0].angular_velocity = {-6, 5, -4};  // slow
     const Settings s = settings(1e-8, c.end);
-    const auto exact = bench(scene, s, dop853_pair()).march(c.end, c.reference);
-    const auto rounding = mean_errors(bench(scene, s, dop853_pair()).march(c.end, 3 * c.reference / 4), exact);
+    const auto exact = quarters(bench(scene, s, dop853_pair()), c.end, c.reference);
+    const auto rounding = mean_errors(quarters(bench(scene, s, dop853_pair()), c.end, 3 * c.reference / 4), exact);
     std::vector<double> steps;
     std::array<std::vector<double>, 4> found;
     for (const int count : c.counts) {
       steps.push_back(c.end / count);
-      const auto e = mean_errors(bench(scene, s, pair()).march(c.end, count), exact);
+      const auto e = mean_errors(quarters(bench(scene, s, pair()), c.end, count), exact);
       for (std::size_t k = 0; k < e.size(); ++k) found[k].push_back(e[k]);
     }
     for (std::size_t k = 0; k < found.size(); ++k) {

@@ -61,7 +61,7 @@ def draw(rows, notes):
     width, height = (8 if columns == 1 else WIDTH * columns) + 0.4, HEIGHT * lines + 1.1
     figure, axes = matplotlib.pyplot.subplots(lines, columns, figsize=(width, height), squeeze=False,
                                               sharey="row" if note(notes, "shared") == "yes" else False)
-    common = all(len(of) > 1 and of == series[panels[0]] for of in series.values())
+    common = len(markers) > 1 or all(len(of) > 1 and of == series[panels[0]] for of in series.values())
     for k, axis in enumerate(axes.flat):
         if k >= len(panels):
             axis.axis("off")
