@@ -205,6 +205,7 @@ int chart(const Options& options) {
     plots.push_back({file.path(), stem});
   }
   progress.clear();
+  if (charts.empty()) return status;
   if (const std::string why = draw("work_precision", plots); !why.empty() && !options.quiet) print_notice(why);
   std::vector<fs::path> written;
   for (const Plot& plot : plots) written.push_back(plot.csv);
@@ -214,7 +215,7 @@ int chart(const Options& options) {
     std::ranges::copy(write_report(fronts_report(plan.integrators, charts, foot), options.out, "fronts"),
                       std::back_inserter(written));
   }
-  if (options.quiet || charts.empty()) return status;
+  if (options.quiet) return status;
   for (const fs::path& file : written) fmt::print("{}\n", file.string());
   fmt::print("{}", fronts_summary(plan.integrators, charts));
   return status;

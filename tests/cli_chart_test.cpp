@@ -188,6 +188,11 @@ TEST_F(Chart, AFailureIsARowAndASceneWithoutReferenceASentence) {
   EXPECT_EQ(result.status, 3);
   EXPECT_NE(result.err.find("overstretched.json: no chart: no reference could be computed"), std::string::npos);
   EXPECT_FALSE(rows().empty());
+
+  const Result none = poinsot({"chart", "overstretched.json", "--quick", "--end", "1.5", "--cache", "cache", "--out",
+                               "none", "--integrators", "dop853"});
+  EXPECT_EQ(none.status, 3);
+  EXPECT_EQ(lines(none.err).size(), 1u) << none.err;  // no word of pictures
 }
 
 }  // namespace
