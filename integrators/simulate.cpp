@@ -105,7 +105,6 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   const std::vector<double> q_start = state.q;
   const std::unique_ptr<LinearSolver> solver = linear_solver.make();
   outcome.status = integrator.make()->run(*problem, *solver, settings, state, observe, outcome.statistics);
-<<<<<<< Updated upstream
   const Failure failure = outcome.status.failure;
   if (settings.analysis == Analysis::dynamics &&
       (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {
@@ -113,8 +112,6 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
     const std::string why = near_singular_position(*problem, rows, q_start, outcome.status.time, state.q);
     if (!why.empty()) outcome.status.message += "; " + why;
   }
-=======
->>>>>>> Stashed changes
   outcome.statistics.linear_solver = solver->picked().empty() ? linear_solver.name : solver->picked();
   return outcome;
 }
