@@ -75,7 +75,7 @@ std::string command_line(const std::string& scene, const Case& one) {
   line += s.analysis == Analysis::kinematics ? " --analysis kinematics" : fmt::format(" --integrator {}", s.integrator);
   line += fmt::format(" --linear-solver {}", s.linear_solver);
   if (one.parameter() == "rtol")
-    line += fmt::format(" --rtol {} --atol {}", s.rtol, s.atol);
+    line += fmt::format(" --rtol {}", s.rtol);
   else
     line += fmt::format(" --step {}/{} --tolerance {}", s.end, std::llround(s.end / s.step), s.tolerance);
   return line + fmt::format(" --end {} --every {}/{}", s.end, s.end, kOutputs);

@@ -34,7 +34,6 @@ Settings settings_of(const Reference::Method& method, double rtol, const Referen
   settings.formulation = method.formulation;
   settings.integrator = method.integrator;
   settings.rtol = rtol;
-  settings.atol = rtol / 100;
   settings.end = asked.end;
   settings.every = asked.every;
   return settings;
@@ -193,8 +192,9 @@ double digits(double difference) {
 std::string why_none(const Reference& reference) {
   std::string sentence = "no reference could be computed";
   for (const Reference::Method& method : reference.methods)
-    sentence += fmt::format("; {} in {}: {}", method.integrator, method.formulation, method.failure);
-  return sentence;
+    sentence += fmt::format("; {} in {}, rtol {:.0e}: {}", method.integrator, method.formulation, method.tight,
+                            method.failure.substr(0, method.failure.find_first_of(":;")));
+  return sentence + "; a run with one of these settings says more";
 }
 
 }  // namespace poinsot::app

@@ -48,7 +48,6 @@ Case Sweep::make_case(const std::string& formulation, const IntegratorEntry& int
   settings.every = end_ / kOutputs;
   if (integrator.controls_error) {
     settings.rtol = rtol;
-    settings.atol = std::stod(fmt::format("{:.3g}", rtol / 100));  // as one would write it
   } else {
     settings.step = end_ / steps;
     // Newton stops where a correction is small beside the accelerations of the motion, by four digits or five: more

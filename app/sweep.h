@@ -37,7 +37,7 @@ struct Measured {
 struct SweepPlan {
   std::vector<std::string> formulations, integrators, linear_solvers;
   std::vector<int> steps;
-  std::vector<double> tolerances;  // rtol; atol is a hundredth of it
+  std::vector<double> tolerances;  // rtol
 };
 inline constexpr int kOutputs = 20;  // output times after 0
 inline const std::string kUsualSolver = Settings{}.linear_solver;

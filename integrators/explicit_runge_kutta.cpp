@@ -37,7 +37,7 @@ class ExplicitRungeKutta final : public Integrator {
   Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
     PhaseClock clock;
-    Method method(pair_, problem, solver, settings.rtol, settings.atol, statistics, clock);
+    Method method(pair_, problem, solver, settings.rtol, settings.absolute_tolerance(), statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
     method.start(0, state);
     return controlled_run(method, pair_.rule, problem, settings, state, observe, statistics, clock);

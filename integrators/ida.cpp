@@ -247,7 +247,7 @@ class Run {
     std::ranges::fill(out, 0.0);
     for (std::size_t k = 0; k < run.sizes_.size(); ++k) {
       run.sizes_[k] = std::max(run.sizes_[k], run.sizes_now_[k]);
-      out[k] = mean / (run.share_ * (run.settings_.atol + run.settings_.rtol * run.sizes_[k]));
+      out[k] = mean / (run.share_ * (run.settings_.absolute_tolerance() + run.settings_.rtol * run.sizes_[k]));
     }
     return 0;
   }

@@ -25,7 +25,8 @@ class Radau5 final : public Integrator {
   Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
     PhaseClock clock;
-    Method method(problem, solver, settings.linear_solver, settings.rtol, settings.atol, statistics, clock);
+    Method method(problem, solver, settings.linear_solver, settings.rtol, settings.absolute_tolerance(), statistics,
+                  clock);
     if (Status status = method.prepare(); !status.ok()) return status;
     method.start(0, state);
     return controlled_run(method, kRule, problem, settings, state, observe, statistics, clock);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace poinsot {
@@ -27,11 +28,13 @@ struct Settings {
   double tolerance = 1e-3;       // Newton: 2-norm of the correction of (a, λ), or of the position in kinematics
   double spectral_radius = 0.8;  // of generalized-α at infinity, 0 to 1
   double rtol = 1e-8;            // integrators with error control
-  double atol = 1e-10;
+  std::optional<double> atol;    // rtol/100 where it is not given
   int max_iterations = 20;
   double every = 0;  // s between outputs; 0: every step
   Assembly assembly = Assembly::small;
   bool reactions = false;  // kinematics: find the multipliers, too (inverse dynamics)
+
+  double absolute_tolerance() const { return atol.value_or(rtol / 100); }
 };
 
 }  // namespace poinsot

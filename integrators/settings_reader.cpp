@@ -94,6 +94,8 @@ void set_number(const SettingEntry& entry, double value, const Source& source, S
   if (!in_range(entry, value)) source.expected(allowed_number(entry));
   if (const auto* number = std::get_if<double Settings::*>(&entry.member)) {
     settings.*(*number) = value;
+  } else if (const auto* optional = std::get_if<std::optional<double> Settings::*>(&entry.member)) {
+    settings.*(*optional) = value;
   } else {
     if (value != std::floor(value) || value > 1e9) source.expected(allowed_number(entry));
     settings.*std::get<int Settings::*>(entry.member) = static_cast<int>(value);
@@ -136,6 +138,8 @@ std::string value_text(const SettingEntry& entry, const Settings& settings) {
   if (const auto* text = std::get_if<std::string Settings::*>(&entry.member)) return settings.*(*text);
   if (const auto* number = std::get_if<double Settings::*>(&entry.member))
     return fmt::format("{}", settings.*(*number));
+  if (std::holds_alternative<std::optional<double> Settings::*>(entry.member))
+    return settings.atol ? fmt::format("{}", *settings.atol) : "rtol/100";
   if (const auto* count = std::get_if<int Settings::*>(&entry.member)) return fmt::format("{}", settings.*(*count));
   if (entry.names) return entry.names()[static_cast<std::size_t>(settings.analysis)];
   switch (settings.assembly) {
@@ -154,6 +158,8 @@ void check_numbers(const Settings& settings) {
     double value = 0;
     if (const auto* number = std::get_if<double Settings::*>(&entry.member))
       value = settings.*(*number);
+    else if (std::holds_alternative<std::optional<double> Settings::*>(entry.member))
+      value = settings.absolute_tolerance();
     else if (const auto* count = std::get_if<int Settings::*>(&entry.member))
       value = settings.*(*count);
     else
@@ -207,6 +213,8 @@ std::string to_json(const Settings& settings) {
   for (const SettingEntry& entry : kEntries) {
     if (const auto* number = std::get_if<double Settings::*>(&entry.member))
       json[entry.key] = settings.*(*number);
+    else if (std::holds_alternative<std::optional<double> Settings::*>(entry.member))
+      json[entry.key] = settings.absolute_tolerance();
     else if (const auto* count = std::get_if<int Settings::*>(&entry.member))
       json[entry.key] = settings.*(*count);
     else if (entry.names)

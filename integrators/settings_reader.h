@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,7 +20,8 @@ namespace poinsot {
 struct SettingEntry {
   std::string_view key;    // in the file; on the command line with dashes, "--linear-solver"
   std::string_view about;  // one line, with the unit
-  std::variant<Analysis Settings::*, std::string Settings::*, double Settings::*, int Settings::*, Assembly Settings::*>
+  std::variant<Analysis Settings::*, std::string Settings::*, double Settings::*, std::optional<double> Settings::*,
+               int Settings::*, Assembly Settings::*>
       member;
   std::vector<std::string> (*names)();  // what a key with a name may be; nullptr for numbers and switches
   bool zero_allowed;                    // numbers: at least 0 instead of greater than 0

@@ -87,6 +87,17 @@ TEST_F(Run, TheRecordSaysWhereTheNumbersComeFrom) {
   EXPECT_TRUE(statistics["violation"].contains("velocity"));
 }
 
+TEST_F(Run, AnAbsoluteToleranceThatIsNotGivenFollowsTheRelativeOne) {
+  const auto atol = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"run", "pendulum.json", "--integrator", "dop853", "--out", "motion.csv"});
+    EXPECT_EQ(poinsot(options).status, 0);
+    return read_json("motion.json")["configuration"]["atol"].get<double>();
+  };
+  EXPECT_DOUBLE_EQ(atol({}), 1e-10);
+  EXPECT_DOUBLE_EQ(atol({"--rtol", "1e-12"}), 1e-14);
+  EXPECT_DOUBLE_EQ(atol({"--rtol", "1e-12", "--atol", "1e-6"}), 1e-6);
+}
+
 TEST_F(Run, TheRecordedConfigurationRepeatsTheRun) {
   ASSERT_EQ(poinsot({"run", "pendulum.json", "--end", "2/3", "--step", "1/300", "--formulation", "rp", "--no-assemble",
                      "--out", "a.csv"})

@@ -50,8 +50,8 @@ TEST_P(Explicit, StopsWhereItWouldCreep) {
 
 Bench<ExplicitStepper> bench(const Scene& scene, const Settings& settings, const RungeKuttaPair& pair) {
   return {scene, settings, [&](Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock) {
-            return std::make_unique<ExplicitStepper>(pair, problem, solver, settings.rtol, settings.atol, statistics,
-                                                     clock);
+            return std::make_unique<ExplicitStepper>(pair, problem, solver, settings.rtol,
+                                                     settings.absolute_tolerance(), statistics, clock);
           }};
 }
 

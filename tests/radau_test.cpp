@@ -16,8 +16,8 @@ INSTANTIATE_TEST_SUITE_P(Formulations, Radau, ::testing::ValuesIn(formulation_na
 
 Bench<RadauStepper> bench(const Scene& scene, const Settings& settings) {
   return {scene, settings, [&](Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock) {
-            return std::make_unique<RadauStepper>(problem, solver, "dense", settings.rtol, settings.atol, statistics,
-                                                  clock);
+            return std::make_unique<RadauStepper>(problem, solver, "dense", settings.rtol,
+                                                  settings.absolute_tolerance(), statistics, clock);
           }};
 }
 

@@ -93,7 +93,6 @@ inline Settings controlled(std::string_view integrator, std::string_view formula
   s.integrator = integrator;
   s.formulation = formulation;
   s.rtol = rtol;
-  s.atol = 1e-2 * rtol;
   s.end = end;
   s.every = every;
   return s;
