@@ -20,7 +20,7 @@
 //   there by an acceleration of order h, which the multipliers show; so v_0 gets the normal part of l/h.
 //
 // Index 3 magnifies the rounding of Φ by 1/h²: below h of some 1e-5 of the motion's time scale its accelerations and
-// multipliers get no better. Stabilized index 2 does so, too, but less.
+// multipliers get no better. Stabilized index 2 magnifies that of G v, by 1/h only.
 #pragma once
 
 #include <memory>

@@ -80,6 +80,18 @@ TEST_P(Geometric, FailureNamesTimeAndPlaceAndKeepsWhatWasComputed) {
   }
 }
 
+// What stabilized index 2 is for: rounding of Φ over h² reaches the multipliers of index 3, not its own.
+TEST_P(Geometric, SmallStepsSpareTheMultipliersOfStabilizedIndex2) {
+  const Scene scene = turning("double_pendulum", {0, 0, 1});
+  const double h = 5e-6, end = 0.005;
+  const std::vector<Snapshot> exact = reference(scene, h, end, end / 10);
+  const auto multipliers = [&](std::string_view integrator) {
+    return errors(motion(scene, settings_of(integrator, GetParam(), h, end, end / 10)), exact)[3];
+  };
+  EXPECT_GT(multipliers("generalized_alpha"), 1e-6);
+  EXPECT_LT(multipliers("generalized_alpha_i2"), 1e-9);
+}
+
 // A spring far too stiff for the step, out of rest: the start must not take its v̈ for the motion's.
 TEST(GeometricStart, UnresolvedSpringStaysBounded) {
   Scene scene = parse_scene(R"json({"scene": 1, "name": "stiff",
