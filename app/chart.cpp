@@ -39,7 +39,7 @@ const Extent kFull{{100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000}
                    1,
                    5,
                    12};
-const Extent kQuick{{100, 300, 1000, 3000, 10000}, {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}, 0.02, 3, 11};
+const Extent kQuick{{100, 300, 1000, 3000, 10000}, {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}, 0.02, 3, 10};
 
 struct Options {
   std::vector<std::string> scenes;
@@ -230,7 +230,7 @@ void add_chart(CLI::App& app, int& status) {
   command->add_flag("--all", options->all, "the models that came with the program, too");
   add_models(*command, options->models);
   add_out_folder(*command, options->out, "a CSV, SVG and PNG for each scene, and of several a summary of the fronts");
-  command->add_flag("--quick", options->quick, "a reduced set: fewer and shorter runs, a reference of eleven digits");
+  command->add_flag("--quick", options->quick, "a reduced set: fewer and shorter runs, a reference of ten digits");
   add_end(*command, options->end);
   add_names(*command, "formulation", options->formulations);
   add_names(*command, "integrator", options->integrators);
