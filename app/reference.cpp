@@ -26,7 +26,7 @@ constexpr double kLongest = 30;      // s, of a run: an explicit method on a sti
 constexpr double kApart = 100;       // ratio of a method's two tolerances
 constexpr double kCreeping = 5;      // a tight run this many times as long as the loose one is lost in rounding
 constexpr double kLeastLongest = 1;  // s, that a tight run is always given
-constexpr int kRetreats = 2;
+constexpr int kRetreats = 2;         // times a method is taken back
 constexpr double kRetreat = 30;  // times the tolerance: no whole decade, which charts would measure against themselves
 
 Settings settings_of(const Reference::Method& method, double rtol, const ReferenceSettings& asked) {

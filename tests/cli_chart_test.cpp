@@ -142,9 +142,10 @@ TEST_F(Chart, CountsTheFrontsOfSeveralScenes) {
   EXPECT_GT(found, 0);
 }
 
+// After so long a time implicit Euler is too far off at every step for any front, however quick it is.
 TEST_F(Chart, CountsOnlyWhatItMeasured) {
-  const Result result = poinsot({"chart", "pendulum.json", "--quick", "--end", "0.5", "--cache", "cache", "--out",
-                                 "out", "--formulations", "rA", "--integrators", "ida,implicit_euler,dop853"});
+  const Result result = poinsot({"chart", "pendulum.json", "--quick", "--end", "20", "--cache", "cache", "--out", "out",
+                                 "--formulations", "rA", "--integrators", "ida,implicit_euler,dop853"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out.find("ida"), std::string::npos) << result.out;  // refuses rA
   EXPECT_NE(result.out.find("on no front: implicit_euler\n"), std::string::npos) << result.out;
@@ -164,8 +165,7 @@ TEST_F(Chart, SaysWhatIsWrong) {
        "--formulations: found \"rp\" twice, expected each name once");
   says({"chart", "pendulum.json", "--formulations", "rA,reps", "--integrators", "ida"},
        "--integrators, --formulations: integrator 'ida' refuses formulation 'rA': it needs a vector space of "
-       "coordinates "
-       "with their rates as velocities, which is rp");
+       "coordinates with their rates as velocities, which is rp");
   says({"chart", "pendulum.json", "--out", ""}, "--out: found \"\", expected a folder");
   says({"chart", "pendulum.json", "--end", "0"}, "--end: found \"0\", expected a number greater than 0");
   EXPECT_EQ(files(), before);
