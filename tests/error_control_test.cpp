@@ -8,6 +8,7 @@
 #include "core/so3.h"
 #include "tests/support/allocations.h"
 #include "tests/support/forced_scene.h"
+#include "tests/support/rows_scene.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -105,6 +106,18 @@ TEST_P(ErrorControl, KnifeEdge) {
   const BodyState body = final_bodies("knife_edge", 1)[0];
   const Vector3 r(c * std::pow(std::sin(w), 2) / (2 * w * w), c * (w - std::sin(2 * w) / 2) / (2 * w * w), 0);
   EXPECT_LT((body.r - r).norm(), bound());
+}
+
+TEST_P(ErrorControl, TakesDriversAndRedundantRows) {
+  for (const Scene& scene : {rows_of_every_kind(), scene_of("four_link"), scene_of("slider_crank_joints")}) {
+    const auto exact = motion(scene, controlled("dop853", "rA", 1e-12, 0.4, 0.1));
+    const Recorded r = run(scene, settings(1e-8, 0.4, 0.1));
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    const Distance d = distance(r.samples, exact);
+    EXPECT_LT(std::max({d.r, d.A, d.rd, d.w}), GetParam().of.growth * 1e-8) << scene.name << ": " << d;
+    EXPECT_LT(r.outcome.statistics.violation.position, 1e-12) << scene.name;
+    EXPECT_LT(r.outcome.statistics.violation.velocity, 1e-11) << scene.name;
+  }
 }
 
 // Or says that the solver refuses its matrix.
