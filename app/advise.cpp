@@ -16,8 +16,8 @@
 #include "app/terminal.h"
 #include "core/expression.h"
 #include "core/input_error.h"
-#include "integrators/initial_state.h"
-#include "integrators/rank.h"
+#include "integrators/start/initial_state.h"
+#include "integrators/start/rank.h"
 
 namespace poinsot::app {
 namespace {

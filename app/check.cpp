@@ -11,8 +11,8 @@
 #include "core/scene_reader.h"
 #include "formulations/derivative_check.h"
 #include "formulations/registry.h"
-#include "integrators/initial_state.h"
-#include "integrators/rank.h"
+#include "integrators/start/initial_state.h"
+#include "integrators/start/rank.h"
 
 namespace poinsot::app {
 namespace {

@@ -20,8 +20,8 @@
 
 #include "core/body_state.h"
 #include "core/model.h"
-#include "integrators/reactions.h"
 #include "integrators/simulate.h"
+#include "integrators/start/reactions.h"
 
 namespace poinsot::app {
 

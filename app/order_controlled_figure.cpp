@@ -9,9 +9,9 @@
 
 #include "app/order_fit.h"
 #include "formulations/registry.h"
-#include "integrators/dop853.h"
-#include "integrators/dopri5.h"
-#include "integrators/equal_steps.h"
+#include "integrators/methods/dop853.h"
+#include "integrators/methods/dopri5.h"
+#include "integrators/stepping/equal_steps.h"
 
 namespace poinsot::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "app/output_file.h"
 #include "core/model.h"
-#include "integrators/reactions.h"
+#include "integrators/start/reactions.h"
 
 namespace poinsot::app {
 

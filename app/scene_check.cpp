@@ -5,8 +5,8 @@
 
 #include "core/check.h"
 #include "formulations/registry.h"
-#include "integrators/consistent.h"
 #include "integrators/settings.h"
+#include "integrators/stepping/consistent.h"
 
 namespace poinsot::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/body_state.h"
-#include "integrators/rank.h"
+#include "integrators/start/rank.h"
 
 namespace poinsot::app {
 

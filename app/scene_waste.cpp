@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "integrators/initial_state.h"
-#include "integrators/rank.h"
+#include "integrators/start/initial_state.h"
+#include "integrators/start/rank.h"
 
 namespace poinsot::app {
 namespace {

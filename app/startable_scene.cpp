@@ -6,7 +6,7 @@
 
 #include "core/input_error.h"
 #include "core/scene_reader.h"
-#include "integrators/initial_state.h"
+#include "integrators/start/initial_state.h"
 
 namespace poinsot::app {
 

@@ -13,7 +13,7 @@
 #include "core/scene_generator.h"
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
-#include "integrators/initial_state.h"
+#include "integrators/start/initial_state.h"
 #include "linsolve/registry.h"
 
 namespace poinsot::bench {

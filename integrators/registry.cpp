@@ -1,16 +1,16 @@
 #include <algorithm>
 #include <iterator>
 
-#include "integrators/dop853.h"
-#include "integrators/dopri5.h"
-#include "integrators/generalized_alpha.h"
-#include "integrators/half_implicit.h"
-#include "integrators/ida.h"
-#include "integrators/implicit_euler.h"
 #include "integrators/integrator.h"
-#include "integrators/kinematics.h"
-#include "integrators/radau5.h"
-#include "integrators/rattle.h"
+#include "integrators/methods/dop853.h"
+#include "integrators/methods/dopri5.h"
+#include "integrators/methods/generalized_alpha.h"
+#include "integrators/methods/half_implicit.h"
+#include "integrators/methods/ida.h"
+#include "integrators/methods/implicit_euler.h"
+#include "integrators/methods/kinematics.h"
+#include "integrators/methods/radau5.h"
+#include "integrators/methods/rattle.h"
 
 namespace poinsot {
 namespace {

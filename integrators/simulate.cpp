@@ -7,11 +7,11 @@
 #include "core/check.h"
 #include "core/input_error.h"
 #include "formulations/registry.h"
-#include "integrators/consistent.h"
-#include "integrators/initial_state.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
-#include "integrators/singular_position.h"
+#include "integrators/start/initial_state.h"
+#include "integrators/start/singular_position.h"
+#include "integrators/stepping/consistent.h"
 #include "linsolve/registry.h"
 
 namespace poinsot {

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <utility>
 
-#include "linsolve/block_kernels.h"
+#include "linsolve/block/kernels.h"
 
 namespace poinsot::dense {
 

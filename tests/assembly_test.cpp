@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "core/input_error.h"
-#include "integrators/initial_state.h"
+#include "integrators/start/initial_state.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {

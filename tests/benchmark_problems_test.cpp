@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "core/so3.h"
-#include "integrators/initial_state.h"
-#include "integrators/rank.h"
+#include "integrators/start/initial_state.h"
+#include "integrators/start/rank.h"
 #include "tests/support/benchmark_references.h"
 #include "tests/support/simulation.h"
 

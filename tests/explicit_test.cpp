@@ -4,8 +4,8 @@
 #include <array>
 #include <memory>
 
-#include "integrators/dop853.h"
-#include "integrators/dopri5.h"
+#include "integrators/methods/dop853.h"
+#include "integrators/methods/dopri5.h"
 #include "tests/support/fixed_steps.h"
 #include "tests/support/forced_scene.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
-#include "integrators/initial_state.h"
+#include "integrators/start/initial_state.h"
 #include "linsolve/registry.h"
 #include "linsolve_systems.h"
 

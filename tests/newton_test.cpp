@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "core/scene_generator.h"
-#include "integrators/initial_state.h"
+#include "integrators/start/initial_state.h"
 #include "tests/support/allocations.h"
 #include "tests/support/simulation.h"
 

@@ -1,7 +1,7 @@
 // Radau IIA: orders of every quantity, stiff scenes.
 #include <gmock/gmock.h>
 
-#include "integrators/dop853.h"
+#include "integrators/methods/dop853.h"
 #include "tests/support/fixed_steps.h"
 #include "tests/support/forced_scene.h"
 #include "tests/support/rows_scene.h"

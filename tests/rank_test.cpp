@@ -1,5 +1,5 @@
 // Degrees of freedom, dependent rows with what they depend on, singular positions.
-#include "integrators/rank.h"
+#include "integrators/start/rank.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "core/scene_generator.h"
-#include "integrators/initial_state.h"
+#include "integrators/start/initial_state.h"
 #include "tests/support/scene_transform.h"
 
 namespace poinsot::test {

@@ -1,6 +1,6 @@
 // Reactions: statics by hand, the torque of a driver, Newton's and Euler's equations of every body with the reactions
 // of its joints, sharing where joints are redundant, and the multipliers of the reference.
-#include "integrators/reactions.h"
+#include "integrators/start/reactions.h"
 
 #include <gtest/gtest.h>
 

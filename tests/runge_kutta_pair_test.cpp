@@ -9,8 +9,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "integrators/dop853.h"
-#include "integrators/dopri5.h"
+#include "integrators/methods/dop853.h"
+#include "integrators/methods/dopri5.h"
 
 namespace poinsot::test {
 namespace {

@@ -6,8 +6,8 @@
 #include "core/model.h"
 #include "core/scene_reader.h"
 #include "core/scene_writer.h"
-#include "integrators/initial_state.h"
-#include "integrators/rank.h"
+#include "integrators/start/initial_state.h"
+#include "integrators/start/rank.h"
 
 namespace poinsot {
 namespace {

@@ -1,5 +1,5 @@
 // The stabilized index-2 system: its matrix against differences of its residual, and that the motion satisfies it.
-#include "integrators/stabilized_index2.h"
+#include "integrators/stepping/stabilized_index2.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // What error control is made of: the times of samples, the length of the next step, and when a run does not get on.
-#include "integrators/step_control.h"
+#include "integrators/stepping/step_control.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "integrators/sample_times.h"
+#include "integrators/stepping/sample_times.h"
 
 namespace poinsot::test {
 namespace {

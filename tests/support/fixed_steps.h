@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "integrators/equal_steps.h"
+#include "integrators/stepping/equal_steps.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {

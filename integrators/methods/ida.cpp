@@ -1,0 +1,295 @@
+#include "integrators/methods/ida.h"
+
+#include <ida/ida.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_linearsolver.h>
+#include <sundials/sundials_matrix.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "integrators/stepping/consistent_point.h"
+#include "integrators/stepping/observe.h"
+#include "integrators/stepping/sample_times.h"
+#include "integrators/stepping/stabilized_index2.h"
+#include "integrators/stepping/step_control.h"
+#include "integrators/stepping/vectors.h"
+#include "linsolve/registry.h"
+
+namespace poinsot {
+namespace {
+
+// IDA takes a hundred steps where a method of high order takes one, with errors of one sign: it is asked for a tenth of
+// the tolerance, so that errors at the end of a run are comparable. Where that is below the rounding of the velocities
+// its steps shrink to nothing; then it goes on with the tolerance itself.
+constexpr double kShare = 0.1;
+// Newton's corrections end below this part of the tolerance. IDA's own third makes more steps fail than it saves.
+constexpr double kNewton = 0.1;
+
+// What IDA asks its matrix and its linear solver for: nothing but to solve, because the matrix is written and factored
+// when IDA wants a new one. Both are empty shells around the run.
+SUNMatrix_ID matrix_id(SUNMatrix) {
+  return SUNMATRIX_CUSTOM;
+}
+int zero_matrix(SUNMatrix) {
+  return 0;
+}
+SUNLinearSolver_Type solver_type(SUNLinearSolver) {
+  return SUNLINEARSOLVER_DIRECT;
+}
+SUNLinearSolver_ID solver_id(SUNLinearSolver) {
+  return SUNLINEARSOLVER_CUSTOM;
+}
+int nothing_to_do(SUNLinearSolver) {
+  return SUNLS_SUCCESS;
+}
+int already_factored(SUNLinearSolver, SUNMatrix) {
+  return SUNLS_SUCCESS;
+}
+
+template <class T, void (*release)(T)>
+struct Release {
+  void operator()(T x) const { release(x); }
+};
+template <class T, void (*release)(T)>
+using Owned = std::unique_ptr<std::remove_pointer_t<T>, Release<T, release>>;
+
+void free_context(SUNContext context) {
+  SUNContext_Free(&context);
+}
+void free_ida(void* ida) {
+  IDAFree(&ida);
+}
+
+class Run {
+ public:
+  Run(Problem& problem, LinearSolver& solver, const Settings& settings, const State& state, const Observer& observe,
+      Statistics& statistics)
+      : problem_(problem),
+        settings_(settings),
+        observe_(observe),
+        statistics_(statistics),
+        form_(problem),
+        system_(problem, solver, statistics, clock_),
+        point_solver_(find_linear_solver(settings.linear_solver)->make()),
+        points_(problem, *point_solver_, statistics, clock_),
+        sizes_(2 * static_cast<std::size_t>(problem.nv())),
+        sizes_now_(sizes_.size()),
+        at_(points_.make(0, state)),
+        next_(points_.make()) {
+    SUNContext context = nullptr;
+    check(SUNContext_Create(nullptr, &context) == 0, "SUNDIALS gives a context");
+    context_.reset(context);
+    y_.reset(N_VNew_Serial(form_.size(), context));
+    y_dot_.reset(N_VNew_Serial(form_.size(), context));
+    inner_.reset(N_VNew_Serial(form_.size(), context));
+    matrix_.reset(SUNMatNewEmpty(context));
+    linear_.reset(SUNLinSolNewEmpty(context));
+    ida_.reset(IDACreate(context));
+    check(y_ && y_dot_ && inner_ && matrix_ && linear_ && ida_, "SUNDIALS gives its objects");
+    matrix_->ops->getid = matrix_id;
+    matrix_->ops->zero = zero_matrix;
+    linear_->content = this;
+    linear_->ops->gettype = solver_type;
+    linear_->ops->getid = solver_id;
+    linear_->ops->initialize = nothing_to_do;
+    linear_->ops->setup = already_factored;
+    linear_->ops->solve = solve;
+  }
+
+  Status prepare(const State& state) {
+    if (Status status = system_.prepare(form_.pattern(), form_.unknowns()); !status.ok()) return status;
+    if (Status status = points_.prepare(); !status.ok()) return status;
+    form_.start(state.q, state.v, state.a, state.lambda, values(y_.get()), values(y_dot_.get()));
+    void* ida = ida_.get();
+    const auto done = [](int flag) { check(flag == IDA_SUCCESS, "IDA accepts what it is given"); };
+    done(IDAInit(ida, residual, 0, y_.get(), y_dot_.get()));
+    done(IDASetErrHandlerFn(ida, keep_silent, nullptr));
+    done(IDASetUserData(ida, this));
+    done(IDAWFtolerances(ida, weights));
+    done(IDASetLinearSolver(ida, linear_.get(), matrix_.get()));
+    done(IDASetJacFn(ida, jacobian));
+    done(IDASetNonlinConvCoef(ida, kNewton));
+    done(IDASetStopTime(ida, settings_.end));
+    return {};
+  }
+
+  Status integrate() {
+    clock_.start();
+    points_.stand(at_);
+    give_out();
+    const Status status = advance();
+    count();
+    finish(clock_, statistics_);
+    return status;
+  }
+
+  void give(State& state) const { points_.give(at_, state); }
+
+ private:
+  using Vector = Owned<N_Vector, N_VDestroy>;
+
+  Status advance() {
+    SampleTimes times(settings_.every, settings_.end);
+    Creeping creeping(settings_.end);
+    double t = 0;
+    while (t < settings_.end) {
+      if (IDASolve(ida_.get(), settings_.end, &t, y_.get(), y_dot_.get(), IDA_ONE_STEP) < 0) {
+        if (Status status = go_on(); !status.ok()) return status;
+        continue;
+      }
+      ++statistics_.steps;
+      double h = 0;
+      IDAGetLastStep(ida_.get(), &h);
+      if (creeping.tries(t, h)) return step_too_small(t, h, {});
+      creeping.completed(h);
+      if (problem_.has_discrete_state()) accept(t);
+      for (; settings_.every > 0 && times.next() < t; times.pass()) {
+        if (Status status = stand_at(times.next()); !status.ok()) return status;
+        give_out();
+      }
+      if (settings_.every == 0 || times.next() == t) {
+        times.pass();
+        if (Status status = stand_at(t); !status.ok()) return status;
+        give_out();
+      }
+    }
+    return {};
+  }
+
+  // After a failure of IDA: again from the last point, at the tolerance itself.
+  Status go_on() {
+    double t = 0, h = 0;
+    IDAGetCurrentTime(ida_.get(), &t);
+    IDAGetCurrentStep(ida_.get(), &h);
+    if (t > at_.t) {
+      if (Status status = stand_at(t); !status.ok()) return status;
+    }
+    if (share_ == 1) return step_too_small(t, h, linear_status_);
+    share_ = 1;
+    count();
+    form_.start(span(at_.q), span(at_.v), points_.a(at_), points_.lambda(at_), values(y_.get()), values(y_dot_.get()));
+    check(IDAReInit(ida_.get(), t, y_.get(), y_dot_.get()) == IDA_SUCCESS, "IDA starts anew");
+    return {};
+  }
+
+  void count() {
+    long newton = 0, error_tests = 0, failures = 0;
+    IDAGetNumNonlinSolvIters(ida_.get(), &newton);
+    IDAGetNumErrTestFails(ida_.get(), &error_tests);
+    IDAGetNumStepSolveFails(ida_.get(), &failures);
+    statistics_.newton_iterations += newton;
+    statistics_.rejected_steps += error_tests + failures;
+  }
+
+  // Makes the motion at a time within the last step the state.
+  Status stand_at(double t) {
+    check(IDAGetDky(ida_.get(), t, 0, inner_.get()) == IDA_SUCCESS, "the time lies within IDA's last step");
+    const std::span<const double> y = values(inner_.get());
+    next_.t = t;
+    std::ranges::copy(form_.q(y), next_.q.begin());
+    std::ranges::copy(form_.v(y), next_.v.begin());
+    if (Status status = points_.complete(next_); !status.ok()) return status;
+    std::swap(at_, next_);
+    return {};
+  }
+
+  // Turns of torsion springs; no formulation IDA is used with rewrites its coordinates.
+  void accept(double t) {
+    const std::span<double> y = values(y_.get());
+    const std::size_t nv = static_cast<std::size_t>(problem_.nv());
+    problem_.set_position(t, form_.q(y));
+    problem_.set_velocity(form_.v(y));
+    const bool rewritten = problem_.accept(t, y.first(nv), y.subspan(nv, nv), values(y_dot_.get()).subspan(nv, nv));
+    check(!rewritten, "coordinates of a vector space stay what they are");
+  }
+
+  void give_out() {
+    clock_.lap(Phase::other);
+    sample(observe_, problem_, at_.t, span(at_.q), span(at_.v), points_.a(at_), points_.lambda(at_), statistics_);
+    clock_.skip();
+  }
+
+  // IDA's callbacks: 0 done, 1 not possible here, try a smaller step.
+  static Run& of(void* user) { return *static_cast<Run*>(user); }
+  static std::span<double> values(N_Vector x) {
+    return {N_VGetArrayPointer(x), static_cast<std::size_t>(N_VGetLength(x))};
+  }
+  static int residual(double t, N_Vector y, N_Vector y_dot, N_Vector F, void* user) {
+    const std::span<double> out = values(F);
+    of(user).form_.residual(t, values(y), values(y_dot), out);
+    return std::ranges::all_of(out, [](double x) { return std::isfinite(x); }) ? 0 : 1;
+  }
+  static int jacobian(double t, double alpha, N_Vector y, N_Vector y_dot, N_Vector, SUNMatrix, void* user, N_Vector,
+                      N_Vector, N_Vector) {
+    Run& run = of(user);
+    run.linear_status_ = run.system_.refresh(t, [&](std::span<const int> slots, std::span<double> matrix) {
+      run.form_.assemble(t, alpha, values(y), values(y_dot), slots, matrix);
+    });
+    return run.linear_status_.ok() ? 0 : 1;
+  }
+  static int solve(SUNLinearSolver shell, SUNMatrix, N_Vector x, N_Vector b, double) {
+    Run& run = of(shell->content);
+    std::ranges::copy(values(b), values(x).begin());
+    double t = 0;
+    IDAGetCurrentTime(run.ida_.get(), &t);
+    run.linear_status_ = run.system_.solve(t, values(x));
+    return run.linear_status_.ok() ? 0 : 1;
+  }
+  // IDA's norm is sqrt(Σ (w y)²/n) over all unknowns; ours is over positions and velocities. Sizes are the largest so
+  // far: a tolerance that shrinks wherever a body pauses throws a multistep method back to small steps of order 1.
+  static int weights(N_Vector y, N_Vector w, void* user) {
+    Run& run = of(user);
+    const std::span<double> out = values(w);
+    component_sizes(run.problem_, run.form_.q(values(y)), run.form_.v(values(y)), run.sizes_now_);
+    const double mean = std::sqrt(static_cast<double>(out.size()) / static_cast<double>(run.sizes_.size()));
+    std::ranges::fill(out, 0.0);
+    for (std::size_t k = 0; k < run.sizes_.size(); ++k) {
+      run.sizes_[k] = std::max(run.sizes_[k], run.sizes_now_[k]);
+      out[k] = mean / (run.share_ * (run.settings_.absolute_tolerance() + run.settings_.rtol * run.sizes_[k]));
+    }
+    return 0;
+  }
+  static void keep_silent(int, const char*, const char*, char*, void*) {}
+
+  Problem& problem_;
+  const Settings& settings_;
+  const Observer& observe_;
+  Statistics& statistics_;
+  PhaseClock clock_;
+  StabilizedIndex2 form_;
+  TimedSystem system_;
+  std::unique_ptr<LinearSolver> point_solver_;
+  ConsistentPoints points_;
+  std::vector<double> sizes_, sizes_now_;
+  Point at_, next_;  // the last point given out, and the next one while it is made
+  Status linear_status_;
+  double share_ = kShare;  // of the tolerance
+
+  Owned<SUNContext, free_context> context_;
+  Vector y_, y_dot_, inner_;
+  Owned<SUNMatrix, SUNMatFreeEmpty> matrix_;
+  Owned<SUNLinearSolver, SUNLinSolFreeEmpty> linear_;
+  std::unique_ptr<void, Release<void*, free_ida>> ida_;
+};
+
+class Ida final : public Integrator {
+ public:
+  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+             Statistics& statistics) override {
+    Run run(problem, solver, settings, state, observe, statistics);
+    if (Status status = run.prepare(state); !status.ok()) return status;
+    const Status status = run.integrate();
+    run.give(state);
+    return status;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_ida() {
+  return std::make_unique<Ida>();
+}
+
+}  // namespace poinsot

@@ -1,0 +1,211 @@
+#include "integrators/start/initial_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/input_error.h"
+#include "core/so3.h"
+#include "formulations/registry.h"
+#include "integrators/start/rank.h"
+#include "integrators/stepping/consistent.h"
+
+namespace poinsot {
+namespace {
+
+// Positions off by more than this part of the mechanism's size are a mistake of the scene rather than its rounding.
+constexpr double kNearlyRight = 1e-2;
+
+double size_of(const std::vector<BodyState>& states) {
+  double size = 1;
+  for (const BodyState& state : states) size = std::max(size, state.r.cwiseAbs().maxCoeff());
+  return size;
+}
+
+class Assembler {
+ public:
+  Assembler(const std::shared_ptr<const Model>& model, const Settings& settings)
+      : model_(model), settings_(settings), given_(given_state(*model)) {}
+
+  InitialState run() {
+    result_.bodies = given_;
+    before_ = violation(model_, given_);
+    refuse_if_far();
+    result_.status = project();
+    if (result_.status.failure == Failure::singular_matrix) {
+      set_dependent_rows_aside();
+      if (!result_.dropped.empty()) result_.status = project();
+    }
+    if (result_.status.failure == Failure::inconsistent_state) {
+      throw InputError(
+          fmt::format("the constraints cannot be satisfied together near the given pose; the largest "
+                      "violation is that of {}; `poinsot check` names conflicting constraints",
+                      describe_row(*model_, before_.position_row)));
+    }
+    if (result_.status.ok()) {
+      refuse_conflicts();
+      tell_what_moved();
+    }
+    return std::move(result_);
+  }
+
+ private:
+  bool off_position() const { return before_.position > kSatisfied; }
+  bool off_velocity() const { return before_.velocity > kSatisfied; }
+
+  void refuse_if_far() const {
+    if (settings_.assembly == Assembly::never && (off_position() || off_velocity())) {
+      const bool position = off_position();
+      throw InputError(fmt::format("the initial {} violates {} by {:.3g}; allowed with --no-assemble: {:.0e}",
+                                   position ? "pose" : "velocity",
+                                   describe_row(*model_, position ? before_.position_row : before_.velocity_row),
+                                   position ? before_.position : before_.velocity, kSatisfied));
+    }
+    const double limit = kNearlyRight * size_of(given_);
+    if (settings_.assembly == Assembly::small && before_.position > limit) {
+      throw InputError(
+          fmt::format("the initial pose violates {} by {:.3g}, more than the {:.3g} that is put right "
+                      "unasked; correct the scene, or have it projected onto the constraints with --assemble",
+                      describe_row(*model_, before_.position_row), before_.position, limit));
+    }
+  }
+
+  // Position and velocity where they are off; in any case one factorization, which tells a singular system.
+  Status project() {
+    const std::unique_ptr<Problem> problem = find_formulation("rA")->make(model_, result_.dropped);
+    std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
+    check(problem->from_bodies(given_, q, v).ok(), "rA represents every orientation");
+    Consistent consistent(*problem, settings_.linear_solver);
+    if (off_position()) {
+      if (Status status = consistent.project_position(*problem, 0, q); !status.ok()) return status;
+    }
+    problem->set_position(0, q);
+    problem->set_velocity(v);
+    // a moved pose moves G, and the velocities with it
+    if (off_velocity() || off_position()) {
+      if (Status status = consistent.project_velocity(*problem, 0, v); !status.ok()) return status;
+    }
+    std::vector<double> a(v.size()), lambda(static_cast<std::size_t>(problem->nc()));
+    if (Status status = consistent.accelerations(*problem, 0, a, lambda); !status.ok()) return status;
+    if (off_velocity() || off_position()) {
+      problem->to_bodies(a, result_.bodies);
+    } else {
+      result_.a = std::move(a), result_.lambda = std::move(lambda);
+    }
+    return {};
+  }
+
+  void set_dependent_rows_aside() {
+    const RankAnalysis analysis = analyze_rank(model_, given_);
+    result_.dropped = analysis.dependent_rows();
+    if (analysis.singular_position()) {
+      result_.notices.push_back(
+          fmt::format("the initial pose is a singular position of the mechanism: {} independent "
+                      "constraint rows here, {} beside it",
+                      analysis.rank_here, analysis.rank));
+    }
+    if (result_.dropped.empty()) return;
+    std::string names;
+    for (std::size_t k = 0; k < result_.dropped.size() && k < 6; ++k) {
+      names += (k ? ", " : "") + describe_row(*model_, result_.dropped[k]);
+    }
+    if (result_.dropped.size() > 6) names += ", ...";
+    result_.notices.push_back(fmt::format("{} of {} constraint rows depend on the others and are set aside: {}",
+                                          result_.dropped.size(), model_->rows.size(), names));
+  }
+
+  // Rows set aside must hold where the others do.
+  void refuse_conflicts() const {
+    if (result_.dropped.empty()) return;
+    const Violation after = violation(model_, result_.bodies);
+    const double limit = 1e-6 * size_of(given_);
+    if (after.position <= limit && after.velocity <= limit) return;
+    const bool position = after.position > limit;
+    throw InputError(
+        fmt::format("the constraints conflict: with the others satisfied, {} is still violated by {:.3g} "
+                    "({}); `poinsot check` names what it depends on",
+                    describe_row(*model_, position ? after.position_row : after.velocity_row),
+                    position ? after.position : after.velocity, position ? "position" : "velocity"));
+  }
+
+  void tell_what_moved() {
+    double moved = 0, turned = 0, velocity = 0, spin = 0;
+    std::size_t body = 0;
+    for (std::size_t b = 0; b < given_.size(); ++b) {
+      const BodyState &x = given_[b], &y = result_.bodies[b];
+      const double dr = (y.r - x.r).norm();
+      const double turn = 2 * std::asin(std::min(1.0, (y.A - x.A).norm() / std::sqrt(8.0)));
+      if (std::max(dr, turn) > std::max(moved, turned)) body = b;
+      moved = std::max(moved, dr);
+      turned = std::max(turned, turn);
+      velocity = std::max(velocity, (y.rd - x.rd).norm());
+      spin = std::max(spin, (y.w - x.w).norm());
+    }
+    if (off_position()) {
+      result_.notices.push_back(fmt::format(
+          "initial pose assembled: {} was violated by {:.3g}; the bodies moved by up to {:.3g} m and turned "
+          "by up to {:.3g} rad, '{}' most",
+          describe_row(*model_, before_.position_row), before_.position, moved, turned, model_->bodies[body].name));
+    }
+    if (off_velocity()) {
+      result_.notices.push_back(
+          fmt::format("initial velocities assembled: {} was violated by {:.3g}; the velocities "
+                      "changed by up to {:.3g} m/s and {:.3g} rad/s",
+                      describe_row(*model_, before_.velocity_row), before_.velocity, velocity, spin));
+    }
+  }
+
+  std::shared_ptr<const Model> model_;
+  const Settings& settings_;
+  std::vector<BodyState> given_;
+  Violation before_;
+  InitialState result_;
+};
+
+}  // namespace
+
+std::vector<BodyState> given_state(const Model& model) {
+  std::vector<BodyState> states;
+  for (const Body& body : model.bodies) {
+    BodyState state;
+    state.r = body.position;
+    state.A = body.orientation;
+    state.rd = body.velocity;
+    state.w = body.angular_velocity;
+    states.push_back(state);
+  }
+  return states;
+}
+
+Violation violation(const std::shared_ptr<const Model>& model, const std::vector<BodyState>& states) {
+  const std::unique_ptr<Problem> problem = find_formulation("rA")->make(model, {});
+  std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
+  check(problem->from_bodies(states, q, v).ok(), "rA represents every orientation");
+  problem->set_position(0, q);
+  problem->set_velocity(v);
+  std::vector<double> r(static_cast<std::size_t>(problem->nc()));
+  Violation largest;
+  problem->position_residual(r);
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    if (!(std::abs(r[k]) <= largest.position)) {
+      largest.position = std::abs(r[k]);
+      largest.position_row = static_cast<int>(k);
+    }
+  }
+  problem->velocity_residual(r);
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    if (!(std::abs(r[k]) <= largest.velocity)) {
+      largest.velocity = std::abs(r[k]);
+      largest.velocity_row = static_cast<int>(k);
+    }
+  }
+  return largest;
+}
+
+InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings) {
+  return Assembler(model, settings).run();
+}
+
+}  // namespace poinsot

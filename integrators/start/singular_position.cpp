@@ -1,0 +1,47 @@
+#include "integrators/start/singular_position.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <limits>
+#include <vector>
+
+#include "formulations/gradient.h"
+
+namespace poinsot {
+namespace {
+
+// Of every row of G, how much of its length is independent of the others.
+Eigen::VectorXd independent_parts(Problem& problem, double t, std::span<const double> q) {
+  problem.set_position(t, q);
+  problem.set_velocity(std::vector<double>(static_cast<std::size_t>(problem.nv()), 0.0));
+  const std::vector<Eigen::Triplet<double>> entries = gradient(problem);
+  Eigen::SparseMatrix<double> sparse(problem.nc(), problem.nv());
+  sparse.setFromTriplets(entries.begin(), entries.end());
+  Eigen::MatrixXd G = sparse;
+  G.rowwise().normalize();
+  Eigen::MatrixXd square = G * G.transpose();
+  square.diagonal().array() += std::numeric_limits<double>::epsilon();  // regular where a row depends altogether
+  const Eigen::MatrixXd inverse = square.ldlt().solve(Eigen::MatrixXd::Identity(problem.nc(), problem.nc()));
+  return inverse.diagonal().cwiseSqrt().cwiseInverse();
+}
+
+}  // namespace
+
+std::string near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
+                                   std::span<const double> q) {
+  constexpr int kLargest = 600;  // of G: a second's work
+  constexpr double kNear = 0.05;
+  if (rows < 2 || problem.nc() > kLargest) return {};
+  const Eigen::VectorXd before = independent_parts(problem, 0, q_start), now = independent_parts(problem, t, q);
+  Eigen::Index row = 0;
+  const double share = now.cwiseQuotient(before).head(rows).minCoeff(&row);
+  if (!(share < kNear)) return {};
+  return fmt::format(
+      "it stopped beside a singular position of the mechanism, where the gradient of {} is a combination of the other "
+      "constraints' but for {:.1g} of its length (at the start for {:.1g}); dopri5 and dop853 step over most of such "
+      "positions at larger tolerances, fixed steps may",
+      problem.describe_unknown(problem.nv() + static_cast<int>(row)), now[row], before[row]);
+}
+
+}  // namespace poinsot

@@ -1,0 +1,84 @@
+// A run of a one-step method under error control: steps tried, refused and accepted, samples between them, an exact
+// end.
+//
+// A Method is a stepper with: Status attempt(to, rejections, error), Status complete(), Status interpolate(t),
+// interpolated(), settle(), state(), points(); double first_step(end); double retry(h, rejections, usual), the step to
+// try after so many rejections in a row; double adopt(h, wanted), the step after a completed one of length h.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "integrators/stepping/consistent_point.h"
+#include "integrators/stepping/observe.h"
+#include "integrators/stepping/sample_times.h"
+#include "integrators/stepping/step_control.h"
+#include "integrators/stepping/vectors.h"
+
+namespace poinsot {
+
+template <class Method, class GiveOut>
+Status controlled_steps(Method& method, const StepRule& rule, const Settings& settings, const GiveOut& give_out,
+                        Statistics& statistics) {
+  constexpr double kForgotten = 0.8;
+  const double end = settings.end, smallest = 16 * std::numeric_limits<double>::epsilon() * end;
+  SampleTimes times(settings.every, end);
+  StepController controller(rule);
+  Creeping creeping(end);
+  double h = method.first_step(end);
+  double usual = 0;    // length of the steps so far, those long ago forgotten
+  int rejections = 0;  // in a row
+  while (method.state().t < end) {
+    const double t = method.state().t;
+    const double to = t + 1.01 * h >= end ? end : t + h;
+    h = to - t;
+    if (creeping.tries(t, h)) return step_too_small(t, h, {});
+    double error = 0;
+    Status status = method.attempt(to, rejections, error);
+    if (status.ok() && error <= 1) status = method.complete();
+    if (!status.ok() || !(error <= 1)) {
+      if (status.failure == Failure::refused) return status;
+      ++statistics.rejected_steps;
+      h = status.ok() && std::isfinite(error) ? controller.rejected(h, error) : controller.failed(h);
+      if (h < smallest) return step_too_small(t, h, status);
+      h = method.retry(h, ++rejections, usual);
+      continue;
+    }
+    ++statistics.steps;
+    rejections = 0;
+    usual = std::max(h, kForgotten * usual);
+    creeping.completed(h);
+    h = method.adopt(h, controller.accepted(h, error));
+    for (; settings.every > 0 && times.next() < to; times.pass()) {
+      if (status = method.interpolate(times.next()); !status.ok()) return status;
+      give_out(method.interpolated());
+    }
+    method.settle();
+    if (settings.every == 0 || times.next() == to) {
+      times.pass();
+      give_out(method.state());
+    }
+  }
+  return {};
+}
+
+// The method stands at the consistent `state`.
+template <class Method>
+Status controlled_run(Method& method, const StepRule& rule, Problem& problem, const Settings& settings, State& state,
+                      const Observer& observe, Statistics& statistics, PhaseClock& clock) {
+  const auto give_out = [&](const Point& at) {
+    clock.lap(Phase::other);
+    sample(observe, problem, at.t, span(at.q), span(at.v), method.points().a(at), method.points().lambda(at),
+           statistics);
+    clock.skip();
+  };
+  clock.start();
+  give_out(method.state());
+  const Status status = controlled_steps(method, rule, settings, give_out, statistics);
+  finish(clock, statistics);
+  method.points().give(method.state(), state);
+  return status;
+}
+
+}  // namespace poinsot

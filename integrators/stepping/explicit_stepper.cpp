@@ -1,0 +1,205 @@
+#include "integrators/stepping/explicit_stepper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/stepping/vectors.h"
+
+namespace poinsot {
+namespace {
+
+Eigen::Index columns(const RungeKuttaPair& pair) {
+  return static_cast<Eigen::Index>(pair.stages.size() + 1 + pair.dense_stages.size());
+}
+
+}  // namespace
+
+ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, LinearSolver& solver, double rtol,
+                                 double atol, Statistics& statistics, PhaseClock& clock)
+    : pair_(pair),
+      problem_(problem),
+      points_(problem, solver, statistics, clock),
+      rtol_(rtol),
+      atol_(atol),
+      nv_(static_cast<std::size_t>(problem.nv())),
+      last_(static_cast<Eigen::Index>(pair.stages.size())),
+      error_needs_last_(std::ranges::any_of(pair.error, [&](const Term& term) { return term.stage == last_; })) {
+  const Eigen::Index nv = problem.nv();
+  for (Point* point : {&state_, &next_, &sample_}) *point = points_.make();
+  q_n_.setZero(problem.nq());
+  for (Vector* x : {&y_n_, &y_, &sizes_, &sizes_next_, &scale_, &combined_}) x->setZero(2 * nv);
+  k_.setZero(2 * nv, columns(pair));
+  r_.setZero(2 * nv, static_cast<Eigen::Index>(3 + pair.dense.size()));
+}
+
+void ExplicitStepper::start(double t, const State& state) {
+  state_ = points_.make(t, state);
+  elsewhere_ = true;
+  settle();
+}
+
+void ExplicitStepper::settle() {
+  if (elsewhere_ || problem_.has_discrete_state()) {
+    points_.stand(state_);
+    if (problem_.has_discrete_state() &&
+        problem_.accept(state_.t, span(state_.q), span(state_.v), span(state_.z).first(nv_))) {
+      points_.stand(state_);
+    }
+  }
+  elsewhere_ = false;
+  component_sizes(problem_, span(state_.q), span(state_.v), span(sizes_));
+}
+
+void ExplicitStepper::advance(double h, Terms terms, Vector& y) const {
+  y = y_n_;
+  for (const Term& term : terms) y.noalias() += (h * term.weight) * k_.col(term.stage);
+}
+
+double ExplicitStepper::norm(Terms terms) {
+  combined_.setZero();
+  for (const Term& term : terms) combined_.noalias() += term.weight * k_.col(term.stage);
+  return error_norm(span(combined_), span(scale_));
+}
+
+// Stands at y, or at the point of the constraints beside it; writes position, velocity and (a, λ) there into `at`, f
+// into column k.
+Status ExplicitStepper::evaluate(Point& at, const Vector& y, Eigen::Index k) {
+  const Eigen::Index nv = problem_.nv();
+  at.v = y.tail(nv);
+  problem_.retract(span(q_n_), span(y).first(nv_), span(at.q));
+  if (Status status = points_.accelerations(at); !status.ok()) return status;
+  if (project_stages_) {
+    bool moved = false;
+    if (Status status = points_.project(at, moved); !status.ok()) return status;
+    if (Status status = points_.accelerations(at); !status.ok()) return status;
+  }
+  k_.col(k).head(nv) = at.v;
+  problem_.lower(span(y).first(nv_), {k_.col(k).data(), nv_});
+  k_.col(k).tail(nv) = at.z.head(nv);
+  return {};
+}
+
+Status ExplicitStepper::first_step(double end, double& h) {
+  const double t = state_.t;
+  scale_.array() = atol_ + rtol_ * sizes_.array();
+  combined_ << state_.v, state_.z.head(problem_.nv());
+  const double y = error_norm(span(sizes_), span(scale_)), f = error_norm(span(combined_), span(scale_));
+  const double h0 = first_trial(y, f, end - t);
+
+  q_n_ = state_.q;
+  y_n_ << Vector::Zero(problem_.nv()), state_.v;
+  y_.noalias() = y_n_ + h0 * combined_;
+  next_.t = t + h0;
+  Status status = evaluate(next_, y_, 1);
+  if (status.ok()) {
+    combined_ = (k_.col(1) - combined_) / h0;
+    const double second = error_norm(span(combined_), span(scale_));
+    h = std::isfinite(second) ? poinsot::first_step(h0, f, second, pair_.order, end - t) : h0;
+  }
+  elsewhere_ = true;
+  return status;
+}
+
+// y_{n+1} of a step from the point (t_n, q_n, y_n) with f in column 0.
+Status ExplicitStepper::run_through_stages(double to) {
+  const double h = to - t_n_;
+  for (std::size_t i = 1; i < pair_.stages.size(); ++i) {
+    const Stage& stage = pair_.stages[i];
+    advance(h, stage.a, y_);
+    next_.t = stage.c == 1 ? to : t_n_ + stage.c * h;
+    if (Status status = evaluate(next_, y_, static_cast<Eigen::Index>(i)); !status.ok()) return status;
+  }
+  advance(h, pair_.b, y_);
+  next_.t = to;
+  return {};
+}
+
+Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
+  const Eigen::Index nv = problem_.nv();
+  project_stages_ = stages == Stages::projected;
+  dense_ = Dense::missing;
+  elsewhere_ = true;
+  t_n_ = state_.t;
+  h_ = to - t_n_;
+  q_n_ = state_.q;
+  y_n_.head(nv).setZero();
+  y_n_.tail(nv) = state_.v;
+  k_.col(0) << state_.v, state_.z.head(nv);
+  if (Status status = run_through_stages(to); !status.ok()) return status;
+  if (error_needs_last_) {
+    if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
+  } else {
+    next_.v = y_.tail(nv);
+    problem_.retract(span(q_n_), span(y_).first(nv_), span(next_.q));
+  }
+  component_sizes(problem_, span(next_.q), span(next_.v), span(sizes_next_));
+  scale_.array() = atol_ + rtol_ * sizes_.array().max(sizes_next_.array());
+  error = h_ * norm(pair_.error);
+  if (!pair_.third_order_error.empty() && error > 0) {
+    error *= error / std::hypot(error, 0.1 * h_ * norm(pair_.third_order_error));
+  }
+  return {};
+}
+
+Status ExplicitStepper::complete() {
+  if (!error_needs_last_) {
+    if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
+  }
+  bool moved = false;
+  if (Status status = points_.project(next_, moved); !status.ok()) return status;
+  if (moved) {
+    if (Status status = points_.refine(next_); !status.ok()) return status;
+  }
+  std::swap(state_, next_);
+  elsewhere_ = false;
+  return {};
+}
+
+Status ExplicitStepper::prepare_dense() {
+  for (std::size_t i = 0; i < pair_.dense_stages.size(); ++i) {
+    const Stage& stage = pair_.dense_stages[i];
+    advance(h_, stage.a, y_);
+    sample_.t = t_n_ + stage.c * h_;
+    if (Status status = evaluate(sample_, y_, last_ + 1 + static_cast<Eigen::Index>(i)); !status.ok()) return status;
+  }
+  const auto sum = [&](Terms terms, auto&& column) {
+    column.setZero();
+    for (const Term& term : terms) column += (h_ * term.weight) * k_.col(term.stage);
+  };
+  sum(pair_.b, r_.col(0));
+  r_.col(1) = h_ * k_.col(0) - r_.col(0);
+  r_.col(2) = 2 * r_.col(0) - h_ * (k_.col(0) + k_.col(last_));
+  for (std::size_t i = 0; i < pair_.dense.size(); ++i) sum(pair_.dense[i], r_.col(3 + static_cast<Eigen::Index>(i)));
+  dense_ = Dense::ready;
+  return {};
+}
+
+Status ExplicitStepper::interpolate(double t) {
+  elsewhere_ = true;
+  if (dense_ != Dense::too_coarse && by_polynomial(t).ok()) return {};
+  dense_ = Dense::too_coarse;
+  return by_short_step(t);
+}
+
+Status ExplicitStepper::by_polynomial(double t) {
+  if (dense_ == Dense::missing) {
+    if (Status status = prepare_dense(); !status.ok()) return status;
+  }
+  const double s = (t - t_n_) / h_;
+  combined_.setZero();
+  for (Eigen::Index i = r_.cols(); i-- > 0;) combined_ = (i % 2 == 0 ? s : 1 - s) * (r_.col(i) + combined_);
+  sample_.t = t;
+  sample_.v = y_n_.tail(problem_.nv()) + combined_.tail(problem_.nv());
+  problem_.retract(span(q_n_), std::span<const double>(span(combined_)).first(nv_), span(sample_.q));
+  return points_.complete(sample_);
+}
+
+Status ExplicitStepper::by_short_step(double t) {
+  if (Status status = run_through_stages(t); !status.ok()) return status;
+  sample_.t = t;
+  sample_.v = y_.tail(problem_.nv());
+  problem_.retract(span(q_n_), span(y_).first(nv_), span(sample_.q));
+  return points_.complete(sample_);
+}
+
+}  // namespace poinsot

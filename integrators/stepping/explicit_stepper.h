@@ -1,0 +1,83 @@
+// One step of an explicit Runge–Kutta pair after the other, on the acceleration level, with projection.
+//
+// State of a step: y = (δq, v), position q = q_n ⊞ δq (Runge–Kutta–Munthe-Kaas: in rA δq holds rotation vectors in the
+// body frame, in rp and reps ⊞ is an addition), with
+//
+//   δq' = T(δq)⁻¹ v,   v' = a,   [M Gᵀ; G 0] [a; λ] = [Q; γ]:   one assembly, factorization and solve a stage
+//
+// f(y_{n+1}) is the first stage of the next step. Its factorization serves the projection onto the constraints as well
+// (consistent_point.h), which costs neither a stage nor the order.
+//
+// Beside a singular position (where G loses rank, at a distance τ in time) a stage that is off the constraints by e has
+// accelerations wrong by e/τ, and error control would creep up to the point and never pass it. Accelerations of points
+// on the constraints stay smooth through it: with Stages::projected every stage is projected before it is evaluated, at
+// twice the cost, and steps go over the singular position at their usual length.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "integrators/stepping/consistent_point.h"
+#include "integrators/stepping/runge_kutta_pair.h"
+
+namespace poinsot {
+
+class ExplicitStepper {
+ public:
+  using Vector = Eigen::VectorXd;
+
+  ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, LinearSolver& solver, double rtol, double atol,
+                  Statistics& statistics, PhaseClock& clock);
+
+  Status prepare() { return points_.prepare(); }
+  // The state is consistent at t. The problem stands there afterwards.
+  void start(double t, const State& state);
+
+  // Hairer's automatic choice; one evaluation.
+  Status first_step(double end, double& h);
+  enum class Stages { as_they_come, projected };
+  // Stages and y_{n+1} of a step to time `to`; its error, 1 being the tolerance. The state stays what it is.
+  Status attempt(double to, Stages stages, double& error);
+  // Makes the attempted step the state: f(y_{n+1}), projection. Fails where the result cannot be projected; then the
+  // state is still the old one.
+  Status complete();
+  // The motion within the completed step at time t, consistent, in interpolated(). The problem stands there. Where the
+  // step is so long that the polynomial is too far off the constraints, a shorter step from where that one began.
+  Status interpolate(double t);
+  // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
+  void settle();
+
+  const Point& state() const { return state_; }
+  const Point& interpolated() const { return sample_; }
+  const ConsistentPoints& points() const { return points_; }
+
+ private:
+  // y_n + h Σ weight k
+  void advance(double h, Terms terms, Vector& y) const;
+  double norm(Terms terms);
+  Status evaluate(Point& at, const Vector& y, Eigen::Index k);
+  Status run_through_stages(double to);
+  Status prepare_dense();
+  Status by_polynomial(double t);
+  Status by_short_step(double t);
+
+  const RungeKuttaPair& pair_;
+  Problem& problem_;
+  ConsistentPoints points_;
+  const double rtol_, atol_;
+  const std::size_t nv_;
+  const Eigen::Index last_;  // index of k_{s+1}
+  const bool error_needs_last_;
+  bool project_stages_ = false;
+
+  Point state_, next_, sample_;
+  Vector q_n_;      // where the step began; y_n_ = (0, v_n)
+  Vector y_n_, y_;  // 2 nv
+  Eigen::MatrixXd k_, r_;
+  double h_ = 0, t_n_ = 0;
+  bool elsewhere_ = false;
+  enum class Dense { missing, ready, too_coarse } dense_ = Dense::missing;
+  Vector sizes_, sizes_next_, scale_, combined_;
+};
+
+}  // namespace poinsot

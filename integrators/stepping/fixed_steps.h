@@ -1,0 +1,88 @@
+// The frame of methods of fixed step whose state is (q, v) with the (a, λ) of the last step: steps on the time grid,
+// the discrete state brought up to date after each, samples, and what is left behind at the end or after a failure.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "integrators/stepping/observe.h"
+#include "integrators/stepping/time_grid.h"
+#include "integrators/stepping/vectors.h"
+
+namespace poinsot {
+
+struct SteppedState {
+  using Vector = Eigen::VectorXd;
+
+  explicit SteppedState(const State& state)
+      : q(map(state.q)),
+        v(map(state.v)),
+        z(state.a.size() + state.lambda.size()),
+        q_n(q),
+        v_n(v),
+        nv(v.size()),
+        nc(z.size() - nv) {
+    z << map(state.a), map(state.lambda);
+  }
+
+  std::span<double> a() { return span(z, 0, nv); }
+  std::span<double> lambda() { return span(z, nv, nc); }
+  void stand(Problem& problem, double t) const {
+    problem.set_position(t, span(q));
+    problem.set_velocity(span(v));
+  }
+
+  Vector q, v, z;   // z = (a, λ)
+  Vector q_n, v_n;  // where the step began
+  Eigen::Index nv, nc;
+
+ private:
+  static Eigen::Map<const Vector> map(const std::vector<double>& x) {
+    return {x.data(), static_cast<Eigen::Index>(x.size())};
+  }
+};
+
+// `x` is consistent at 0 and ends in `state`.
+//   step(t)   from x.q_n and x.v_n to x.q, x.v and x.z at t: Status; after a failure the last state stays
+//   stand(t)  returns the problem, which stands at x at time t then
+template <class Step, class Stand>
+Status fixed_steps(SteppedState& x, const TimeGrid& grid, State& state, const Observer& observe, Statistics& statistics,
+                   PhaseClock& clock, Step&& step, Stand&& stand) {
+  const auto give_out = [&](const Problem& problem, double t) {
+    sample(observe, problem, t, span(x.q), span(x.v), x.a(), x.lambda(), statistics);
+  };
+  const Problem& start = stand(0);
+  const bool discrete = start.has_discrete_state();
+  give_out(start, 0);
+  clock.start();
+  Status status;
+  for (std::int64_t n = 1; n <= grid.steps; ++n) {
+    const double t = grid.time(n);
+    x.q_n.swap(x.q);
+    x.v_n.swap(x.v);
+    if (status = step(t); !status.ok()) {
+      x.q.swap(x.q_n);
+      x.v.swap(x.v_n);
+      break;
+    }
+    ++statistics.steps;
+    if (!discrete && !grid.sampled(n)) continue;
+    Problem& problem = stand(t);
+    if (discrete && problem.accept(t, span(x.q), span(x.v), x.a())) x.stand(problem, t);
+    if (grid.sampled(n)) {
+      clock.lap(Phase::other);
+      give_out(problem, t);
+      clock.skip();
+    }
+  }
+  finish(clock, statistics);
+  state.q.assign(x.q.begin(), x.q.end());
+  state.v.assign(x.v.begin(), x.v.end());
+  if (status.ok()) {  // after a failure z is what Newton's method left
+    std::ranges::copy(x.a(), state.a.begin());
+    std::ranges::copy(x.lambda(), state.lambda.begin());
+  }
+  return status;
+}
+
+}  // namespace poinsot

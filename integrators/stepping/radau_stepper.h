@@ -1,0 +1,110 @@
+// One step of the three-stage Radau IIA method after the other, on the acceleration level, with projection.
+//
+// Collocation at c = ((4 − √6)/10, (4 + √6)/10, 1) of δq' = T(δq)⁻¹ v, v' = a in the coordinates δq about the start of
+// the step (explicit_stepper.h), with the stages' accelerations and multipliers as unknowns:
+//
+//   M a_i + Gᵀλ_i − Q = 0,   G a_i − γ = 0   at (q_n ⊞ δq_i, v_i),
+//   v_i = v_n + h Σ A_ij a_j,   δq_i = h Σ A_ij T(δq_j)⁻¹ v_j      (in rA by sweeps, which contract by h |ω̄|)
+//
+// Index 1: no order is lost in the multipliers, as it would be in index 2 or 3, and nothing is scaled by powers of h.
+// The stage at the end of the step is projected onto Φ = 0 and G v = ν (consistent_point.h).
+//
+// Newton's matrix has the exact stiffness and damping of every stage: with D_i and K_i at stage i, its block rows are
+//   Σ_j (δ_ij M_i + h A_ij D_i + h² (A²)_ij K_i) Δa_j + G_iᵀ Δλ_i,   G_i Δa_i,
+// one linear system of 3 n unknowns. (One point's D and K for all stages would let the eigenvectors of A take it apart,
+// but a stiff spring that turns by a small angle within the step would already make that iteration diverge.) It is kept
+// over steps of the same length while it converges well; starting values are extrapolated. Error estimate of order 3,
+// filtered by M + hμ D + h²μ² K with the real eigenvalue μ of A. E. Hairer, G. Wanner, "Solving Ordinary Differential
+// Equations II", sec. IV.8.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string_view>
+
+#include "integrators/stepping/consistent_point.h"
+#include "integrators/stepping/linearization.h"
+
+namespace poinsot {
+
+class RadauStepper {
+ public:
+  using Vector = Eigen::VectorXd;
+
+  // `solver` takes the stages; others of the kind called `linear_solver` are made for the error and for the consistent
+  // points.
+  RadauStepper(Problem& problem, LinearSolver& solver, std::string_view linear_solver, double rtol, double atol,
+               Statistics& statistics, PhaseClock& clock);
+
+  Status prepare();
+  // The state is consistent at t. The problem stands there afterwards.
+  void start(double t, const State& state);
+
+  // A step whose explicit Euler error is small; no evaluation.
+  double first_step(double end) const;
+  // Stages of a step to time `to`; its error, 1 being the tolerance. The state stays what it is.
+  Status attempt(double to, double& error);
+  // Makes the end of the attempted step the state; fails where it cannot be projected.
+  Status complete();
+  // The motion within the completed step at time t, consistent, in interpolated(): a shorter step from where that one
+  // began, because the collocation polynomial has order 3 only; that polynomial where Newton's method does not take the
+  // shorter step.
+  Status interpolate(double t);
+  // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
+  void settle();
+
+  // Whether steps of the same length are worth their kept matrix.
+  bool converges_fast() const { return fast_; }
+  const Point& state() const { return state_; }
+  const Point& interpolated() const { return sample_; }
+  const ConsistentPoints& points() const { return points_; }
+
+ private:
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+  // The matrices of the stages of a step of length h; h = 0: none.
+  struct Linearized {
+    explicit Linearized(const Problem& problem)
+        : at{Linearization(problem), Linearization(problem), Linearization(problem)} {}
+    std::array<Linearization, 3> at;
+    double h = 0;
+    bool is_for(double step) const { return std::abs(step - h) <= 1e-9 * step; }  // differences of times are rounded
+  };
+
+  template <class Sink>
+  static void write_stages(const Linearized& linear, double h, int n, int nv, Sink&& entry);
+  template <class Sink>
+  static void write_filter(const Linearized& linear, double h, int nv, Sink&& entry);
+  void stand_at_stage(const Point& from, double to, Eigen::Index i);
+  Status refresh(const Point& from, double to, Linearized& linear);
+  Status stages(const Point& from, double to, Linearized& linear);
+  Status newton(const Point& from, double to, Linearized& linear);
+  void predict(const Point& from, double h);
+  void move(const Point& from, double h, int sweeps);
+  void set_scale(const Point& from, const Vector& q, const Vector& v);
+  Status error_of(const Point& from, double h, double& error);
+  void end_of_step(const Point& from, double to, Point& at);
+
+  Problem& problem_;
+  std::unique_ptr<LinearSolver> filter_solver_, point_solver_;
+  TimedSystem system_, filter_;
+  ConsistentPoints points_;
+  Linearized step_, within_;               // within_: of samples
+  const Linearized* in_solver_ = nullptr;  // whose matrix system_ has factored; filter_'s is always that of step_
+  const double rtol_, atol_;
+  const Eigen::Index nv_, n_;
+  Statistics& statistics_;
+
+  Point state_, next_, sample_, before_, stage_;  // before_: where the completed step began
+  Columns Z_, V_, dQ_;                            // (a, λ), velocity and δq of the stages
+  Columns Z_before_;                              // of the completed step
+  double h_ = 0, h_before_ = 0;                   // h_before_ = 0: nothing to extrapolate
+  Columns R_, V_old_, dQ_old_, rates_;
+  bool fast_ = false;
+  double convergence_ = 1;  // θ/(1 − θ)
+  Vector sizes_, sizes_next_, scale_, change_, e_, filtered_;
+};
+
+}  // namespace poinsot

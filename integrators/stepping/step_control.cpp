@@ -1,0 +1,95 @@
+#include "integrators/stepping/step_control.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace poinsot {
+namespace {
+
+constexpr double kSmallestError = 1e-4;  // below this an error says nothing about the next step
+constexpr double kSmallestPredicted = 1e-2;
+
+double length(std::span<const double> x) {
+  double sum = 0;
+  for (double e : x) sum += e * e;
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+void component_sizes(const Problem& problem, std::span<const double> q, std::span<const double> v,
+                     std::span<double> sizes) {
+  const std::size_t nb = static_cast<std::size_t>(problem.bodies()), nv = v.size();
+  const std::size_t q_body = nb ? q.size() / nb : 0, v_body = nb ? nv / nb : 0;
+  for (std::size_t b = 0; b < nb; ++b) {
+    const std::size_t at = b * v_body;
+    std::fill_n(sizes.begin() + static_cast<std::ptrdiff_t>(at), 3, length(q.subspan(b * q_body, 3)));
+    std::fill_n(sizes.begin() + static_cast<std::ptrdiff_t>(at + 3), v_body - 3, 1.0);
+    std::fill_n(sizes.begin() + static_cast<std::ptrdiff_t>(nv + at), 3, length(v.subspan(at, 3)));
+    std::fill_n(sizes.begin() + static_cast<std::ptrdiff_t>(nv + at + 3), v_body - 3,
+                length(v.subspan(at + 3, v_body - 3)));
+  }
+}
+
+double error_norm(std::span<const double> x, std::span<const double> scale) {
+  double sum = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double e = x[k] / scale[k];
+    sum += e * e;
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(x.size(), 1)));
+}
+
+double StepController::accepted(double h, double error) {
+  double factor = rule_.safety * std::pow(error, -rule_.alpha) * std::pow(before_, rule_.beta);
+  if (rule_.predictive) {
+    if (h_before_ > 0) {
+      factor = std::min(factor, rule_.safety * h / h_before_ * std::pow(before_ / (error * error), rule_.alpha));
+    }
+    h_before_ = h;
+  }
+  before_ = std::max(error, rule_.predictive ? kSmallestPredicted : kSmallestError);
+  // error 0 makes the factor infinite, which the clamp makes the largest growth
+  const double grow = after_rejection_ ? 1.0 : rule_.grow;
+  after_rejection_ = false;
+  return h * std::clamp(factor, rule_.shrink, grow);
+}
+
+double StepController::rejected(double h, double error) {
+  after_rejection_ = true;
+  return h * std::clamp(rule_.safety * std::pow(error, -rule_.alpha), rule_.shrink, 1.0);
+}
+
+double StepController::failed(double h) {
+  after_rejection_ = true;
+  return h * rule_.shrink;
+}
+
+double first_trial(double y, double f, double end) {
+  const double h = y > 1e-5 && f > 1e-5 ? 0.01 * y / f : 1e-6 * end;
+  return std::min(h, end);
+}
+
+double first_step(double h0, double f, double second, int order, double end) {
+  const double rate = std::max(f, second);
+  const double h1 = rate > 1e-15 ? std::pow(0.01 / rate, 1.0 / order) : std::max(1e-6 * end, 1e-3 * h0);
+  return std::min({100 * h0, h1, end});
+}
+
+Status step_too_small(double t, double h, const Status& cause) {
+  std::string last;
+  if (!cause.ok()) {
+    last = "; the last attempt: " + (cause.message.empty() ? "Newton's method did not converge" : cause.message);
+  }
+  return {Failure::step_size_too_small, t,
+          fmt::format("at t = {:.9g} s the steps became too small to get on with ({:.3g} s): the motion jumps or grows "
+                      "without bound here, the mechanism comes to a singular position, near which accelerations are "
+                      "lost to rounding, or the tolerances ask for more than the arithmetic has (where a body is at "
+                      "rest, atol alone does); larger tolerances or an implicit integrator with a fixed step may "
+                      "pass{}",
+                      t, h, last)};
+}
+
+}  // namespace poinsot

@@ -1,0 +1,53 @@
+#include "integrators/stepping/step_system.h"
+
+#include <fmt/format.h>
+
+namespace poinsot {
+
+TimedSystem::TimedSystem(const Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock)
+    : problem_(problem), solver_(solver), statistics_(statistics), clock_(clock) {}
+
+Status TimedSystem::prepare(const Pattern& pattern, std::vector<int> unknowns) {
+  unknowns_ = std::move(unknowns);
+  return explained(0, solver_.analyze(pattern));
+}
+
+Status TimedSystem::factor(double t) {
+  ++statistics_.jacobian_evaluations;
+  clock_.lap(Phase::assembly);
+  LinearStatus status = solver_.factor();
+  ++statistics_.factorizations;
+  clock_.lap(Phase::factor);
+  return explained(t, std::move(status));
+}
+
+Status TimedSystem::solve(double t, std::span<double> b) {
+  clock_.lap(Phase::other);
+  LinearStatus status = solver_.solve(b);
+  ++statistics_.solves;
+  clock_.lap(Phase::solve);
+  return explained(t, std::move(status));
+}
+
+Status TimedSystem::explained(double t, LinearStatus status) const {
+  if (status.ok()) return {};
+  if (status.unknown >= 0 && !unknowns_.empty()) status.unknown = unknowns_[static_cast<std::size_t>(status.unknown)];
+  return explain(problem_, t, status);
+}
+
+Status explain(const Problem& problem, double t, const LinearStatus& status) {
+  if (status.failure == LinearFailure::not_finite) {
+    return {Failure::not_finite, t,
+            fmt::format("at t = {:.9g} s the matrix or the solution is not finite; try a smaller step", t)};
+  }
+  std::string where;
+  if (status.unknown >= 0) where = fmt::format(" near {}", problem.describe_unknown(status.unknown));
+  if (status.failure == LinearFailure::refused) return {Failure::refused, t, status.message + where};
+  return {Failure::singular_matrix, t,
+          fmt::format("at t = {:.9g} s the linear system is singular{} ({}); a singular position of the mechanism, "
+                      "dependent constraints or a body without inertia: `poinsot check` names them, a smaller step may "
+                      "pass a singular position",
+                      t, where, status.message)};
+}
+
+}  // namespace poinsot

@@ -1,0 +1,110 @@
+#include "linsolve/block/cancellation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "linsolve/block/kernels.h"
+
+namespace poinsot {
+namespace {
+
+std::size_t at(std::int64_t k) {
+  return static_cast<std::size_t>(k);
+}
+
+// A number and its size without cancellation.
+struct Sized {
+  double value = 0, size = 0;
+};
+
+// A whole front, (p + m) × (p + m).
+class Square {
+ public:
+  explicit Square(int n) : n_(at(n)), entries_(n_ * n_) {}
+  Sized& operator()(int i, int j) { return entries_[at(j) * n_ + at(i)]; }
+
+ private:
+  std::size_t n_;
+  std::vector<Sized> entries_;
+};
+
+// Eliminates p pivots of n; false where one of them is cancelled. The pivots are those of block::factor_pivots.
+bool eliminate(Square& a, int p, int n, std::vector<double> weight, double part) {
+  bool good = true;
+  for (int k = 0; k < p; ++k) {
+    int best = k;
+    const auto candidate = [&](int i) { return std::abs(a(i, k).value) * weight[at(i)]; };
+    for (int i = k + 1; i < p; ++i)
+      if (candidate(i) > candidate(best)) best = i;
+    if (candidate(best) > block::kReluctance * candidate(k)) {
+      for (int j = 0; j < n; ++j) std::swap(a(k, j), a(best, j));
+      std::swap(weight[at(k)], weight[at(best)]);
+    }
+    Sized& pivot = a(k, k);
+    if (!(std::abs(pivot.value) > part * pivot.size)) {
+      good = false;
+      pivot.value = pivot.size > 0 ? pivot.size : 1;
+    }
+    for (int i = k + 1; i < n; ++i) {
+      const double l = a(i, k).value / pivot.value;
+      if (l == 0) continue;
+      for (int j = k + 1; j < n; ++j) {
+        const double change = l * a(k, j).value;
+        a(i, j).value -= change;
+        a(i, j).size += std::abs(change);
+      }
+    }
+  }
+  return good;
+}
+
+}  // namespace
+
+std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> values, std::span<const double> weight,
+                                  double part) {
+  std::vector<int> bad;
+  std::vector<std::vector<Sized>> updates(s.fronts.size());  // m × m, until the parent takes them
+  const Run* run = s.runs.data();
+  const int* child = s.children.data();
+  for (std::size_t k = 0; k < s.fronts.size(); ++k) {
+    const Front& f = s.fronts[k];
+    const int p = f.pivots, m = f.others, n = p + m;
+    Square a(n);
+    for (const Run* end = s.runs.data() + f.runs.back(); run != end; ++run)
+      for (unsigned i = 0; i < run->length; ++i) {
+        // Back from the store of D, L and U to rows and columns.
+        const int t = static_cast<int>(run->target + i), l = t - p * p, u = l - p * f.rows;
+        Sized& entry = l < 0 ? a(t % p, t / p) : u < 0 ? a(p + l % f.rows, l / f.rows) : a(u % p, p + u / p);
+        const double value = values[at(run->source) + i];
+        entry.value += value;
+        entry.size += std::abs(value);
+      }
+    for (const int* end = s.children.data() + f.children; child != end; ++child) {
+      const Front& c = s.fronts[at(*child)];
+      std::vector<int> places(at(c.others));
+      for (int r = c.first_stretch; r < c.last_stretch; ++r) {
+        const Stretch& stretch = s.stretches[at(r)];
+        for (int i = 0; i < stretch.length; ++i)
+          places[at(stretch.from + i)] = stretch.to + i + (r < c.first_outer_stretch ? 0 : p);
+      }
+      const auto place = [&](int i) { return places[at(i)]; };
+      const std::vector<Sized>& update = updates[at(*child)];
+      for (int j = 0; j < c.others; ++j)
+        for (int i = 0; i < c.others; ++i) {
+          Sized& entry = a(place(i), place(j));
+          entry.value += update[at(j * c.others + i)].value;
+          entry.size += update[at(j * c.others + i)].size;
+        }
+      std::vector<Sized>().swap(updates[at(*child)]);
+    }
+    std::vector<double> units(at(p));
+    for (int i = 0; i < p; ++i) units[at(i)] = weight[at(s.unknown[at(f.first + i)])];
+    if (!eliminate(a, p, n, std::move(units), part)) bad.push_back(static_cast<int>(k));
+    for (int j = p; j < n; ++j)
+      for (int i = p; i < n; ++i) updates[k].push_back(a(i, j));
+  }
+  return bad;
+}
+
+}  // namespace poinsot

@@ -1,0 +1,154 @@
+#include "linsolve/block/factor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "linsolve/block/assembly.h"
+
+namespace poinsot {
+namespace {
+
+std::size_t at(std::int64_t k) {
+  return static_cast<std::size_t>(k);
+}
+
+// Calls work(std::integral_constant<int, P>) with P the front's number of pivots where a kernel is compiled for it.
+template <class Work>
+void with_size(int pivots, Work&& work) {
+  switch (pivots) {
+    case 1:
+      return work(std::integral_constant<int, 1>());
+    case 2:
+      return work(std::integral_constant<int, 2>());
+    case 3:
+      return work(std::integral_constant<int, 3>());
+    case 4:
+      return work(std::integral_constant<int, 4>());
+    case 5:
+      return work(std::integral_constant<int, 5>());
+    case 6:
+      return work(std::integral_constant<int, 6>());
+    case 7:
+      return work(std::integral_constant<int, 7>());
+    case 8:
+      return work(std::integral_constant<int, 8>());
+    default:
+      return work(std::integral_constant<int, 0>());
+  }
+}
+
+float in_range(double x) {
+  return static_cast<float>(std::clamp(x, 1e-37, 1e37));
+}
+
+// A factor that no cache holds is fetched ahead: its fronts are a kilobyte or two each, and the processor's own
+// prefetching begins anew at every page.
+constexpr std::size_t kAhead = 8;          // fronts
+constexpr std::size_t kCached = 1u << 17;  // doubles: 1 MB
+
+inline void fetch(const double* from, int doubles) {
+  constexpr int kLine = 8;
+  for (int i = 0; i < doubles; i += kLine) __builtin_prefetch(from + i);
+}
+
+}  // namespace
+
+void BlockFactor::resize(const Schedule& s) {
+  store_.assign(at(s.store_size + kLanes), 0);  // the last front may be laid down as well
+  stack_.assign(at(s.stack_size), 0);
+  update_.assign(at(s.largest_update), 0);
+  x_.assign(at(s.n), 0);
+  t_.assign(at(std::max(s.largest_rows, s.largest_pivots)), 0);
+  then_.assign(at(s.n), 1);
+  weight_.assign(at(s.n), 1);
+  order_.assign(at(s.n), 0);
+  moved_.assign(s.fronts.size(), 0);
+  places_.assign(s.fronts.size(), {});
+  const int* child = s.children.data();
+  for (std::size_t k = 0; k < s.fronts.size(); ++k) {
+    const int* end = s.children.data() + s.fronts[k].children;
+    if (child != end && block::lays_down(s.fronts[at(*child)], s.fronts[k]))
+      places_[k] = block::places(s.fronts[at(*child)], s.stretches.data());
+    child = end;
+  }
+}
+
+block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> values, bool keep_order) {
+  block::Drift drift;
+  const Run* run = s.runs.data();
+  const int* child = s.children.data();
+  const std::size_t ahead = store_.size() > kCached ? kAhead : s.fronts.size();
+  for (std::size_t k = 0; k < s.fronts.size(); ++k) {
+    const Front& f = s.fronts[k];
+    double* D = store_.data() + f.store;
+    if (k + ahead < s.fronts.size()) {
+      const Front &next = s.fronts[k + ahead], &before = s.fronts[k + ahead - 1];
+      fetch(store_.data() + next.store, next.pivots * (next.pivots + next.rows + next.others));
+      for (int r = before.runs[4]; r < next.runs[4]; ++r) __builtin_prefetch(values.data() + s.runs[at(r)].source);
+    }
+    double* W = update_.data();
+    const int* end = s.children.data() + f.children;
+    if (child != end && block::lays_down(s.fronts[at(*child)], f)) {
+      block::lay_down(places_[k], stack_.data() + s.fronts[at(*child++)].update, f, D, W);
+    } else {
+      std::fill_n(D, f.pivots * (f.pivots + f.rows + f.others), 0.0);
+      std::fill_n(W, f.rows * f.others, 0.0);
+    }
+    run = block::add_runs<1>(run, s.runs.data() + f.runs[0], values.data(), D);
+    run = block::add_runs<2>(run, s.runs.data() + f.runs[1], values.data(), D);
+    run = block::add_runs<3>(run, s.runs.data() + f.runs[2], values.data(), D);
+    run = block::add_runs<4>(run, s.runs.data() + f.runs[3], values.data(), D);
+    for (const Run* last = s.runs.data() + f.runs[4]; run != last; ++run)
+      block::add(D + run->target, values.data() + run->source, static_cast<int>(run->length));
+    for (; child != end; ++child) {
+      const Front& c = s.fronts[at(*child)];
+      block::extend_add(c, stack_.data() + c.update, s.stretches.data(), f, D, W);
+    }
+    block::Choice choice{order_.data() + f.first, weight_.data() + f.first, then_.data() + f.first, moved_[k] != 0,
+                         keep_order};
+    with_size(f.pivots,
+              [&](auto P) { block::eliminate<P.value>(D, f, W, stack_.data() + f.update, choice, t_.data(), drift); });
+    moved_[k] = choice.moved;
+  }
+  return drift;
+}
+
+void BlockFactor::solve(const Schedule& s, std::span<double> b) {
+  for (std::size_t k = 0; k < b.size(); ++k) x_[k] = b[at(s.unknown[k])];
+  const std::size_t ahead = store_.size() > kCached ? kAhead : s.fronts.size();
+  for (std::size_t k = 0; k < s.fronts.size(); ++k) {
+    const Front& f = s.fronts[k];
+    if (k + ahead < s.fronts.size()) {
+      const Front& next = s.fronts[k + ahead];
+      fetch(store_.data() + next.store + next.pivots * next.pivots, next.pivots * next.rows);
+    }
+    with_size(f.pivots, [&](auto P) {
+      block::forward<P.value>(store_.data() + f.store, f, s.position.data() + f.list,
+                              moved_[k] ? order_.data() + f.first : nullptr, x_.data(), t_.data());
+    });
+  }
+  for (std::size_t k = s.fronts.size(); k-- > 0;) {
+    const Front& f = s.fronts[k];
+    if (k >= ahead) {
+      const Front& next = s.fronts[k - ahead];
+      fetch(store_.data() + next.store, next.pivots * next.pivots);
+      fetch(store_.data() + next.store + next.pivots * (next.pivots + next.rows), next.pivots * next.others);
+    }
+    with_size(f.pivots, [&](auto P) {
+      block::backward<P.value>(store_.data() + f.store, f, s.position.data() + f.list, x_.data());
+    });
+  }
+  for (std::size_t k = 0; k < b.size(); ++k) b[at(s.unknown[k])] = x_[k];
+}
+
+void BlockFactor::weigh_rows(const Schedule& s, std::span<const double> weight) {
+  for (std::size_t k = 0; k < weight.size(); ++k) weight_[k] = in_range(weight[at(s.unknown[k])]);
+}
+
+void BlockFactor::keep_pivots(const Schedule& s) {
+  for (const Front& f : s.fronts)
+    for (int k = 0; k < f.pivots; ++k)
+      then_[at(f.first + k)] = in_range(std::abs(store_[at(f.store + std::int64_t{k} * (f.pivots + 1))]));
+}
+
+}  // namespace poinsot

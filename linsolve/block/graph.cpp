@@ -1,0 +1,158 @@
+#include "linsolve/block/graph.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace poinsot {
+namespace {
+
+std::size_t at(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+// Calls visit(i, j) for every entry of the pattern.
+template <class Visit>
+void entries(const CscLayout& layout, Visit&& visit) {
+  for (int j = 0; j < layout.n; ++j)
+    for (int k = layout.start[at(j)]; k < layout.start[at(j) + 1]; ++k) visit(layout.row[at(k)], j);
+}
+
+class UnionFind {
+ public:
+  explicit UnionFind(int n) : parent_(at(n)) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int k) {
+    while (parent_[at(k)] != k) k = parent_[at(k)] = parent_[at(parent_[at(k)])];
+    return k;
+  }
+  void join(int a, int b) { parent_[at(find(a))] = find(b); }
+
+ private:
+  std::vector<int> parent_;
+};
+
+// By set(k) of unknown k: the other sets it shares entries with.
+template <class SetOf>
+Lists seen(const CscLayout& layout, int sets, SetOf&& set) {
+  return Lists::collect(sets, [&](auto&& emit) {
+    int last_i = -1, last_j = -1;  // a block's entries say the same again and again
+    entries(layout, [&](int i, int j) {
+      const int a = set(i), b = set(j);
+      if (a == b || (a == last_i && b == last_j)) return;
+      last_i = a, last_j = b;
+      emit(a, b);
+      emit(b, a);
+    });
+  });
+}
+
+// Parts of a node that see the same are one atom: r_x, r_y, r_z see the same rows one by one. By root of part: the root
+// of the first part of its atom. Bodies' parts that see the same rows are merged first, then rows are compared by the
+// merged parts they see.
+template <class Home>
+std::vector<int> merge(const CscLayout& layout, UnionFind& part, const std::vector<char>& on_body, Home&& home) {
+  const Lists outside = seen(layout, layout.n, [&](int k) { return part.find(k); });
+  std::vector<int> roots, merged(at(layout.n));
+  std::iota(merged.begin(), merged.end(), 0);
+  for (int k = 0; k < layout.n; ++k)
+    if (part.find(k) == k) roots.push_back(k);
+  std::ranges::stable_sort(roots, {}, home);
+
+  struct Known {
+    int root;
+    std::size_t begin, end;  // of what it sees
+  };
+  std::vector<Known> known;  // of the node at hand
+  std::vector<int> sights, sight;
+  for (const bool body : {true, false}) {
+    int node = -1;
+    for (const int k : roots) {
+      if ((on_body[at(k)] != 0) != body) continue;
+      if (home(k) != node) known.clear(), sights.clear(), node = home(k);
+      sight.assign(outside[k].begin(), outside[k].end());
+      for (int& s : sight) s = merged[at(s)];
+      std::ranges::sort(sight);
+      sight.erase(std::unique(sight.begin(), sight.end()), sight.end());
+      const auto same = std::ranges::find_if(known, [&](const Known& other) {
+        return std::equal(sight.begin(), sight.end(), sights.begin() + static_cast<std::ptrdiff_t>(other.begin),
+                          sights.begin() + static_cast<std::ptrdiff_t>(other.end));
+      });
+      if (same != known.end()) {
+        merged[at(k)] = same->root;
+      } else {
+        known.push_back({k, sights.size(), sights.size() + sight.size()});
+        sights.insert(sights.end(), sight.begin(), sight.end());
+      }
+    }
+  }
+  return merged;
+}
+
+}  // namespace
+
+void BlockGraph::build(const CscLayout& layout, std::span<const int> node_of, std::span<const int> fused) {
+  const int n = layout.n;
+  const int nodes = 1 + *std::ranges::max_element(node_of);
+  const auto home = [&](int k) {
+    const int g = node_of[at(k)];
+    return fused.empty() || fused[at(g)] < 0 ? g : fused[at(g)];
+  };
+
+  // Parts of a node that are connected within it. A part with an entry on the diagonal belongs to a body.
+  UnionFind part(n);
+  std::vector<char> diagonal(at(n), 0), on_body(at(n), 0);  // the latter by root of part
+  entries(layout, [&](int i, int j) {
+    if (home(i) == home(j)) part.join(i, j);
+    if (i == j) diagonal[at(i)] = 1;
+  });
+  for (int k = 0; k < n; ++k)
+    if (diagonal[at(k)]) on_body[at(part.find(k))] = 1;
+
+  const std::vector<int> merged = merge(layout, part, on_body, home);
+  node.clear(), constraint.clear();
+  std::vector<int> atom_at(at(n), -1), atom_of(at(n));  // by root; by unknown
+  for (int k = 0; k < n; ++k) {
+    const int root = merged[at(part.find(k))];
+    if (atom_at[at(root)] < 0) {
+      atom_at[at(root)] = static_cast<int>(node.size());
+      constraint.push_back(on_body[at(root)] == 0);
+      node.push_back(home(k));
+    }
+    atom_of[at(k)] = atom_at[at(root)];
+  }
+  const int count = static_cast<int>(node.size());
+  unknowns = Lists::collect(count, [&](auto&& emit) {
+    for (int k = 0; k < n; ++k) emit(atom_of[at(k)], k);
+  });
+  neighbours = seen(layout, count, [&](int k) { return atom_of[at(k)]; });
+
+  body_atoms.assign(at(nodes), 0);
+  for (int a = 0; a < count; ++a)
+    if (!constraint[at(a)]) ++body_atoms[at(node[at(a)])];
+  // Which groups act on which bodies, by the nodes of the pattern: fused groups included.
+  fused_with.assign(at(nodes), -1);
+  if (!fused.empty()) std::ranges::copy(fused, fused_with.begin());
+  const auto is_group = [&](int g) { return fused_with[at(g)] >= 0 || body_atoms[at(g)] == 0; };
+  const Lists other = seen(layout, nodes, [&](int k) { return node_of[at(k)]; });
+  const auto between = [&](bool group) {
+    return Lists::collect(nodes, [&](auto&& emit) {
+      for (int a = 0; a < nodes; ++a)
+        if (is_group(a) == group)
+          for (const int b : other[a])
+            if (is_group(b) != group) emit(a, b);
+    });
+  };
+  bodies = between(true);
+  groups = between(false);
+}
+
+double symmetry(const CscLayout& layout) {
+  if (layout.nonzeros() == 0) return 1;
+  int mirrored = 0;
+  entries(layout, [&](int i, int j) {
+    const auto first = layout.row.begin() + layout.start[at(i)], last = layout.row.begin() + layout.start[at(i) + 1];
+    mirrored += std::binary_search(first, last, j);
+  });
+  return static_cast<double>(mirrored) / layout.nonzeros();
+}
+
+}  // namespace poinsot

@@ -1,0 +1,23 @@
+// The order in which the atoms of a saddle point are eliminated: minimum degree, as far as a saddle point lets one.
+//
+// The diagonal block of constraints G_g is zero until bodies it acts on are eliminated; then it is −G_g K⁻¹ G_gᵀ with K
+// the matrix of what was eliminated. That block is regular, without looking at a number, in two cases:
+//   whole      all bodies of the group are eliminated, and so are all bodies of every constraint eliminated with them:
+//              the block is a pivot of the Schur complement G M⁻¹ Gᵀ, definite for a regular system;
+//   floating   some of its bodies are not eliminated yet, but those that are belong to trees of bodies that hang on
+//              nothing else: such a body can move in every way, so the group's rows stay independent on it.
+// Leaf to root along a tree this is the articulated-body recursion; in loops the last rows wait for the whole loop.
+// A mechanism may violate what the rules take for granted (a body without inertia); pivots are checked by numbers
+// later.
+#pragma once
+
+#include <vector>
+
+#include "linsolve/block/graph.h"
+
+namespace poinsot {
+
+// Atoms in the order of their elimination.
+std::vector<int> elimination_order(const BlockGraph& graph);
+
+}  // namespace poinsot

@@ -1,0 +1,76 @@
+// Everything about a block elimination that does not depend on values, as a straight list of small dense operations.
+//
+// The matrix is permuted symmetrically into the order of elimination and cut into fronts, one for each atom or few:
+//
+//   [ D  U ]  p pivots          L ← L D⁻¹,  W ← W − L U;  W (the update matrix) goes into the parent front
+//   [ L  W ]  m other unknowns
+//
+// Fronts are numbered so that children come before their parent (postorder). Factors of a front lie together in
+// `store`: D (p × p), L (rows × p, rows = m padded to full vectors), U (p × m), columns one after the other. W is rows
+// × m and waits at a fixed place of a stack.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "linsolve/block/graph.h"
+#include "linsolve/csc_layout.h"
+
+namespace poinsot {
+
+// Columns of L and W are padded to full vectors of the machine the program is compiled for.
+#if defined(__AVX512F__)
+inline constexpr int kLanes = 8;
+#elif defined(__AVX__)
+inline constexpr int kLanes = 4;
+#else
+inline constexpr int kLanes = 2;
+#endif
+constexpr int padded(int rows) {
+  return (rows + kLanes - 1) / kLanes * kLanes;
+}
+
+struct Front {
+  int pivots, others, rows;  // p, m, m padded
+  int first;                 // position of the first pivot in the order of elimination
+  int list;                  // where its m entries of `position` and `target` start
+  int inner;                 // how many of the m unknowns are pivots of the parent: they come first
+  int first_stretch, first_outer_stretch, last_stretch;  // of its update in the parent: pivots there, others there, end
+  // Ends of its runs of length 1, 2, 3, 4 and others; they start where those of the front before end.
+  std::array<int, 5> runs;
+  int children;         // end of its children, likewise
+  std::int64_t store;   // of D, in doubles
+  std::int64_t update;  // of W on the stack
+};
+
+// `length` values from `source` on go to `target` in the store of the front.
+struct Run {
+  int source;
+  std::uint32_t target : 24, length : 8;
+};
+static_assert(sizeof(Run) == 8);
+
+// `length` of a front's other unknowns from `from` on follow one after the other in the parent, too: from `to` on among
+// its pivots or among its others.
+struct Stretch {
+  std::uint16_t from, to, length;
+};
+
+struct Schedule {
+  int n = 0;
+  std::vector<Front> fronts;
+  std::vector<int> unknown;   // by position
+  std::vector<int> position;  // of the m other unknowns of each front, ascending
+  std::vector<Stretch> stretches;
+  std::vector<Run> runs;
+  std::vector<int> children;
+  std::int64_t store_size = 0, stack_size = 0, factor_nonzeros = 0;
+  int largest_update = 0, largest_pivots = 0, largest_rows = 0;
+
+  // false where a front is too large for the store's addressing; such a matrix is dense, not a mechanism.
+  bool build(const CscLayout& layout, const BlockGraph& graph, std::span<const int> order);
+};
+
+}  // namespace poinsot

@@ -1,0 +1,280 @@
+// The block solver: Gaussian elimination over the graph of bodies and groups of constraints.
+//
+// analyze() chooses the order by structure (order.h) and lays out a straight list of dense operations
+// (schedule.h); factor() runs it. What the order takes for granted is checked by numbers:
+//
+//   fresh      the first factorization, and later ones whose pivots left three decades around those of the last fresh
+//              one. Bodies and groups with a pivot block that is not regular are fused and the order is chosen again;
+//              then Bauer's condition (condition.h) and the residual of a solve decide;
+//   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
+//
+// A mechanism without degrees of freedom needs less: its square G alone is factorized (determined.h).
+//
+// Where this does not lead to a trustworthy answer the same values go to klu, whose word counts, singular included.
+// Matrices without a saddle point's symmetric structure (kinematics) go to klu from the start.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/check.h"
+#include "linsolve/back_ends.h"
+#include "linsolve/block/cancellation.h"
+#include "linsolve/block/factor.h"
+#include "linsolve/block/graph.h"
+#include "linsolve/block/order.h"
+#include "linsolve/block/schedule.h"
+#include "linsolve/condition.h"
+#include "linsolve/csc_layout.h"
+#include "linsolve/determined.h"
+#include "linsolve/equilibration.h"
+#include "linsolve/finite.h"
+#include "linsolve/residual.h"
+
+namespace poinsot {
+namespace {
+
+constexpr double kSymmetric = 0.9;        // share of mirrored entries that makes a saddle point
+constexpr double kNear = 10, kFar = 1e3;  // drift of pivots that is trusted unseen, and with a look at residuals
+constexpr double kSmallResidual = 2e-15;  // relative; above, residuals of later solutions are looked at
+constexpr double kGoodResidual = 3e-15;   // above, a solution is refined; less than ten times klu's good ones
+constexpr double kFairResidual = 1e-12;   // above, other pivots are tried
+constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not accepted
+constexpr double kCancelled = 1e-6;       // part of its size that is left of a pivot: worth another order
+constexpr double kRounding = 1e-10;       // the same: little but rounding
+constexpr int kRefinements = 3;
+constexpr int kRepairs = 8;
+constexpr int kPatience = 3;  // times in a row that klu has to help before it takes over
+
+std::size_t at(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+class BlockSolver final : public LinearSolver {
+ private:
+  LinearStatus do_analyze(const Pattern& pattern) override {
+    if (LinearStatus status = layout_.build(pattern); !status.ok()) return status;
+    if (LinearStatus status = layout_.matching(); !status.ok()) return status;
+    slots_ = layout_.slots;
+    std::vector<int>().swap(layout_.slots);
+    node_ = pattern.node;
+    values_.assign(at(layout_.nonzeros()), 0);
+    statistics_.nonzeros = layout_.nonzeros();
+    klu_.reset();
+    examined_ = false;
+    helped_ = 0;
+    fused_.assign(at(1 + *std::ranges::max_element(node_)), -1);
+    by_klu_ = only_klu_ = symmetry(layout_) < kSymmetric;
+    ordered_ = determined_fits_ = false;
+    determined_ = only_klu_ ? nullptr : std::make_unique<Determined>();
+    if (determined_ && !determined_->analyze(layout_)) determined_.reset();
+    if (!only_klu_ && !determined_) only_klu_ = !order();
+    return {};
+  }
+
+  bool order() {
+    {
+      BlockGraph graph;
+      graph.build(layout_, node_, fused_);
+      schedule_ = {};
+      if (!schedule_.build(layout_, graph, elimination_order(graph))) return false;
+    }
+    factor_.resize(schedule_);
+    statistics_.factor_nonzeros = schedule_.factor_nonzeros;
+    return ordered_ = true;
+  }
+
+  LinearStatus do_factor() override {
+    determined_fits_ = determined_ && determined_->fits(values_);
+    if (determined_fits_) return factor_determined();
+    by_klu_ = only_klu_ = only_klu_ || (!ordered_ && !order());
+    if (by_klu_) return factor_by_klu();
+    const block::Drift drift = factor_.factor(schedule_, values_, examined_);
+    if (!examined_ || !within(drift, kFar)) return factor_fresh();
+    ++statistics_.refactorizations;
+    drifted_ = watched_ || !within(drift, kNear);
+    return {};
+  }
+
+  LinearStatus factor_determined() {
+    const LinearStatistics& after = determined_->statistics();
+    statistics_.factorizations -= after.factorizations, statistics_.refactorizations -= after.refactorizations;
+    LinearStatus status = determined_->factor(values_);
+    statistics_.factorizations += after.factorizations, statistics_.refactorizations += after.refactorizations;
+    statistics_.factor_nonzeros = after.factor_nonzeros;
+    statistics_.reciprocal_condition = after.reciprocal_condition;
+    return status;
+  }
+
+  static bool within(const block::Drift& drift, double range) {
+    return drift.poison == 0 && drift.least * range >= 1 && drift.largest <= range;
+  }
+
+  LinearStatus factor_fresh() {
+    if (!all_finite(values_)) return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
+    ++statistics_.factorizations;
+    {
+      Equilibration equilibration;
+      equilibration.resize(layout_.n);
+      (void)equilibration.find(layout_, values_);
+      residual_.measure_by(equilibration.row(), equilibration.col());
+    }
+    examined_ = false;
+    for (int repairs = 0; !trustworthy(); ++repairs) {
+      const auto bad = cancelled_pivots(schedule_, values_, residual_.rows(), kCancelled);
+      if (repairs == kRepairs || !fuse(bad) || !order()) return factor_by_klu();
+    }
+    // A pivot that is rounding may still pass for one in a system of very different masses; klu sees it at its own
+    // size.
+    if (!cancelled_pivots(schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
+    watched_ = watched_ || !cancelled_pivots(schedule_, values_, weight_, kCancelled).empty();
+    examined_ = true;
+    factor_.keep_pivots(schedule_);
+    drifted_ = watched_;
+    helped_ = 0;
+    return {};
+  }
+
+  // Factorizes with pivots chosen in the units of the equilibrated matrix and, where that does not serve, in those the
+  // condition estimate finds. Finds out whether solutions need refinement.
+  bool trustworthy() {
+    const std::span<const double> rows = residual_.rows();
+    weight_.assign(rows.begin(), rows.end());
+    Condition condition;
+    condition.resize(layout_.n);
+    std::vector<double> x(rows.size());  // sizes of the unknowns, then a solution
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] = residual_.column(j);
+    double size = 0;
+    const auto solve = [&](std::span<double> b) {
+      b_.assign(b.begin(), b.end());
+      factor_.solve(schedule_, b);
+      size = std::max(size, residual(b_, b));
+    };
+    for (const bool last : {false, true}) {
+      factor_.weigh_rows(schedule_, weight_);
+      (void)factor_.factor(schedule_, values_, false);
+      size = 0;
+      const double estimate = condition.estimate(layout_, values_, solve, x);
+      statistics_.reciprocal_condition = 1 / estimate;
+      if (!std::isfinite(estimate)) return false;
+      std::ranges::transform(rows, x.begin(), [](double row) { return 1 / row; });
+      solve(x);
+      watched_ = size > kSmallResidual;
+      if (estimate < kSingularCondition && (size <= kFairResidual || (last && refine(x) <= kLargeResidual)))
+        return true;
+      std::ranges::transform(condition.rows(), weight_.begin(), [](double w) { return 1 / w; });
+      std::ranges::copy(condition.columns(), x.begin());
+    }
+    return false;
+  }
+
+  // A body that is not regular by itself takes in a group of its constraints; a group that was a pivot too early goes
+  // to the last of its bodies. False where nothing is left to fuse.
+  bool fuse(const std::vector<int>& bad) {
+    BlockGraph graph;
+    graph.build(layout_, node_, fused_);
+    std::vector<int> place(fused_.size(), 0);  // in the order of elimination, by node
+    for (int k = 0; k < schedule_.n; ++k) place[at(node_[at(schedule_.unknown[at(k)])])] = k;
+    bool any = false;
+    for (const int k : bad) {
+      const Front& f = schedule_.fronts[at(k)];
+      for (int i = f.first; i < f.first + f.pivots; ++i) {
+        const int node = node_[at(schedule_.unknown[at(i)])];
+        if (graph.body_atoms[at(node)] == 0 && fused_[at(node)] < 0) {
+          const std::span<const int> bodies = graph.bodies[node];
+          if (bodies.empty()) continue;
+          fused_[at(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[at(b)]; });
+          any = true;
+        } else if (fused_[at(node)] < 0) {
+          for (const int g : graph.groups[node])
+            if (fused_[at(g)] < 0) {
+              fused_[at(g)] = node;
+              any = true;
+              break;
+            }
+        }
+      }
+    }
+    return any;
+  }
+
+  LinearStatus do_solve(std::span<double> b) override {
+    if (determined_fits_) {
+      determined_->solve(layout_, values_, b);
+      return {};
+    }
+    if (by_klu_) return klu_->solve(b);
+    if (!drifted_) {
+      factor_.solve(schedule_, b);
+      return {};
+    }
+    b_.assign(b.begin(), b.end());
+    factor_.solve(schedule_, b);
+    if (residual(b_, b) <= kGoodResidual || refine(b) <= kLargeResidual) return {};
+    std::ranges::copy(b_, b.begin());
+    if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
+    return klu_->solve(b);
+  }
+
+  // Corrects x, whose residual for b_ was found, until the residual is small, a few times at most; the residual.
+  double refine(std::span<double> x) {
+    double size = HUGE_VAL;
+    for (int step = 0; step < kRefinements && !(size <= kGoodResidual); ++step) {
+      correct(x);
+      size = residual(b_, x);
+    }
+    return size;
+  }
+
+  // x ← x + A⁻¹ r with the last residual r.
+  void correct(std::span<double> x) {
+    const std::span<double> r = residual_.vector();
+    factor_.solve(schedule_, r);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += r[i];
+  }
+
+  double residual(std::span<const double> b, std::span<const double> x) {
+    return residual_.size(layout_, values_, b, x);
+  }
+
+  LinearStatus factor_by_klu() {
+    if (!klu_) {
+      klu_ = make_klu();
+      Pattern columns{layout_.n, {}, node_};
+      for (int j = 0; j < layout_.n; ++j)
+        for (int k = layout_.start[at(j)]; k < layout_.start[at(j) + 1]; ++k)
+          columns.blocks.push_back({layout_.row[at(k)], j, 1, 1});
+      if (LinearStatus status = klu_->analyze(columns); !status.ok()) return status;
+    }
+    ++statistics_.handed_over;
+    if (++helped_ >= kPatience) only_klu_ = true;
+    std::ranges::copy(values_, klu_->values().begin());
+    LinearStatus status = klu_->factor();
+    statistics_.reciprocal_condition = klu_->statistics().reciprocal_condition;
+    statistics_.factor_nonzeros = klu_->statistics().factor_nonzeros;
+    by_klu_ = status.ok();
+    return status;
+  }
+
+  CscLayout layout_;
+  std::vector<int> node_, fused_;
+  Schedule schedule_;
+  BlockFactor factor_;
+  std::unique_ptr<Determined> determined_;  // where the structure has the form
+  std::unique_ptr<LinearSolver> klu_;
+  Residual residual_;
+  std::vector<double> b_;
+  std::vector<double> weight_;  // of rows in the choice of pivots
+  bool ordered_ = false, examined_ = false, determined_fits_ = false;
+  bool watched_ = false;  // the last fresh factorization left larger residuals or cancelled much: all are looked at
+  bool drifted_ = false;  // that, or pivots left those of the last fresh factorization
+  bool by_klu_ = false, only_klu_ = false;
+  int helped_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_block() {
+  return std::make_unique<BlockSolver>();
+}
+
+}  // namespace poinsot
