@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "core/index.h"
 #include "formulations/configuration.h"
 #include "formulations/problem.h"
 #include "formulations/torsion.h"
@@ -150,7 +151,6 @@ class Forces {
   }
 
  private:
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
   static Ambient torque(const Vec3<T>& moment) {
     Ambient e = Ambient::Zero();
     e.template head<3>() = moment;

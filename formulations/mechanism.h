@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "formulations/forces.h"
 #include "formulations/problem.h"
 #include "formulations/rows.h"
@@ -185,7 +186,6 @@ class Mechanism {
   C c;
 
  private:
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
   static Eigen::Map<const X> coordinates(const T* x) { return Eigen::Map<const X>(x); }
   static bool damped(const Elements& e) {
     return std::any_of(e.springs.begin(), e.springs.end(), [](const SpringElement& k) { return k.damping != 0; }) ||

@@ -8,6 +8,7 @@
 
 #include <vector>
 
+#include "core/index.h"
 #include "formulations/forces.h"
 #include "formulations/problem.h"
 #include "formulations/row_blocks.h"
@@ -53,8 +54,6 @@ class MechanismMatrix {
   }
 
  private:
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-
   void tangents(int bodies, const T* dq) {
     if constexpr (F::lie_group) {
       T_inverse_.clear();

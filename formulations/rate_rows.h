@@ -6,6 +6,7 @@
 // compute_s_dot.
 #pragma once
 
+#include "core/index.h"
 #include "formulations/rows.h"
 
 namespace poinsot {
@@ -78,8 +79,6 @@ class RateRows {
   }
 
  private:
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-
   // w·δs
   static X moved(const C& c, int body, const Vec3<T>& s, const Vec3<T>& w) {
     if (body == kGround) return X::Zero();

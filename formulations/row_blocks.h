@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "core/index.h"
 #include "formulations/problem.h"
 #include "formulations/rate_rows.h"
 
@@ -89,8 +90,6 @@ class RowBlocks {
   }
 
  private:
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-
   // ± [I, E(s) Ŵ]
   void coincidence_blocks(int row, int body, int point, const T& sign, bool transposed) const {
     using GX = Eigen::Matrix<T, 3, F::m>;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "formulations/configuration.h"
 
 namespace poinsot {
@@ -148,8 +149,6 @@ class Rows {
   }
 
  private:
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-
   static Gradient direction_pair(const RowBase& k, const Vec3<T>& u, const Vec3<T>& v) {
     const Ambient e = C::Et_times(u, v);
     Ambient other = e;  // [v × u; u·v]

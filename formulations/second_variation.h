@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/index.h"
 #include "formulations/rows.h"
 
 namespace poinsot {
@@ -146,7 +147,6 @@ struct SecondVariation {
     std::fill(pairs_with_r_.begin(), pairs_with_r_.end(), OnPairWithR());
   }
 
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
   std::vector<OnBody> bodies_;
   std::vector<OnPair> pairs_;
   std::vector<OnPairWithR> pairs_with_r_;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/index.h"
 #include "formulations/configuration.h"
 
 namespace poinsot {
@@ -115,7 +116,6 @@ class Torsion {
  private:
   using Line = Eigen::Matrix<T, 1, F::m>;
 
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
   static Vec3<T> u_bar(const C& c, const TorsionRow& k, const Twist& w) {
     return (w.x * c.s_bar(k.b) - w.y * c.s_bar(k.a)) / w.rho2;
   }

@@ -7,10 +7,11 @@
 #include <string>
 #include <utility>
 
+#include "core/index.h"
+
 namespace poinsot {
 
 LinearStatus CscLayout::build(const Pattern& pattern) {
-  const auto size = [](int k) { return static_cast<std::size_t>(k); };
   n = pattern.n;
 
   std::int64_t block_columns = 0, entries = 0;
@@ -19,35 +20,35 @@ LinearStatus CscLayout::build(const Pattern& pattern) {
   if (block_columns > std::numeric_limits<int>::max()) return too_large;
 
   // Row intervals [first, end) by column.
-  std::vector<int> begin(size(n) + 1, 0);
+  std::vector<int> begin(index(n) + 1, 0);
   for (const Block& b : pattern.blocks)
-    for (int c = 0; c < b.cols; ++c) ++begin[size(b.col + c) + 1];
-  for (int j = 0; j < n; ++j) begin[size(j) + 1] += begin[size(j)];
-  std::vector<std::pair<int, int>> interval(size(begin.back()));
+    for (int c = 0; c < b.cols; ++c) ++begin[index(b.col + c) + 1];
+  for (int j = 0; j < n; ++j) begin[index(j) + 1] += begin[index(j)];
+  std::vector<std::pair<int, int>> interval(index(begin.back()));
   std::vector<int> next(begin.begin(), begin.end() - 1);
   for (const Block& b : pattern.blocks)
-    for (int c = 0; c < b.cols; ++c) interval[size(next[size(b.col + c)]++)] = {b.row, b.row + b.rows};
+    for (int c = 0; c < b.cols; ++c) interval[index(next[index(b.col + c)]++)] = {b.row, b.row + b.rows};
 
   start.assign(1, 0);
-  start.reserve(size(n) + 1);
+  start.reserve(index(n) + 1);
   row.clear();
   row.reserve(static_cast<std::size_t>(entries));  // more where blocks overlap, given back below
   for (int j = 0; j < n; ++j) {
-    const auto first = interval.begin() + begin[size(j)], last = interval.begin() + begin[size(j) + 1];
+    const auto first = interval.begin() + begin[index(j)], last = interval.begin() + begin[index(j) + 1];
     std::sort(first, last);
     int filled = 0;  // rows below this one are in
     for (auto it = first; it != last; ++it)
       for (filled = std::max(filled, it->first); filled < it->second; ++filled) row.push_back(filled);
-    if (row.size() > size(std::numeric_limits<int>::max())) return too_large;
+    if (row.size() > index(std::numeric_limits<int>::max())) return too_large;
     start.push_back(static_cast<int>(row.size()));
   }
   row.shrink_to_fit();
 
   slots.clear();
-  slots.reserve(size(begin.back()));
+  slots.reserve(index(begin.back()));
   for (const Block& b : pattern.blocks)
     for (int j = b.col; j < b.col + b.cols; ++j) {
-      const auto first = row.begin() + start[size(j)], last = row.begin() + start[size(j) + 1];
+      const auto first = row.begin() + start[index(j)], last = row.begin() + start[index(j) + 1];
       slots.push_back(static_cast<int>(std::lower_bound(first, last, b.row) - row.begin()));
     }
   return {};
@@ -60,10 +61,10 @@ class Matching {
  public:
   explicit Matching(const CscLayout& layout)
       : layout_(layout),
-        row_of_(size(layout.n), kNone),
-        column_of_(size(layout.n), kNone),
-        level_(size(layout.n)),
-        next_(size(layout.n)) {}
+        row_of_(index(layout.n), kNone),
+        column_of_(index(layout.n), kNone),
+        level_(index(layout.n)),
+        next_(index(layout.n)) {}
 
   // The number of matched columns.
   int grow() {
@@ -73,7 +74,7 @@ class Matching {
       find_levels();
       std::copy_n(layout_.start.begin(), next_.size(), next_.begin());
       for (int j = 0; j < layout_.n; ++j)
-        if (row_of_[size(j)] == kNone && augment(j)) ++matched;
+        if (row_of_[index(j)] == kNone && augment(j)) ++matched;
       if (matched == before) break;
     }
     return matched;
@@ -83,17 +84,16 @@ class Matching {
 
  private:
   static constexpr int kNone = -1, kFar = std::numeric_limits<int>::max();
-  static std::size_t size(int k) { return static_cast<std::size_t>(k); }
 
   // Columns with few rows choose first: multipliers take the bodies' equations, which are many.
   int greedy() {
-    std::vector<int> order(size(layout_.n));
+    std::vector<int> order(index(layout_.n));
     std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, {}, [&](int j) { return layout_.start[size(j) + 1] - layout_.start[size(j)]; });
+    std::ranges::stable_sort(order, {}, [&](int j) { return layout_.start[index(j) + 1] - layout_.start[index(j)]; });
     int matched = 0;
     for (const int j : order)
-      for (int k = layout_.start[size(j)]; k < layout_.start[size(j) + 1]; ++k)
-        if (const int i = layout_.row[size(k)]; column_of_[size(i)] == kNone) {
+      for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k)
+        if (const int i = layout_.row[index(k)]; column_of_[index(i)] == kNone) {
           match(i, j);
           ++matched;
           break;
@@ -101,21 +101,21 @@ class Matching {
     return matched;
   }
 
-  void match(int i, int j) { column_of_[size(i)] = j, row_of_[size(j)] = i; }
+  void match(int i, int j) { column_of_[index(i)] = j, row_of_[index(j)] = i; }
 
   // Distance of columns from the free columns along alternating paths.
   void find_levels() {
     queue_.clear();
     for (int j = 0; j < layout_.n; ++j) {
-      level_[size(j)] = row_of_[size(j)] == kNone ? 0 : kFar;
-      if (level_[size(j)] == 0) queue_.push_back(j);
+      level_[index(j)] = row_of_[index(j)] == kNone ? 0 : kFar;
+      if (level_[index(j)] == 0) queue_.push_back(j);
     }
     for (std::size_t q = 0; q < queue_.size(); ++q) {
       const int j = queue_[q];
-      for (int k = layout_.start[size(j)]; k < layout_.start[size(j) + 1]; ++k) {
-        const int other = column_of_[size(layout_.row[size(k)])];
-        if (other != kNone && level_[size(other)] == kFar) {
-          level_[size(other)] = level_[size(j)] + 1;
+      for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k) {
+        const int other = column_of_[index(layout_.row[index(k)])];
+        if (other != kNone && level_[index(other)] == kFar) {
+          level_[index(other)] = level_[index(j)] + 1;
           queue_.push_back(other);
         }
       }
@@ -127,24 +127,24 @@ class Matching {
     path_.assign(1, from);
     while (!path_.empty()) {
       const int j = path_.back();
-      if (next_[size(j)] == layout_.start[size(j) + 1]) {
-        level_[size(j)] = kFar;
+      if (next_[index(j)] == layout_.start[index(j) + 1]) {
+        level_[index(j)] = kFar;
         path_.pop_back();
         continue;
       }
-      const int i = layout_.row[size(next_[size(j)]++)];
-      const int other = column_of_[size(i)];
+      const int i = layout_.row[index(next_[index(j)]++)];
+      const int other = column_of_[index(i)];
       if (other == kNone) {
         int row = i;  // each column on the way takes the row it went through
         while (!path_.empty()) {
-          const int column = path_.back(), previous = row_of_[size(column)];
+          const int column = path_.back(), previous = row_of_[index(column)];
           match(row, column);
           row = previous;
           path_.pop_back();
         }
         return true;
       }
-      if (level_[size(other)] == level_[size(j)] + 1) path_.push_back(other);
+      if (level_[index(other)] == level_[index(j)] + 1) path_.push_back(other);
     }
     return false;
   }

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <utility>
 
-#include "linsolve/block/kernels.h"
+#include "linsolve/lanes.h"
 
 namespace poinsot::dense {
 
@@ -50,10 +50,10 @@ void factor(double* a, int size, int* order, double* inverse) {
 template <int N, int K>
 struct Below {
   static constexpr int kFirst = K / kLanes, kGroups = stride(N) / kLanes;
-  block::Vec v[kGroups];
+  Vec v[kGroups];
 
   explicit Below(const double* column) {
-    for (int g = kFirst; g < kGroups; ++g) v[g] = block::load(column + g * kLanes);
+    for (int g = kFirst; g < kGroups; ++g) v[g] = load(column + g * kLanes);
     for (int i = kFirst * kLanes; i <= K; ++i) v[kFirst][i % kLanes] = 0;
   }
 };
@@ -63,24 +63,23 @@ double refactor(double* a, int size, double* inverse) {
   const int n = N ? N : size, rows = stride(n);
   double largest = 0;
   if constexpr (N > 0) {
-    block::Vec most = {};
-    block::unrolled<N>([&](auto k) {
+    Vec most = {};
+    unrolled<N>([&](auto k) {
       double* column = a + k * rows;
       const double scale = inverse[k] = 1 / column[k];
       Below<N, k> l(column);
       for (int g = l.kFirst; g < l.kGroups; ++g) {
-        block::Vec entries = block::load(column + g * kLanes), x = l.v[g] *= scale;
+        Vec entries = load(column + g * kLanes), x = l.v[g] *= scale;
         most = x > most ? x : most;
         most = -x > most ? -x : most;
         for (int i = 0; i < kLanes; ++i)
           if (g * kLanes + i > k) entries[i] = x[i];
-        block::store(column + g * kLanes, entries);
+        store(column + g * kLanes, entries);
       }
       for (int j = k + 1; j < N; ++j) {
         double* other = a + j * rows;
         const double u = other[k];
-        for (int g = l.kFirst; g < l.kGroups; ++g)
-          block::store(other + g * kLanes, block::load(other + g * kLanes) - l.v[g] * u);
+        for (int g = l.kFirst; g < l.kGroups; ++g) store(other + g * kLanes, load(other + g * kLanes) - l.v[g] * u);
       }
     });
     for (int i = 0; i < kLanes; ++i) largest = std::max(largest, most[i]);
@@ -106,17 +105,17 @@ void solve(const double* a, int size, const int* order, const double* inverse, d
   const int n = N ? N : size, rows = stride(n);
   for (int k = 0; k < n; ++k) x[k] = b[order[k]];
   if constexpr (N > 0) {
-    block::Vec v[stride(N) / kLanes];
-    for (int g = 0; g < stride(N) / kLanes; ++g) v[g] = block::load(x + g * kLanes);
-    block::unrolled<N>([&](auto k) {
+    Vec v[stride(N) / kLanes];
+    for (int g = 0; g < stride(N) / kLanes; ++g) v[g] = load(x + g * kLanes);
+    unrolled<N>([&](auto k) {
       const Below<N, k> l(a + k * rows);
       const double xk = v[k / kLanes][k % kLanes];
       for (int g = l.kFirst; g < l.kGroups; ++g) v[g] -= l.v[g] * xk;
     });
-    block::unrolled<N>([&](auto back) {
+    unrolled<N>([&](auto back) {
       constexpr int k = N - 1 - back;
       const double xk = v[k / kLanes][k % kLanes] * inverse[k];
-      for (int g = 0; g <= k / kLanes; ++g) v[g] -= block::load(a + k * rows + g * kLanes) * xk;  // spoils what is done
+      for (int g = 0; g <= k / kLanes; ++g) v[g] -= load(a + k * rows + g * kLanes) * xk;  // spoils what is done
       b[k] = xk;
     });
   } else {

@@ -7,37 +7,35 @@
 #include <queue>
 #include <utility>
 
+#include "core/index.h"
+
 namespace poinsot {
 namespace {
 
 constexpr double kNothing = 1e-13;  // of a coefficient beside a column of unit length
 
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
-
 }  // namespace
 
 FrontQr::FrontQr(const Eigen::SparseMatrix<double>& A, const std::vector<char>& left_out, double tolerance)
-    : column_(at(static_cast<int>(A.cols()))), place_(column_.size()), local_(column_.size()) {
+    : column_(index(static_cast<int>(A.cols()))), place_(column_.size()), local_(column_.size()) {
   const int n = static_cast<int>(A.cols());
   Eigen::SparseMatrix<double> kept = A;
-  kept.prune([&](Eigen::Index row, Eigen::Index, double value) { return value != 0 && !left_out[at(int(row))]; });
+  kept.prune([&](Eigen::Index row, Eigen::Index, double value) { return value != 0 && !left_out[index(int(row))]; });
   kept.makeCompressed();
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> P(n);
   Eigen::COLAMDOrdering<int>()(kept, P);
-  for (int k = 0; k < n; ++k) place_[at(k)] = P.indices()[k];
-  for (int k = 0; k < n; ++k) column_[at(place_[at(k)])] = k;
+  for (int k = 0; k < n; ++k) place_[index(k)] = P.indices()[k];
+  for (int k = 0; k < n; ++k) column_[index(place_[index(k)])] = k;
 
   const RowMajor by_row = kept * P.inverse();
-  std::vector<std::vector<int>> begin(at(n));
+  std::vector<std::vector<int>> begin(index(n));
   for (int row = 0; row < by_row.outerSize(); ++row)
-    if (const RowMajor::InnerIterator first(by_row, row); first) begin[at(int(first.col()))].push_back(row);
-  std::vector<std::vector<Front>> parts(at(n));
+    if (const RowMajor::InnerIterator first(by_row, row); first) begin[index(int(first.col()))].push_back(row);
+  std::vector<std::vector<Front>> parts(index(n));
   for (int place = 0; place < n; ++place) {
-    Front front = assemble(place, by_row, begin[at(place)], std::move(parts[at(place)]));
+    Front front = assemble(place, by_row, begin[index(place)], std::move(parts[index(place)]));
     reduce(place, front, tolerance);
-    if (front.left().size() > 0) parts[at(front.places[at(int(front.first))])].push_back(std::move(front));
+    if (front.left().size() > 0) parts[index(front.places[index(int(front.first))])].push_back(std::move(front));
   }
 }
 
@@ -56,18 +54,18 @@ FrontQr::Front FrontQr::assemble(int place, const RowMajor& A, const std::vector
   std::sort(front.places.begin(), front.places.end());
   front.places.erase(std::unique(front.places.begin(), front.places.end()), front.places.end());
   if (front.places.empty()) front.places.push_back(place);
-  for (std::size_t k = 0; k < front.places.size(); ++k) local_[at(front.places[k])] = static_cast<int>(k);
+  for (std::size_t k = 0; k < front.places.size(); ++k) local_[index(front.places[k])] = static_cast<int>(k);
 
   front.rows.setZero(rows, static_cast<Eigen::Index>(front.places.size()));
   Eigen::Index next = 0;
   for (const int row : begins) {
-    for (RowMajor::InnerIterator it(A, row); it; ++it) front.rows(next, local_[at(int(it.col()))]) = it.value();
+    for (RowMajor::InnerIterator it(A, row); it; ++it) front.rows(next, local_[index(int(it.col()))]) = it.value();
     ++next;
   }
   for (Front& part : parts) {
     const auto left = part.left();
     for (Eigen::Index k = 0; k < left.cols(); ++k)
-      front.rows.col(local_[at(part.places[at(int(part.first + k))])]).segment(next, left.rows()) = left.col(k);
+      front.rows.col(local_[index(part.places[index(int(part.first + k))])]).segment(next, left.rows()) = left.col(k);
     next += left.rows();
   }
   return front;
@@ -87,7 +85,7 @@ void FrontQr::reduce(int place, Front& front, double tolerance) {
   auto left = front.left();
   ++front.first;
   if (!(left.col(0).norm() > tolerance)) {
-    dependent_.push_back(column_[at(place)]);
+    dependent_.push_back(column_[index(place)]);
     return;
   }
   double tau = 0, beta = 0;
@@ -96,17 +94,17 @@ void FrontQr::reduce(int place, Front& front, double tolerance) {
   left.rightCols(left.cols() - 1).applyHouseholderOnTheLeft(left.col(0).tail(left.rows() - 1), tau, work.data());
   R_.push_back({place, place, beta});
   for (Eigen::Index k = 1; k < left.cols(); ++k)
-    if (left(0, k) != 0) R_.push_back({place, front.places[at(int(front.first + k - 1))], left(0, k)});
+    if (left(0, k) != 0) R_.push_back({place, front.places[index(int(front.first + k - 1))], left(0, k)});
   ++front.top;
 }
 
 void FrontQr::store_by_column() {
   start_.assign(place_.size() + 1, 0);
-  for (const Entry& entry : R_) ++start_[at(entry.place) + 1];
+  for (const Entry& entry : R_) ++start_[index(entry.place) + 1];
   for (std::size_t k = 0; k + 1 < start_.size(); ++k) start_[k + 1] += start_[k];
   std::vector<std::size_t> next = start_;
   std::vector<Entry> sorted(R_.size());
-  for (const Entry& entry : R_) sorted[next[at(entry.place)]++] = entry;
+  for (const Entry& entry : R_) sorted[next[index(entry.place)]++] = entry;
   R_ = std::move(sorted);
 }
 
@@ -117,21 +115,21 @@ SparseEntries FrontQr::null_vector(int column) {
   std::vector<double>& b = work_;
   b.resize(place_.size());
   const auto subtract = [&](int place, double x, bool whole) {
-    const std::size_t end = start_[at(place) + 1] - (whole ? 0 : 1);
-    for (std::size_t k = start_[at(place)]; k < end; ++k) {
-      if (b[at(R_[k].row)] == 0) reached.push(R_[k].row);
-      b[at(R_[k].row)] -= R_[k].value * x;
+    const std::size_t end = start_[index(place) + 1] - (whole ? 0 : 1);
+    for (std::size_t k = start_[index(place)]; k < end; ++k) {
+      if (b[index(R_[k].row)] == 0) reached.push(R_[k].row);
+      b[index(R_[k].row)] -= R_[k].value * x;
     }
   };
   SparseEntries z = {{column, 1.0}};
-  subtract(place_[at(column)], 1, true);
+  subtract(place_[index(column)], 1, true);
   while (!reached.empty()) {
     const int place = reached.top();
     reached.pop();
-    const double rest = std::exchange(b[at(place)], 0.0);
+    const double rest = std::exchange(b[index(place)], 0.0);
     if (std::abs(rest) <= kNothing) continue;  // also where it was reached twice
-    const double x = rest / R_[start_[at(place) + 1] - 1].value;
-    z.emplace_back(column_[at(place)], x);
+    const double x = rest / R_[start_[index(place) + 1] - 1].value;
+    z.emplace_back(column_[index(place)], x);
     subtract(place, x, false);
   }
   std::sort(z.begin(), z.end());

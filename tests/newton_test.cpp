@@ -5,6 +5,7 @@
 
 #include <tuple>
 
+#include "core/index.h"
 #include "core/scene_generator.h"
 #include "integrators/start/initial_state.h"
 #include "tests/support/allocations.h"
@@ -206,9 +207,8 @@ TEST_P(Newton, StepsAllocateNothing) {
         const InitialState start = find_initial_state(compiled, settings);
         const auto problem = find_formulation(formulation())->make(compiled, start.dropped);
         if (settings.analysis == Analysis::kinematics && problem->nv() != problem->nc()) continue;
-        const auto size = [](int n) { return static_cast<std::size_t>(n); };
-        State state{std::vector<double>(size(problem->nq())), std::vector<double>(size(problem->nv())),
-                    std::vector<double>(size(problem->nv())), std::vector<double>(size(problem->nc()))};
+        State state{std::vector<double>(index(problem->nq())), std::vector<double>(index(problem->nv())),
+                    std::vector<double>(index(problem->nv())), std::vector<double>(index(problem->nc()))};
         ASSERT_TRUE(problem->from_bodies(start.bodies, state.q, state.v).ok());
         const auto solver = find_linear_solver(name)->make();
         long steps = 0, fresh = 0, pivots = 0, allocated = 0;

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/index.h"
 #include "formulations/problem.h"
 #include "linsolve/csc_layout.h"
 
@@ -39,8 +40,6 @@ class Linearization {
   }
 
  private:
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-
   int nv_;
   CscLayout layout_;
   std::vector<double> M_, D_, K_;

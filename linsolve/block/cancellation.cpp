@@ -4,14 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "core/index.h"
 #include "linsolve/block/kernels.h"
 
-namespace poinsot {
+namespace poinsot::block {
 namespace {
-
-std::size_t at(std::int64_t k) {
-  return static_cast<std::size_t>(k);
-}
 
 // A number and its size without cancellation.
 struct Sized {
@@ -21,8 +18,8 @@ struct Sized {
 // A whole front, (p + m) × (p + m).
 class Square {
  public:
-  explicit Square(int n) : n_(at(n)), entries_(n_ * n_) {}
-  Sized& operator()(int i, int j) { return entries_[at(j) * n_ + at(i)]; }
+  explicit Square(int n) : n_(index(n)), entries_(n_ * n_) {}
+  Sized& operator()(int i, int j) { return entries_[index(j) * n_ + index(i)]; }
 
  private:
   std::size_t n_;
@@ -34,12 +31,12 @@ bool eliminate(Square& a, int p, int n, std::vector<double> weight, double part)
   bool good = true;
   for (int k = 0; k < p; ++k) {
     int best = k;
-    const auto candidate = [&](int i) { return std::abs(a(i, k).value) * weight[at(i)]; };
+    const auto candidate = [&](int i) { return std::abs(a(i, k).value) * weight[index(i)]; };
     for (int i = k + 1; i < p; ++i)
       if (candidate(i) > candidate(best)) best = i;
     if (candidate(best) > block::kReluctance * candidate(k)) {
       for (int j = 0; j < n; ++j) std::swap(a(k, j), a(best, j));
-      std::swap(weight[at(k)], weight[at(best)]);
+      std::swap(weight[index(k)], weight[index(best)]);
     }
     Sized& pivot = a(k, k);
     if (!(std::abs(pivot.value) > part * pivot.size)) {
@@ -76,30 +73,30 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
         // Back from the store of D, L and U to rows and columns.
         const int t = static_cast<int>(run->target + i), l = t - p * p, u = l - p * f.rows;
         Sized& entry = l < 0 ? a(t % p, t / p) : u < 0 ? a(p + l % f.rows, l / f.rows) : a(u % p, p + u / p);
-        const double value = values[at(run->source) + i];
+        const double value = values[index(run->source) + i];
         entry.value += value;
         entry.size += std::abs(value);
       }
     for (const int* end = s.children.data() + f.children; child != end; ++child) {
-      const Front& c = s.fronts[at(*child)];
-      std::vector<int> places(at(c.others));
+      const Front& c = s.fronts[index(*child)];
+      std::vector<int> places(index(c.others));
       for (int r = c.first_stretch; r < c.last_stretch; ++r) {
-        const Stretch& stretch = s.stretches[at(r)];
+        const Stretch& stretch = s.stretches[index(r)];
         for (int i = 0; i < stretch.length; ++i)
-          places[at(stretch.from + i)] = stretch.to + i + (r < c.first_outer_stretch ? 0 : p);
+          places[index(stretch.from + i)] = stretch.to + i + (r < c.first_outer_stretch ? 0 : p);
       }
-      const auto place = [&](int i) { return places[at(i)]; };
-      const std::vector<Sized>& update = updates[at(*child)];
+      const auto place = [&](int i) { return places[index(i)]; };
+      const std::vector<Sized>& update = updates[index(*child)];
       for (int j = 0; j < c.others; ++j)
         for (int i = 0; i < c.others; ++i) {
           Sized& entry = a(place(i), place(j));
-          entry.value += update[at(j * c.others + i)].value;
-          entry.size += update[at(j * c.others + i)].size;
+          entry.value += update[index(j * c.others + i)].value;
+          entry.size += update[index(j * c.others + i)].size;
         }
-      std::vector<Sized>().swap(updates[at(*child)]);
+      std::vector<Sized>().swap(updates[index(*child)]);
     }
-    std::vector<double> units(at(p));
-    for (int i = 0; i < p; ++i) units[at(i)] = weight[at(s.unknown[at(f.first + i)])];
+    std::vector<double> units(index(p));
+    for (int i = 0; i < p; ++i) units[index(i)] = weight[index(s.unknown[index(f.first + i)])];
     if (!eliminate(a, p, n, std::move(units), part)) bad.push_back(static_cast<int>(k));
     for (int j = p; j < n; ++j)
       for (int i = p; i < n; ++i) updates[k].push_back(a(i, j));
@@ -107,4 +104,4 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
   return bad;
 }
 
-}  // namespace poinsot
+}  // namespace poinsot::block

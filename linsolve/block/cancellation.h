@@ -10,11 +10,11 @@
 
 #include "linsolve/block/schedule.h"
 
-namespace poinsot {
+namespace poinsot::block {
 
 // Fronts, ascending, with a pivot that is less than `part` of its size; those above such a front are judged as if it
 // were good. Pivots are chosen in the units of rows, `weight` by unknown. An elimination on its own, at leisure.
 std::vector<int> cancelled_pivots(const Schedule& schedule, std::span<const double> values,
                                   std::span<const double> weight, double part);
 
-}  // namespace poinsot
+}  // namespace poinsot::block

@@ -6,14 +6,15 @@
 #include <span>
 #include <vector>
 
+#include "core/index.h"
 #include "linsolve/block/graph.h"
 
-namespace poinsot {
+namespace poinsot::block {
 
 // What of the mechanism is eliminated, as connected components of bodies.
 class Eliminated {
  public:
-  explicit Eliminated(const BlockGraph& graph)
+  explicit Eliminated(const Graph& graph)
       : graph_(graph),
         left_(graph.body_atoms),
         in_(left_.size(), 0),
@@ -61,8 +62,6 @@ class Eliminated {
   }
 
  private:
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-
   struct Component {
     int half = 0;  // groups eliminated before one of their bodies
     bool grounded = false, cyclic = false;
@@ -103,11 +102,11 @@ class Eliminated {
     if (missing_[index(g)] > 0) ++component_[index(find(first))].half;
   }
 
-  const BlockGraph& graph_;
+  const Graph& graph_;
   std::vector<int> left_;  // atoms of a body not eliminated yet
   std::vector<char> in_;   // node eliminated: all of a body, some of a group
   std::vector<int> missing_, parent_;
   std::vector<Component> component_;
 };
 
-}  // namespace poinsot
+}  // namespace poinsot::block

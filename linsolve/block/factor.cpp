@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "linsolve/block/assembly.h"
+#include "linsolve/lanes.h"
 
-namespace poinsot {
+namespace poinsot::block {
 namespace {
-
-std::size_t at(std::int64_t k) {
-  return static_cast<std::size_t>(k);
-}
 
 // Calls work(std::integral_constant<int, P>) with P the front's number of pivots where a kernel is compiled for it.
 template <class Work>
@@ -53,28 +51,28 @@ inline void fetch(const double* from, int doubles) {
 
 }  // namespace
 
-void BlockFactor::resize(const Schedule& s) {
-  store_.assign(at(s.store_size + kLanes), 0);  // the last front may be laid down as well
-  stack_.assign(at(s.stack_size), 0);
-  update_.assign(at(s.largest_update), 0);
-  x_.assign(at(s.n), 0);
-  t_.assign(at(std::max(s.largest_rows, s.largest_pivots)), 0);
-  then_.assign(at(s.n), 1);
-  weight_.assign(at(s.n), 1);
-  order_.assign(at(s.n), 0);
+void Factor::resize(const Schedule& s) {
+  store_.assign(index(s.store_size + kLanes), 0);  // the last front may be laid down as well
+  stack_.assign(index(s.stack_size), 0);
+  update_.assign(index(s.largest_update), 0);
+  x_.assign(index(s.n), 0);
+  t_.assign(index(std::max(s.largest_rows, s.largest_pivots)), 0);
+  then_.assign(index(s.n), 1);
+  weight_.assign(index(s.n), 1);
+  order_.assign(index(s.n), 0);
   moved_.assign(s.fronts.size(), 0);
   places_.assign(s.fronts.size(), {});
   const int* child = s.children.data();
   for (std::size_t k = 0; k < s.fronts.size(); ++k) {
     const int* end = s.children.data() + s.fronts[k].children;
-    if (child != end && block::lays_down(s.fronts[at(*child)], s.fronts[k]))
-      places_[k] = block::places(s.fronts[at(*child)], s.stretches.data());
+    if (child != end && block::lays_down(s.fronts[index(*child)], s.fronts[k]))
+      places_[k] = block::places(s.fronts[index(*child)], s.stretches.data());
     child = end;
   }
 }
 
-block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> values, bool keep_order) {
-  block::Drift drift;
+Drift Factor::factor(const Schedule& s, std::span<const double> values, bool keep_order) {
+  Drift drift;
   const Run* run = s.runs.data();
   const int* child = s.children.data();
   const std::size_t ahead = store_.size() > kCached ? kAhead : s.fronts.size();
@@ -84,12 +82,12 @@ block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> valu
     if (k + ahead < s.fronts.size()) {
       const Front &next = s.fronts[k + ahead], &before = s.fronts[k + ahead - 1];
       fetch(store_.data() + next.store, next.pivots * (next.pivots + next.rows + next.others));
-      for (int r = before.runs[4]; r < next.runs[4]; ++r) __builtin_prefetch(values.data() + s.runs[at(r)].source);
+      for (int r = before.runs[4]; r < next.runs[4]; ++r) __builtin_prefetch(values.data() + s.runs[index(r)].source);
     }
     double* W = update_.data();
     const int* end = s.children.data() + f.children;
-    if (child != end && block::lays_down(s.fronts[at(*child)], f)) {
-      block::lay_down(places_[k], stack_.data() + s.fronts[at(*child++)].update, f, D, W);
+    if (child != end && block::lays_down(s.fronts[index(*child)], f)) {
+      block::lay_down(places_[k], stack_.data() + s.fronts[index(*child++)].update, f, D, W);
     } else {
       std::fill_n(D, f.pivots * (f.pivots + f.rows + f.others), 0.0);
       std::fill_n(W, f.rows * f.others, 0.0);
@@ -101,11 +99,11 @@ block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> valu
     for (const Run* last = s.runs.data() + f.runs[4]; run != last; ++run)
       block::add(D + run->target, values.data() + run->source, static_cast<int>(run->length));
     for (; child != end; ++child) {
-      const Front& c = s.fronts[at(*child)];
+      const Front& c = s.fronts[index(*child)];
       block::extend_add(c, stack_.data() + c.update, s.stretches.data(), f, D, W);
     }
-    block::Choice choice{order_.data() + f.first, weight_.data() + f.first, then_.data() + f.first, moved_[k] != 0,
-                         keep_order};
+    Choice choice{order_.data() + f.first, weight_.data() + f.first, then_.data() + f.first, moved_[k] != 0,
+                  keep_order};
     with_size(f.pivots,
               [&](auto P) { block::eliminate<P.value>(D, f, W, stack_.data() + f.update, choice, t_.data(), drift); });
     moved_[k] = choice.moved;
@@ -113,8 +111,8 @@ block::Drift BlockFactor::factor(const Schedule& s, std::span<const double> valu
   return drift;
 }
 
-void BlockFactor::solve(const Schedule& s, std::span<double> b) {
-  for (std::size_t k = 0; k < b.size(); ++k) x_[k] = b[at(s.unknown[k])];
+void Factor::solve(const Schedule& s, std::span<double> b) {
+  for (std::size_t k = 0; k < b.size(); ++k) x_[k] = b[index(s.unknown[k])];
   const std::size_t ahead = store_.size() > kCached ? kAhead : s.fronts.size();
   for (std::size_t k = 0; k < s.fronts.size(); ++k) {
     const Front& f = s.fronts[k];
@@ -138,17 +136,17 @@ void BlockFactor::solve(const Schedule& s, std::span<double> b) {
       block::backward<P.value>(store_.data() + f.store, f, s.position.data() + f.list, x_.data());
     });
   }
-  for (std::size_t k = 0; k < b.size(); ++k) b[at(s.unknown[k])] = x_[k];
+  for (std::size_t k = 0; k < b.size(); ++k) b[index(s.unknown[k])] = x_[k];
 }
 
-void BlockFactor::weigh_rows(const Schedule& s, std::span<const double> weight) {
-  for (std::size_t k = 0; k < weight.size(); ++k) weight_[k] = in_range(weight[at(s.unknown[k])]);
+void Factor::weigh_rows(const Schedule& s, std::span<const double> weight) {
+  for (std::size_t k = 0; k < weight.size(); ++k) weight_[k] = in_range(weight[index(s.unknown[k])]);
 }
 
-void BlockFactor::keep_pivots(const Schedule& s) {
+void Factor::keep_pivots(const Schedule& s) {
   for (const Front& f : s.fronts)
     for (int k = 0; k < f.pivots; ++k)
-      then_[at(f.first + k)] = in_range(std::abs(store_[at(f.store + std::int64_t{k} * (f.pivots + 1))]));
+      then_[index(f.first + k)] = in_range(std::abs(store_[index(f.store + std::int64_t{k} * (f.pivots + 1))]));
 }
 
-}  // namespace poinsot
+}  // namespace poinsot::block

@@ -10,9 +10,9 @@
 #include "linsolve/block/kernels.h"
 #include "linsolve/block/schedule.h"
 
-namespace poinsot {
+namespace poinsot::block {
 
-class BlockFactor {
+class Factor {
  public:
   void resize(const Schedule& schedule);
 
@@ -20,7 +20,7 @@ class BlockFactor {
   void weigh_rows(const Schedule& schedule, std::span<const double> weight);
   // Factorizes, in the order of rows of the last factorization as far as that serves, or choosing it afresh. Nothing
   // stops at a bad pivot; the drift tells.
-  block::Drift factor(const Schedule& schedule, std::span<const double> values, bool keep_order);
+  Drift factor(const Schedule& schedule, std::span<const double> values, bool keep_order);
   // b ← A⁻¹ b
   void solve(const Schedule& schedule, std::span<double> b);
   // Later factorizations are compared with the last one.
@@ -31,8 +31,8 @@ class BlockFactor {
   std::vector<float> then_;    // 1/|pivot| of an examined factorization, by position
   std::vector<float> weight_;  // by position
   std::vector<std::uint16_t> order_;
-  std::vector<block::Places> places_;  // by front: those of its first child where that lays it down
-  std::vector<char> moved_;            // by front: its rows are not in the order 0, 1, 2, … but in that of order_
+  std::vector<Places> places_;  // by front: those of its first child where that lays it down
+  std::vector<char> moved_;     // by front: its rows are not in the order 0, 1, 2, … but in that of order_
 };
 
-}  // namespace poinsot
+}  // namespace poinsot::block

@@ -3,28 +3,26 @@
 #include <algorithm>
 #include <numeric>
 
-namespace poinsot {
-namespace {
+#include "core/index.h"
 
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
+namespace poinsot::block {
+namespace {
 
 // Calls visit(i, j) for every entry of the pattern.
 template <class Visit>
 void entries(const CscLayout& layout, Visit&& visit) {
   for (int j = 0; j < layout.n; ++j)
-    for (int k = layout.start[at(j)]; k < layout.start[at(j) + 1]; ++k) visit(layout.row[at(k)], j);
+    for (int k = layout.start[index(j)]; k < layout.start[index(j) + 1]; ++k) visit(layout.row[index(k)], j);
 }
 
 class UnionFind {
  public:
-  explicit UnionFind(int n) : parent_(at(n)) { std::iota(parent_.begin(), parent_.end(), 0); }
+  explicit UnionFind(int n) : parent_(index(n)) { std::iota(parent_.begin(), parent_.end(), 0); }
   int find(int k) {
-    while (parent_[at(k)] != k) k = parent_[at(k)] = parent_[at(parent_[at(k)])];
+    while (parent_[index(k)] != k) k = parent_[index(k)] = parent_[index(parent_[index(k)])];
     return k;
   }
-  void join(int a, int b) { parent_[at(find(a))] = find(b); }
+  void join(int a, int b) { parent_[index(find(a))] = find(b); }
 
  private:
   std::vector<int> parent_;
@@ -51,7 +49,7 @@ Lists seen(const CscLayout& layout, int sets, SetOf&& set) {
 template <class Home>
 std::vector<int> merge(const CscLayout& layout, UnionFind& part, const std::vector<char>& on_body, Home&& home) {
   const Lists outside = seen(layout, layout.n, [&](int k) { return part.find(k); });
-  std::vector<int> roots, merged(at(layout.n));
+  std::vector<int> roots, merged(index(layout.n));
   std::iota(merged.begin(), merged.end(), 0);
   for (int k = 0; k < layout.n; ++k)
     if (part.find(k) == k) roots.push_back(k);
@@ -66,10 +64,10 @@ std::vector<int> merge(const CscLayout& layout, UnionFind& part, const std::vect
   for (const bool body : {true, false}) {
     int node = -1;
     for (const int k : roots) {
-      if ((on_body[at(k)] != 0) != body) continue;
+      if ((on_body[index(k)] != 0) != body) continue;
       if (home(k) != node) known.clear(), sights.clear(), node = home(k);
       sight.assign(outside[k].begin(), outside[k].end());
-      for (int& s : sight) s = merged[at(s)];
+      for (int& s : sight) s = merged[index(s)];
       std::ranges::sort(sight);
       sight.erase(std::unique(sight.begin(), sight.end()), sight.end());
       const auto same = std::ranges::find_if(known, [&](const Known& other) {
@@ -77,7 +75,7 @@ std::vector<int> merge(const CscLayout& layout, UnionFind& part, const std::vect
                           sights.begin() + static_cast<std::ptrdiff_t>(other.end));
       });
       if (same != known.end()) {
-        merged[at(k)] = same->root;
+        merged[index(k)] = same->root;
       } else {
         known.push_back({k, sights.size(), sights.size() + sight.size()});
         sights.insert(sights.end(), sight.begin(), sight.end());
@@ -89,50 +87,50 @@ std::vector<int> merge(const CscLayout& layout, UnionFind& part, const std::vect
 
 }  // namespace
 
-void BlockGraph::build(const CscLayout& layout, std::span<const int> node_of, std::span<const int> fused) {
+void Graph::build(const CscLayout& layout, std::span<const int> node_of, std::span<const int> fused) {
   const int n = layout.n;
   const int nodes = 1 + *std::ranges::max_element(node_of);
   const auto home = [&](int k) {
-    const int g = node_of[at(k)];
-    return fused.empty() || fused[at(g)] < 0 ? g : fused[at(g)];
+    const int g = node_of[index(k)];
+    return fused.empty() || fused[index(g)] < 0 ? g : fused[index(g)];
   };
 
   // Parts of a node that are connected within it. A part with an entry on the diagonal belongs to a body.
   UnionFind part(n);
-  std::vector<char> diagonal(at(n), 0), on_body(at(n), 0);  // the latter by root of part
+  std::vector<char> diagonal(index(n), 0), on_body(index(n), 0);  // the latter by root of part
   entries(layout, [&](int i, int j) {
     if (home(i) == home(j)) part.join(i, j);
-    if (i == j) diagonal[at(i)] = 1;
+    if (i == j) diagonal[index(i)] = 1;
   });
   for (int k = 0; k < n; ++k)
-    if (diagonal[at(k)]) on_body[at(part.find(k))] = 1;
+    if (diagonal[index(k)]) on_body[index(part.find(k))] = 1;
 
   const std::vector<int> merged = merge(layout, part, on_body, home);
   node.clear(), constraint.clear();
-  std::vector<int> atom_at(at(n), -1), atom_of(at(n));  // by root; by unknown
+  std::vector<int> atom_at(index(n), -1), atom_of(index(n));  // by root; by unknown
   for (int k = 0; k < n; ++k) {
-    const int root = merged[at(part.find(k))];
-    if (atom_at[at(root)] < 0) {
-      atom_at[at(root)] = static_cast<int>(node.size());
-      constraint.push_back(on_body[at(root)] == 0);
+    const int root = merged[index(part.find(k))];
+    if (atom_at[index(root)] < 0) {
+      atom_at[index(root)] = static_cast<int>(node.size());
+      constraint.push_back(on_body[index(root)] == 0);
       node.push_back(home(k));
     }
-    atom_of[at(k)] = atom_at[at(root)];
+    atom_of[index(k)] = atom_at[index(root)];
   }
   const int count = static_cast<int>(node.size());
   unknowns = Lists::collect(count, [&](auto&& emit) {
-    for (int k = 0; k < n; ++k) emit(atom_of[at(k)], k);
+    for (int k = 0; k < n; ++k) emit(atom_of[index(k)], k);
   });
-  neighbours = seen(layout, count, [&](int k) { return atom_of[at(k)]; });
+  neighbours = seen(layout, count, [&](int k) { return atom_of[index(k)]; });
 
-  body_atoms.assign(at(nodes), 0);
+  body_atoms.assign(index(nodes), 0);
   for (int a = 0; a < count; ++a)
-    if (!constraint[at(a)]) ++body_atoms[at(node[at(a)])];
+    if (!constraint[index(a)]) ++body_atoms[index(node[index(a)])];
   // Which groups act on which bodies, by the nodes of the pattern: fused groups included.
-  fused_with.assign(at(nodes), -1);
+  fused_with.assign(index(nodes), -1);
   if (!fused.empty()) std::ranges::copy(fused, fused_with.begin());
-  const auto is_group = [&](int g) { return fused_with[at(g)] >= 0 || body_atoms[at(g)] == 0; };
-  const Lists other = seen(layout, nodes, [&](int k) { return node_of[at(k)]; });
+  const auto is_group = [&](int g) { return fused_with[index(g)] >= 0 || body_atoms[index(g)] == 0; };
+  const Lists other = seen(layout, nodes, [&](int k) { return node_of[index(k)]; });
   const auto between = [&](bool group) {
     return Lists::collect(nodes, [&](auto&& emit) {
       for (int a = 0; a < nodes; ++a)
@@ -149,10 +147,11 @@ double symmetry(const CscLayout& layout) {
   if (layout.nonzeros() == 0) return 1;
   int mirrored = 0;
   entries(layout, [&](int i, int j) {
-    const auto first = layout.row.begin() + layout.start[at(i)], last = layout.row.begin() + layout.start[at(i) + 1];
+    const auto first = layout.row.begin() + layout.start[index(i)],
+               last = layout.row.begin() + layout.start[index(i) + 1];
     mirrored += std::binary_search(first, last, j);
   });
   return static_cast<double>(mirrored) / layout.nonzeros();
 }
 
-}  // namespace poinsot
+}  // namespace poinsot::block

@@ -14,9 +14,9 @@
 #include "linsolve/csc_layout.h"
 #include "linsolve/lists.h"
 
-namespace poinsot {
+namespace poinsot::block {
 
-struct BlockGraph {
+struct Graph {
   Lists unknowns, neighbours;    // by atom
   std::vector<char> constraint;  // by atom
   std::vector<int> node;         // by atom
@@ -33,4 +33,4 @@ struct BlockGraph {
 // Share of the entries (i, j) of a pattern that have a mirror entry (j, i).
 double symmetry(const CscLayout& layout);
 
-}  // namespace poinsot
+}  // namespace poinsot::block

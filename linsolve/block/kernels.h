@@ -15,19 +15,9 @@
 #include <utility>
 
 #include "linsolve/block/schedule.h"
+#include "linsolve/lanes.h"
 
 namespace poinsot::block {
-
-// A vector of the machine, by the compilers' common extension; plain arithmetic on it.
-typedef double Vec __attribute__((vector_size(kLanes * sizeof(double))));
-inline Vec load(const double* x) {
-  Vec v;
-  std::memcpy(&v, x, sizeof v);
-  return v;
-}
-inline void store(double* x, Vec v) {
-  std::memcpy(x, &v, sizeof v);
-}
 
 // As load, of numbers that were just written one by one or in other groups: a processor hands a store on to a later
 // load only where the store holds all of it.
@@ -63,15 +53,6 @@ struct Drift {
     poison += ratio * 0;
   }
 };
-
-// Calls f(std::integral_constant<int, k>()) for k = 0 … N − 1, each written out.
-template <int N, class F>
-inline void unrolled(F&& f) {
-  [&]<int... k>(std::integer_sequence<int, k...>) {
-    (f(std::integral_constant<int, k>()), ...);
-  }
-  (std::make_integer_sequence<int, N>());
-}
 
 // D ← its factors, p × p, with its rows in the given order (null: as they are), in straight-line code. False, and D as
 // it was, where a candidate is more than `reluctance` times a pivot, in the units of rows given by `weight`. `then`

@@ -7,30 +7,27 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/index.h"
 #include "linsolve/block/eliminated.h"
 
-namespace poinsot {
+namespace poinsot::block {
 namespace {
-
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
 
 // Quotient graph: what was eliminated is kept as elements, each the set of atoms its elimination coupled. An atom's
 // neighbours and elements share the room its neighbours had at first, from both ends: an element takes the place of the
 // neighbour that became it, or of an element that went into it.
 class MinimumDegree {
  public:
-  explicit MinimumDegree(const BlockGraph& graph)
-      : graph_(graph), eliminated_(graph), begin_(1, 0), atoms_(at(graph.atoms())) {
+  explicit MinimumDegree(const Graph& graph)
+      : graph_(graph), eliminated_(graph), begin_(1, 0), atoms_(index(graph.atoms())) {
     int top = 0;
     for (int a = 0; a < graph.atoms(); ++a) {
       const std::span<const int> neighbours = graph.neighbours[a];
       list_.insert(list_.end(), neighbours.begin(), neighbours.end());
       top += static_cast<int>(neighbours.size());
       begin_.push_back(top);
-      atoms_[at(a)].neighbours = static_cast<int>(neighbours.size());
-      atoms_[at(a)].weight = static_cast<int>(graph.unknowns[a].size());
+      atoms_[index(a)].neighbours = static_cast<int>(neighbours.size());
+      atoms_[index(a)].weight = static_cast<int>(graph.unknowns[a].size());
     }
     for (int a = 0; a < graph.atoms(); ++a) push(a);
   }
@@ -57,37 +54,41 @@ class MinimumDegree {
     bool done = false;
   };
 
-  std::span<const int> neighbours(int a) const { return {list_.data() + begin_[at(a)], at(atoms_[at(a)].neighbours)}; }
-  std::span<const int> elements(int a) const {
-    return {list_.data() + begin_[at(a) + 1] - atoms_[at(a)].elements, at(atoms_[at(a)].elements)};
+  std::span<const int> neighbours(int a) const {
+    return {list_.data() + begin_[index(a)], index(atoms_[index(a)].neighbours)};
   }
-  std::span<const int> members(int e) const { return {pool_.data() + atoms_[at(e)].member, at(atoms_[at(e)].members)}; }
+  std::span<const int> elements(int a) const {
+    return {list_.data() + begin_[index(a) + 1] - atoms_[index(a)].elements, index(atoms_[index(a)].elements)};
+  }
+  std::span<const int> members(int e) const {
+    return {pool_.data() + atoms_[index(e)].member, index(atoms_[index(e)].members)};
+  }
 
   // True the first time in a sweep, which begins with ++stamp_.
-  bool mark(int a) { return std::exchange(atoms_[at(a)].mark, stamp_) != stamp_; }
+  bool mark(int a) { return std::exchange(atoms_[index(a)].mark, stamp_) != stamp_; }
 
   void push(int a) {
-    atoms_[at(a)].degree = degree(a);
-    queue_.push({atoms_[at(a)].degree, a});
+    atoms_[index(a)].degree = degree(a);
+    queue_.push({atoms_[index(a)].degree, a});
   }
 
   // Unknowns outside a that its elimination couples. Exact while a sees little, an upper bound for hubs.
   int degree(int a) {
     constexpr int kExact = 64;
-    const State& state = atoms_[at(a)];
+    const State& state = atoms_[index(a)];
     // What a hub saw at first has only become less; its list is not searched again and again.
     if (state.neighbours > kHub && state.degree >= 0) return state.degree;
     ++stamp_;
     mark(a);
     int sum = 0;
     for (const int b : neighbours(a))
-      if (!atoms_[at(b)].done && mark(b)) sum += atoms_[at(b)].weight;
+      if (!atoms_[index(b)].done && mark(b)) sum += atoms_[index(b)].weight;
     for (const int e : elements(a)) {
       if (state.elements <= kExact) {
         for (const int b : members(e))
-          if (mark(b)) sum += atoms_[at(b)].weight;
+          if (mark(b)) sum += atoms_[index(b)].weight;
       } else {
-        for (const int b : members(e)) sum += atoms_[at(b)].weight;
+        for (const int b : members(e)) sum += atoms_[index(b)].weight;
         sum -= state.weight;
       }
     }
@@ -98,9 +99,9 @@ class MinimumDegree {
     while (!queue_.empty()) {
       const auto [degree, a] = queue_.top();
       queue_.pop();
-      if (atoms_[at(a)].done || degree != atoms_[at(a)].degree) continue;
+      if (atoms_[index(a)].done || degree != atoms_[index(a)].degree) continue;
       if (eliminated_.may_be_pivot(a)) return a;
-      atoms_[at(a)].degree = -1;  // comes back when something next to it is eliminated
+      atoms_[index(a)].degree = -1;  // comes back when something next to it is eliminated
     }
     // Constraints on nothing but constraints: numbers will tell.
     return static_cast<int>(std::ranges::find(atoms_, false, &State::done) - atoms_.begin());
@@ -111,13 +112,13 @@ class MinimumDegree {
     mark(a);
     front_.clear();
     const auto take = [&](int b) {
-      if (!atoms_[at(b)].done && mark(b)) front_.push_back(b);
+      if (!atoms_[index(b)].done && mark(b)) front_.push_back(b);
     };
     for (const int b : neighbours(a)) take(b);
     for (const int e : elements(a))
       for (const int b : members(e)) take(b);
-    for (const int e : elements(a)) atoms_[at(e)].members = 0;
-    State& state = atoms_[at(a)];
+    for (const int e : elements(a)) atoms_[index(e)].members = 0;
+    State& state = atoms_[index(a)];
     state.done = true;
     state.member = static_cast<int>(pool_.size());
     state.members = static_cast<int>(front_.size());
@@ -126,35 +127,35 @@ class MinimumDegree {
 
     for (const int b : front_) {
       drop_elements(b);
-      if (atoms_[at(b)].neighbours <= kHub || full(b)) drop_neighbours(b);
+      if (atoms_[index(b)].neighbours <= kHub || full(b)) drop_neighbours(b);
       if (front_.size() == 1) continue;  // couples nothing any more, only its atom may have become free to go
       check(!full(b), "a new element has the place of a neighbour or an element");
-      list_[at(begin_[at(b) + 1] - ++atoms_[at(b)].elements)] = a;
+      list_[index(begin_[index(b) + 1] - ++atoms_[index(b)].elements)] = a;
     }
     state.neighbours = state.elements = 0;
     for (const int b : front_) push(b);
   }
 
   bool full(int b) const {
-    return atoms_[at(b)].neighbours + atoms_[at(b)].elements == begin_[at(b) + 1] - begin_[at(b)];
+    return atoms_[index(b)].neighbours + atoms_[index(b)].elements == begin_[index(b) + 1] - begin_[index(b)];
   }
 
   // Elements that went into others.
   void drop_elements(int b) {
     int kept = 0;
-    for (int k = begin_[at(b) + 1] - 1, n = atoms_[at(b)].elements; n > 0; --k, --n)
-      if (atoms_[at(list_[at(k)])].members > 0) list_[at(begin_[at(b) + 1] - ++kept)] = list_[at(k)];
-    atoms_[at(b)].elements = kept;
+    for (int k = begin_[index(b) + 1] - 1, n = atoms_[index(b)].elements; n > 0; --k, --n)
+      if (atoms_[index(list_[index(k)])].members > 0) list_[index(begin_[index(b) + 1] - ++kept)] = list_[index(k)];
+    atoms_[index(b)].elements = kept;
   }
 
   // Neighbours that are eliminated, or in the new element like b itself.
   void drop_neighbours(int b) {
-    const auto first = list_.begin() + begin_[at(b)], last = first + atoms_[at(b)].neighbours;
-    const auto gone = [&](int c) { return atoms_[at(c)].done || atoms_[at(c)].mark == stamp_; };
-    atoms_[at(b)].neighbours = static_cast<int>(std::remove_if(first, last, gone) - first);
+    const auto first = list_.begin() + begin_[index(b)], last = first + atoms_[index(b)].neighbours;
+    const auto gone = [&](int c) { return atoms_[index(c)].done || atoms_[index(c)].mark == stamp_; };
+    atoms_[index(b)].neighbours = static_cast<int>(std::remove_if(first, last, gone) - first);
   }
 
-  const BlockGraph& graph_;
+  const Graph& graph_;
   Eliminated eliminated_;
   std::vector<int> list_, begin_, pool_, front_;
   std::vector<State> atoms_;
@@ -164,8 +165,8 @@ class MinimumDegree {
 
 }  // namespace
 
-std::vector<int> elimination_order(const BlockGraph& graph) {
+std::vector<int> elimination_order(const Graph& graph) {
   return MinimumDegree(graph).order();
 }
 
-}  // namespace poinsot
+}  // namespace poinsot::block

@@ -15,9 +15,9 @@
 
 #include "linsolve/block/graph.h"
 
-namespace poinsot {
+namespace poinsot::block {
 
 // Atoms in the order of their elimination.
-std::vector<int> elimination_order(const BlockGraph& graph);
+std::vector<int> elimination_order(const Graph& graph);
 
-}  // namespace poinsot
+}  // namespace poinsot::block

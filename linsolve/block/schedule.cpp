@@ -5,12 +5,12 @@
 #include <tuple>
 #include <utility>
 
-namespace poinsot {
+#include "core/index.h"
+#include "linsolve/lanes.h"
+
+namespace poinsot::block {
 namespace {
 
-std::size_t at(std::int64_t k) {
-  return static_cast<std::size_t>(k);
-}
 int count(const std::vector<int>& v) {
   return static_cast<int>(v.size());
 }
@@ -33,14 +33,14 @@ double cost(int p, int m) {
 
 class Builder {
  public:
-  Builder(const CscLayout& layout, const BlockGraph& graph, std::span<const int> order)
-      : layout_(layout), nodes_(order.size()), place_(at(layout.n)), owner_(at(layout.n)) {
+  Builder(const CscLayout& layout, const Graph& graph, std::span<const int> order)
+      : layout_(layout), nodes_(order.size()), place_(index(layout.n)), owner_(index(layout.n)) {
     unknown_.reserve(place_.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
       nodes_[k].first = count(unknown_);
       for (const int u : graph.unknowns[order[k]]) {
-        place_[at(u)] = count(unknown_);
-        owner_[at(count(unknown_))] = static_cast<int>(k);
+        place_[index(u)] = count(unknown_);
+        owner_[index(count(unknown_))] = static_cast<int>(k);
         unknown_.push_back(u);
       }
       nodes_[k].pivots = count(unknown_) - nodes_[k].first;
@@ -62,38 +62,38 @@ class Builder {
     const Lists beside = Lists::collect(count_nodes(), [&](auto&& emit) {
       int last_owner = -1, last_place = -1;
       for (int j = 0; j < layout_.n; ++j)
-        for (int k = layout_.start[at(j)]; k < layout_.start[at(j) + 1]; ++k) {
-          const auto [first, second] = std::minmax(place_[at(j)], place_[at(layout_.row[at(k)])]);
-          const int owner = owner_[at(first)];
-          if (owner == owner_[at(second)] || (owner == last_owner && second == last_place)) continue;
+        for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k) {
+          const auto [first, second] = std::minmax(place_[index(j)], place_[index(layout_.row[index(k)])]);
+          const int owner = owner_[index(first)];
+          if (owner == owner_[index(second)] || (owner == last_owner && second == last_place)) continue;
           last_owner = owner, last_place = second;
           emit(owner, second);
         }
     });
     std::vector<int> all;
     for (int k = 0; k < count_nodes(); ++k) {
-      Node& node = nodes_[at(k)];
+      Node& node = nodes_[index(k)];
       all.assign(beside[k].begin(), beside[k].end());
-      for (int c = node.child; c >= 0; c = nodes_[at(c)].sibling)
-        for (const int place : others(nodes_[at(c)]))
-          if (owner_[at(place)] != k) all.push_back(place);
+      for (int c = node.child; c >= 0; c = nodes_[index(c)].sibling)
+        for (const int place : others(nodes_[index(c)]))
+          if (owner_[index(place)] != k) all.push_back(place);
       std::ranges::sort(all);
       all.erase(std::unique(all.begin(), all.end()), all.end());
       node.list = count(other_), node.others = count(all);
       other_.insert(other_.end(), all.begin(), all.end());
       node.head = k;
       if (all.empty()) continue;
-      node.parent = owner_[at(all[0])];
-      adopt(nodes_[at(node.parent)], k, k);
+      node.parent = owner_[index(all[0])];
+      adopt(nodes_[index(node.parent)], k, k);
     }
   }
 
   int count_nodes() const { return static_cast<int>(nodes_.size()); }
-  std::span<const int> others(const Node& node) const { return {other_.data() + node.list, at(node.others)}; }
+  std::span<const int> others(const Node& node) const { return {other_.data() + node.list, index(node.others)}; }
 
   // Appends the siblings `first` to `last` to the children.
   void adopt(Node& parent, int first, int last) {
-    (parent.child < 0 ? parent.child : nodes_[at(parent.last_child)].sibling) = first;
+    (parent.child < 0 ? parent.child : nodes_[index(parent.last_child)].sibling) = first;
     parent.last_child = last;
   }
 
@@ -103,7 +103,7 @@ class Builder {
     for (Node& node : nodes_) {
       int before = -1;
       for (int c = node.child; c >= 0;) {
-        Node& child = nodes_[at(c)];
+        Node& child = nodes_[index(c)];
         const int p = child.pivots + node.pivots, m = node.others;
         if (p > kMostPivots || cost(p, m) > cost(child.pivots, child.others) + cost(node.pivots, m)) {
           before = std::exchange(c, child.sibling);
@@ -112,7 +112,7 @@ class Builder {
         node.pivots = p;
         child.next = std::exchange(node.head, child.head);
         if (child.child >= 0) adopt(node, child.child, child.last_child);
-        c = (before < 0 ? node.child : nodes_[at(before)].sibling) = child.sibling;
+        c = (before < 0 ? node.child : nodes_[index(before)].sibling) = child.sibling;
         if (c < 0) node.last_child = before;
         child.pivots = 0;
       }
@@ -123,14 +123,14 @@ class Builder {
   void number(Schedule& s) {
     std::vector<int> stack;
     for (int k = 0; k < count_nodes(); ++k)
-      if (nodes_[at(k)].parent < 0 && nodes_[at(k)].pivots > 0) stack.push_back(k);
+      if (nodes_[index(k)].parent < 0 && nodes_[index(k)].pivots > 0) stack.push_back(k);
     std::vector<char> open(nodes_.size(), 0);
     while (!stack.empty()) {
       const int k = stack.back();
-      if (!open[at(k)]) {
-        open[at(k)] = 1;
+      if (!open[index(k)]) {
+        open[index(k)] = 1;
         const auto size = static_cast<std::ptrdiff_t>(stack.size());
-        for (int c = nodes_[at(k)].child; c >= 0; c = nodes_[at(c)].sibling) stack.push_back(c);
+        for (int c = nodes_[index(k)].child; c >= 0; c = nodes_[index(c)].sibling) stack.push_back(c);
         std::reverse(stack.begin() + size, stack.end());
         continue;
       }
@@ -138,18 +138,18 @@ class Builder {
       postorder_.push_back(k);
     }
     front_of_.assign(nodes_.size(), -1);
-    position_.assign(at(layout_.n), 0);
+    position_.assign(index(layout_.n), 0);
     s.unknown.clear();
-    s.unknown.reserve(at(layout_.n));
+    s.unknown.reserve(index(layout_.n));
     std::vector<int> length(nodes_.size());  // of each node's own pivots
     for (std::size_t k = 0; k < nodes_.size(); ++k)
       length[k] = (k + 1 < nodes_.size() ? nodes_[k + 1].first : layout_.n) - nodes_[k].first;
     for (std::size_t f = 0; f < postorder_.size(); ++f) {
-      front_of_[at(postorder_[f])] = static_cast<int>(f);
-      for (int part = nodes_[at(postorder_[f])].head; part >= 0; part = nodes_[at(part)].next)
-        for (int k = nodes_[at(part)].first, end = k + length[at(part)]; k < end; ++k) {
-          position_[at(unknown_[at(k)])] = count(s.unknown);
-          s.unknown.push_back(unknown_[at(k)]);
+      front_of_[index(postorder_[f])] = static_cast<int>(f);
+      for (int part = nodes_[index(postorder_[f])].head; part >= 0; part = nodes_[index(part)].next)
+        for (int k = nodes_[index(part)].first, end = k + length[index(part)]; k < end; ++k) {
+          position_[index(unknown_[index(k)])] = count(s.unknown);
+          s.unknown.push_back(unknown_[index(k)]);
         }
     }
   }
@@ -160,22 +160,22 @@ class Builder {
     s.store_size = s.stack_size = s.factor_nonzeros = 0;
     s.largest_update = s.largest_pivots = s.largest_rows = 0;
     std::size_t entries = 0;
-    for (const int k : postorder_) entries += at(nodes_[at(k)].others);
+    for (const int k : postorder_) entries += index(nodes_[index(k)].others);
     s.fronts.reserve(postorder_.size()), s.position.reserve(entries);
     s.children.reserve(postorder_.size());
     std::int64_t top = 0;
     int first = 0;
     for (const int k : postorder_) {
-      const Node& node = nodes_[at(k)];
+      const Node& node = nodes_[index(k)];
       Front f{};
       f.pivots = node.pivots, f.others = node.others, f.rows = padded(f.others);
       f.first = first, first += f.pivots;
       f.list = count(s.position);
-      for (const int other : others(node)) s.position.push_back(position_[at(unknown_[at(other)])]);
+      for (const int other : others(node)) s.position.push_back(position_[index(unknown_[index(other)])]);
       std::sort(s.position.begin() + f.list, s.position.end());
-      for (int child = node.child; child >= 0; child = nodes_[at(child)].sibling) {
-        s.children.push_back(front_of_[at(child)]);
-        const Front& c = s.fronts[at(front_of_[at(child)])];
+      for (int child = node.child; child >= 0; child = nodes_[index(child)].sibling) {
+        s.children.push_back(front_of_[index(child)]);
+        const Front& c = s.fronts[index(front_of_[index(child)])];
         top -= std::int64_t{c.rows} * c.others;
       }
       f.children = count(s.children);
@@ -194,15 +194,15 @@ class Builder {
     // Places in the parent.
     std::vector<int> parent_of(s.fronts.size(), -1);
     for (std::size_t k = 0, c = 0; k < s.fronts.size(); ++k)
-      for (; c < at(s.fronts[k].children); ++c) parent_of[at(s.children[c])] = static_cast<int>(k);
+      for (; c < index(s.fronts[k].children); ++c) parent_of[index(s.children[c])] = static_cast<int>(k);
     for (std::size_t k = 0; k < s.fronts.size(); ++k) {
       Front& f = s.fronts[k];
       f.first_stretch = f.first_outer_stretch = f.last_stretch = static_cast<int>(s.stretches.size());
       if (f.others == 0) continue;
-      const int parent = parent_of[k], pivots = s.fronts[at(parent)].pivots;
+      const int parent = parent_of[k], pivots = s.fronts[index(parent)].pivots;
       int before = -2;
       for (int i = 0; i < f.others; ++i) {
-        const int place = local(s, parent, s.position[at(f.list + i)]);
+        const int place = local(s, parent, s.position[index(f.list + i)]);
         const bool outer = place >= pivots;
         if (place != before + 1 || place == pivots) {
           s.stretches.push_back(
@@ -222,29 +222,29 @@ class Builder {
 
   // Pivots come first, 0 to p − 1, then the others.
   static int local(const Schedule& s, int front, int position) {
-    const Front& f = s.fronts[at(front)];
+    const Front& f = s.fronts[index(front)];
     if (position < f.first + f.pivots) return position - f.first;
     const auto begin = s.position.begin() + f.list, end = begin + f.others;
     return f.pivots + static_cast<int>(std::lower_bound(begin, end, position) - begin);
   }
 
   void assign_values(Schedule& s) {
-    std::vector<int> front_at(at(s.n));
+    std::vector<int> front_at(index(s.n));
     for (std::size_t f = 0; f < s.fronts.size(); ++f)
       std::fill_n(front_at.begin() + s.fronts[f].first, s.fronts[f].pivots, static_cast<int>(f));
 
     // By front; short runs, nearly all there are, by their length: they are copied without a loop.
     constexpr int kKinds = std::tuple_size_v<decltype(Front::runs)>;
     const auto place_of = [&](int front, const Run& run) {
-      return at(kKinds * front + std::min<int>(run.length, kKinds) - 1);
+      return index(kKinds * front + std::min<int>(run.length, kKinds) - 1);
     };
     std::vector<int> next(kKinds * s.fronts.size() + 1, 0);
     visit_runs(s, front_at, [&](int front, const Run& run) { ++next[place_of(front, run) + 1]; });
     std::partial_sum(next.begin(), next.end(), next.begin());
     for (std::size_t f = 0; f < s.fronts.size(); ++f)
       std::copy_n(next.begin() + static_cast<std::ptrdiff_t>(kKinds * f + 1), kKinds, s.fronts[f].runs.begin());
-    s.runs.assign(at(next.back()), Run{});
-    visit_runs(s, front_at, [&](int front, const Run& run) { s.runs[at(next[place_of(front, run)]++)] = run; });
+    s.runs.assign(index(next.back()), Run{});
+    visit_runs(s, front_at, [&](int front, const Run& run) { s.runs[index(next[place_of(front, run)]++)] = run; });
   }
 
   // Calls visit(front, run) for stretches of the values that stay together in the store of a front.
@@ -253,11 +253,11 @@ class Builder {
     int open = -1;  // front of the run at hand
     Run run{};
     for (int j = 0; j < layout_.n; ++j) {
-      const int pj = position_[at(j)];
-      for (int k = layout_.start[at(j)]; k < layout_.start[at(j) + 1]; ++k) {
-        const int pi = position_[at(layout_.row[at(k)])];
-        const int front = front_at[at(std::min(pi, pj))];
-        const Front& f = s.fronts[at(front)];
+      const int pj = position_[index(j)];
+      for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k) {
+        const int pi = position_[index(layout_.row[index(k)])];
+        const int front = front_at[index(std::min(pi, pj))];
+        const Front& f = s.fronts[index(front)];
         const int li = local(s, front, pi), lj = local(s, front, pj), p = f.pivots;
         int target = lj * p + li;
         if (li >= p) target = p * p + lj * f.rows + li - p;
@@ -286,8 +286,8 @@ class Builder {
 
 }  // namespace
 
-bool Schedule::build(const CscLayout& layout, const BlockGraph& graph, std::span<const int> order) {
+bool Schedule::build(const CscLayout& layout, const Graph& graph, std::span<const int> order) {
   return Builder(layout, graph, order).build(*this);
 }
 
-}  // namespace poinsot
+}  // namespace poinsot::block

@@ -6,8 +6,8 @@
 //   [ L  W ]  m other unknowns
 //
 // Fronts are numbered so that children come before their parent (postorder). Factors of a front lie together in
-// `store`: D (p × p), L (rows × p, rows = m padded to full vectors), U (p × m), columns one after the other. W is rows
-// × m and waits at a fixed place of a stack.
+// `store`: D (p × p), L (rows × p, rows = m padded to full vectors of the machine), U (p × m), columns one after the
+// other. W is rows × m and waits at a fixed place of a stack.
 #pragma once
 
 #include <array>
@@ -18,19 +18,7 @@
 #include "linsolve/block/graph.h"
 #include "linsolve/csc_layout.h"
 
-namespace poinsot {
-
-// Columns of L and W are padded to full vectors of the machine the program is compiled for.
-#if defined(__AVX512F__)
-inline constexpr int kLanes = 8;
-#elif defined(__AVX__)
-inline constexpr int kLanes = 4;
-#else
-inline constexpr int kLanes = 2;
-#endif
-constexpr int padded(int rows) {
-  return (rows + kLanes - 1) / kLanes * kLanes;
-}
+namespace poinsot::block {
 
 struct Front {
   int pivots, others, rows;  // p, m, m padded
@@ -70,7 +58,7 @@ struct Schedule {
   int largest_update = 0, largest_pivots = 0, largest_rows = 0;
 
   // false where a front is too large for the store's addressing; such a matrix is dense, not a mechanism.
-  bool build(const CscLayout& layout, const BlockGraph& graph, std::span<const int> order);
+  bool build(const CscLayout& layout, const Graph& graph, std::span<const int> order);
 };
 
-}  // namespace poinsot
+}  // namespace poinsot::block

@@ -17,6 +17,7 @@
 #include <optional>
 
 #include "core/check.h"
+#include "core/index.h"
 #include "linsolve/back_ends.h"
 #include "linsolve/block/cancellation.h"
 #include "linsolve/block/factor.h"
@@ -30,7 +31,7 @@
 #include "linsolve/finite.h"
 #include "linsolve/residual.h"
 
-namespace poinsot {
+namespace poinsot::block {
 namespace {
 
 constexpr double kSymmetric = 0.9;        // share of mirrored entries that makes a saddle point
@@ -45,11 +46,7 @@ constexpr int kRefinements = 3;
 constexpr int kRepairs = 8;
 constexpr int kPatience = 3;  // times in a row that klu has to help before it takes over
 
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
-
-class BlockSolver final : public LinearSolver {
+class Solver final : public LinearSolver {
  private:
   LinearStatus do_analyze(const Pattern& pattern) override {
     if (LinearStatus status = layout_.build(pattern); !status.ok()) return status;
@@ -57,12 +54,12 @@ class BlockSolver final : public LinearSolver {
     slots_ = layout_.slots;
     std::vector<int>().swap(layout_.slots);
     node_ = pattern.node;
-    values_.assign(at(layout_.nonzeros()), 0);
+    values_.assign(index(layout_.nonzeros()), 0);
     statistics_.nonzeros = layout_.nonzeros();
     klu_.reset();
     examined_ = false;
     helped_ = 0;
-    fused_.assign(at(1 + *std::ranges::max_element(node_)), -1);
+    fused_.assign(index(1 + *std::ranges::max_element(node_)), -1);
     by_klu_ = only_klu_ = symmetry(layout_) < kSymmetric;
     ordered_ = determined_fits_ = false;
     determined_ = only_klu_ ? nullptr : std::make_unique<Determined>();
@@ -73,7 +70,7 @@ class BlockSolver final : public LinearSolver {
 
   bool order() {
     {
-      BlockGraph graph;
+      Graph graph;
       graph.build(layout_, node_, fused_);
       schedule_ = {};
       if (!schedule_.build(layout_, graph, elimination_order(graph))) return false;
@@ -88,7 +85,7 @@ class BlockSolver final : public LinearSolver {
     if (determined_fits_) return factor_determined();
     by_klu_ = only_klu_ = only_klu_ || (!ordered_ && !order());
     if (by_klu_) return factor_by_klu();
-    const block::Drift drift = factor_.factor(schedule_, values_, examined_);
+    const Drift drift = factor_.factor(schedule_, values_, examined_);
     if (!examined_ || !within(drift, kFar)) return factor_fresh();
     ++statistics_.refactorizations;
     drifted_ = watched_ || !within(drift, kNear);
@@ -105,7 +102,7 @@ class BlockSolver final : public LinearSolver {
     return status;
   }
 
-  static bool within(const block::Drift& drift, double range) {
+  static bool within(const Drift& drift, double range) {
     return drift.poison == 0 && drift.least * range >= 1 && drift.largest <= range;
   }
 
@@ -170,24 +167,24 @@ class BlockSolver final : public LinearSolver {
   // A body that is not regular by itself takes in a group of its constraints; a group that was a pivot too early goes
   // to the last of its bodies. False where nothing is left to fuse.
   bool fuse(const std::vector<int>& bad) {
-    BlockGraph graph;
+    Graph graph;
     graph.build(layout_, node_, fused_);
     std::vector<int> place(fused_.size(), 0);  // in the order of elimination, by node
-    for (int k = 0; k < schedule_.n; ++k) place[at(node_[at(schedule_.unknown[at(k)])])] = k;
+    for (int k = 0; k < schedule_.n; ++k) place[index(node_[index(schedule_.unknown[index(k)])])] = k;
     bool any = false;
     for (const int k : bad) {
-      const Front& f = schedule_.fronts[at(k)];
+      const Front& f = schedule_.fronts[index(k)];
       for (int i = f.first; i < f.first + f.pivots; ++i) {
-        const int node = node_[at(schedule_.unknown[at(i)])];
-        if (graph.body_atoms[at(node)] == 0 && fused_[at(node)] < 0) {
+        const int node = node_[index(schedule_.unknown[index(i)])];
+        if (graph.body_atoms[index(node)] == 0 && fused_[index(node)] < 0) {
           const std::span<const int> bodies = graph.bodies[node];
           if (bodies.empty()) continue;
-          fused_[at(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[at(b)]; });
+          fused_[index(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[index(b)]; });
           any = true;
-        } else if (fused_[at(node)] < 0) {
+        } else if (fused_[index(node)] < 0) {
           for (const int g : graph.groups[node])
-            if (fused_[at(g)] < 0) {
-              fused_[at(g)] = node;
+            if (fused_[index(g)] < 0) {
+              fused_[index(g)] = node;
               any = true;
               break;
             }
@@ -241,8 +238,8 @@ class BlockSolver final : public LinearSolver {
       klu_ = make_klu();
       Pattern columns{layout_.n, {}, node_};
       for (int j = 0; j < layout_.n; ++j)
-        for (int k = layout_.start[at(j)]; k < layout_.start[at(j) + 1]; ++k)
-          columns.blocks.push_back({layout_.row[at(k)], j, 1, 1});
+        for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k)
+          columns.blocks.push_back({layout_.row[index(k)], j, 1, 1});
       if (LinearStatus status = klu_->analyze(columns); !status.ok()) return status;
     }
     ++statistics_.handed_over;
@@ -258,7 +255,7 @@ class BlockSolver final : public LinearSolver {
   CscLayout layout_;
   std::vector<int> node_, fused_;
   Schedule schedule_;
-  BlockFactor factor_;
+  Factor factor_;
   std::unique_ptr<Determined> determined_;  // where the structure has the form
   std::unique_ptr<LinearSolver> klu_;
   Residual residual_;
@@ -272,9 +269,8 @@ class BlockSolver final : public LinearSolver {
 };
 
 }  // namespace
+}  // namespace poinsot::block
 
-std::unique_ptr<LinearSolver> make_block() {
-  return std::make_unique<BlockSolver>();
+std::unique_ptr<poinsot::LinearSolver> poinsot::make_block() {
+  return std::make_unique<block::Solver>();
 }
-
-}  // namespace poinsot

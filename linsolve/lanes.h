@@ -1,0 +1,41 @@
+// Vectors of the machine the program is compiled for, and loops written out: what the dense kernels are made of.
+#pragma once
+
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+namespace poinsot {
+
+#if defined(__AVX512F__)
+inline constexpr int kLanes = 8;
+#elif defined(__AVX__)
+inline constexpr int kLanes = 4;
+#else
+inline constexpr int kLanes = 2;
+#endif
+constexpr int padded(int rows) {
+  return (rows + kLanes - 1) / kLanes * kLanes;
+}
+
+// By the compilers' common extension; plain arithmetic on it.
+typedef double Vec __attribute__((vector_size(kLanes * sizeof(double))));
+inline Vec load(const double* x) {
+  Vec v;
+  std::memcpy(&v, x, sizeof v);
+  return v;
+}
+inline void store(double* x, Vec v) {
+  std::memcpy(x, &v, sizeof v);
+}
+
+// Calls f(std::integral_constant<int, k>()) for k = 0 … N − 1, each written out.
+template <int N, class F>
+inline void unrolled(F&& f) {
+  [&]<int... k>(std::integer_sequence<int, k...>) {
+    (f(std::integral_constant<int, k>()), ...);
+  }
+  (std::make_integer_sequence<int, N>());
+}
+
+}  // namespace poinsot
