@@ -77,7 +77,7 @@ void require_cases(const SweepPlan& plan) {
   std::string why;
   for (const std::string& integrator : plan.integrators)
     for (const std::string& formulation : plan.formulations) {
-      const Refusal* refusal = refusal_of(*find_integrator(integrator), formulation);
+      const Refusal* refusal = refusal_of(integrators().require(integrator), formulation);
       if (!refusal) return;
       if (why.empty())
         why = fmt::format("integrator '{}' refuses formulation '{}': {}", integrator, formulation, refusal->why);

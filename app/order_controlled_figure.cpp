@@ -83,9 +83,9 @@ Motion march(const Scene& scene, const Method& method, std::string_view formulat
 
 // Whose curves have the line of their order below them.
 bool last_of_order(const Mechanism& mechanism, const Method& method) {
-  const int order = find_integrator(method.name)->order;
+  const int order = integrators().require(method.name).order;
   const auto last = std::find_if(mechanism.methods.rbegin(), mechanism.methods.rend(),
-                                 [&](const Method& m) { return find_integrator(m.name)->order == order; });
+                                 [&](const Method& m) { return integrators().require(m.name).order == order; });
   return &*last == &method;
 }
 
@@ -127,7 +127,7 @@ FigureResult order_controlled(const FigureRequest& request) {
     const Sizes size = sizes(*exact, model);
     for (const Method& method : mechanism.methods) {
       const Window window{mechanism.end / method.last, mechanism.end / method.first};
-      const int order = find_integrator(method.name)->order;
+      const int order = integrators().require(method.name).order;
       for (const FormulationEntry& formulation : formulations()) {
         std::array<Curve, kQuantities.size()> curves;
         for (std::size_t k = 0; k < curves.size(); ++k)
@@ -164,7 +164,7 @@ FigureResult order_controlled(const FigureRequest& request) {
   }
   for (const auto& [name, range] : exponents)
     result.summary.push_back(
-        fmt::format("{} (order {}): exponents {}", name, find_integrator(name)->order, range.text(3)));
+        fmt::format("{} (order {}): exponents {}", name, integrators().require(name).order, range.text(3)));
   result.plots.push_back(std::move(plot));
   result.tables.push_back(std::move(table));
   return result;

@@ -20,8 +20,8 @@ std::vector<Conflict> find_conflicts(const std::shared_ptr<const Model>& model, 
                                      const RankAnalysis& analysis) {
   const std::vector<int> dependent = analysis.dependent_rows();
   if (dependent.empty()) return {};
-  const std::unique_ptr<Problem> independent = find_formulation("rA")->make(model, dependent);
-  const std::unique_ptr<Problem> whole = find_formulation("rA")->make(model, {});
+  const std::unique_ptr<Problem> independent = formulations().require("rA").make(model, dependent);
+  const std::unique_ptr<Problem> whole = formulations().require("rA").make(model, {});
   std::vector<double> q(static_cast<std::size_t>(whole->nq())), v(static_cast<std::size_t>(whole->nv()));
   check(independent->from_bodies(states, q, v).ok(), "rA represents every orientation");
   Consistent consistent(*independent, Settings{}.linear_solver);

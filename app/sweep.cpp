@@ -12,11 +12,11 @@
 namespace poinsot::app {
 
 std::string Case::parameter() const {
-  return find_integrator(settings.integrator)->controls_error ? "rtol" : "step";
+  return integrators().require(settings.integrator).controls_error ? "rtol" : "step";
 }
 
 double Case::value() const {
-  return find_integrator(settings.integrator)->controls_error ? settings.rtol : settings.step;
+  return integrators().require(settings.integrator).controls_error ? settings.rtol : settings.step;
 }
 
 std::string Case::method() const {
@@ -63,7 +63,7 @@ std::vector<std::vector<Case>> Sweep::cases(const SweepPlan& plan) const {
   std::vector<std::vector<Case>> levels(std::max(plan.steps.size(), plan.tolerances.size()));
   for (std::size_t level = 0; level < levels.size(); ++level) {
     for (const std::string& name : plan.integrators) {
-      const IntegratorEntry& integrator = *find_integrator(name);
+      const IntegratorEntry& integrator = integrators().require(name);
       if (level >= (integrator.controls_error ? plan.tolerances.size() : plan.steps.size())) continue;
       for (const std::string& formulation : plan.formulations) {
         if (refusal_of(integrator, formulation)) continue;

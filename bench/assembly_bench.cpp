@@ -11,7 +11,7 @@ constexpr std::pair<const char*, MatrixKind> kKinds[] = {{"simplified", MatrixKi
 
 void by_slot(benchmark::State& state, const SceneSource& source, const FormulationEntry& formulation, MatrixKind kind) {
   Standing standing(source.scene(), formulation);
-  const std::unique_ptr<LinearSolver> layout = find_linear_solver("klu")->make();
+  const std::unique_ptr<LinearSolver> layout = linear_solvers().require("klu").make();
   if (!standing.good || !layout->analyze(standing.problem->pattern(kind)).ok()) return state.SkipWithError("no start");
   PerBody figures(state, standing.problem->bodies());
   for (auto _ : state) {

@@ -14,6 +14,7 @@
 
 #include "core/so3.h"
 #include "formulations/elements.h"
+#include "formulations/formulation.h"
 
 namespace poinsot {
 

@@ -46,7 +46,7 @@ class Checker {
       : part_(part),
         name_(std::move(name)),
         out_(out),
-        problem_(find_formulation(F::name)->make(std::make_shared<const Model>(part.model), {})),
+        problem_(formulations().require(F::name).make(std::make_shared<const Model>(part.model), {})),
         duals_(std::make_shared<const Elements>(std::make_shared<const Model>(part.model), std::span<const int>())),
         q_(problem_->nq()),
         v_(problem_->nv()) {

@@ -152,7 +152,7 @@ class Mechanism {
 
   // z ← T(dq)⁻¹ z
   static void lower(const T* dq, T* z, int bodies) {
-    if constexpr (F::lie_group) {
+    if constexpr (F::space == CoordinateSpace::lie_group) {
       for (int b = 0; b < bodies; ++b) {
         Eigen::Map<X> x(z + b * kV + 3);
         x = right_jacobian_inverse_times<T>(Eigen::Map<const X>(dq + b * kV + 3), x);

@@ -55,7 +55,7 @@ class MechanismMatrix {
 
  private:
   void tangents(int bodies, const T* dq) {
-    if constexpr (F::lie_group) {
+    if constexpr (F::space == CoordinateSpace::lie_group) {
       T_inverse_.clear();
       if (!dq) return;
       for (int b = 0; b < bodies; ++b) {
@@ -80,7 +80,7 @@ class MechanismMatrix {
 
     XX xx = ca * F::mass(at, J);
     if (exact || (newton && F::simplified_keeps_rate_term)) xx += cv * F::inertia_rate_variation(at, rate, xd, J);
-    if constexpr (F::lie_group) {
+    if constexpr (F::space == CoordinateSpace::lie_group) {
       if (!T_inverse_.empty()) xx *= T_inverse_[index(b)];
     }
     if (exact) {

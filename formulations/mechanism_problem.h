@@ -143,10 +143,7 @@ class MechanismProblem final : public Problem {
   void lower(std::span<const double> dq, std::span<double> z) const override { M::lower(dq.data(), z.data(), bodies_); }
 
   bool has_discrete_state() const override {
-    return requires {
-      F::rechart;
-    }
-    || !mechanism_.c.twist.empty();
+    return F::space == CoordinateSpace::charts || !mechanism_.c.twist.empty();
   }
   bool accept(double, std::span<double> q, std::span<double> v, std::span<double> a) override {
     auto& c = mechanism_.c;
@@ -154,7 +151,7 @@ class MechanismProblem final : public Problem {
       c.twist[k] = Torsion<F, double>::angle(c, c.elements->torsions[k], c.twist[k]);
     }
     bool changed = false;
-    if constexpr (requires { F::rechart; }) {
+    if constexpr (F::space == CoordinateSpace::charts) {
       for (int b = 0; b < bodies_; ++b) {
         const std::size_t k = static_cast<std::size_t>(b);
         changed |= F::rechart(mechanism_.c.at[k], mechanism_.c.rate[k], q.data() + b * M::kQ + 3,

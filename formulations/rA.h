@@ -11,16 +11,18 @@
 #include <string_view>
 
 #include "core/so3.h"
+#include "formulations/formulation.h"
 
 namespace poinsot {
 
 struct RA {
   static constexpr std::string_view name = "rA";
+  static constexpr std::string_view about = "orientation matrix on SO(3), angular velocity; no orientation is singular";
   static constexpr int m = 3;        // orientation variations
   static constexpr int stored = 9;   // numbers that hold the orientation: A by columns
   static constexpr int ambient = 3;  // columns of E(s)
   static constexpr bool normalized = false;
-  static constexpr bool lie_group = true;  // the retraction is not an addition
+  static constexpr CoordinateSpace space = CoordinateSpace::lie_group;
 
   template <class T>
   using X = Eigen::Matrix<T, m, 1>;

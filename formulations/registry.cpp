@@ -1,29 +1,31 @@
 #include "formulations/registry.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "formulations/make.h"
+#include "formulations/rA.h"
+#include "formulations/reps.h"
+#include "formulations/rp.h"
 
 namespace poinsot {
 namespace {
 
 constexpr FormulationEntry kFormulations[] = {
-    {"rA", "orientation matrix on SO(3), angular velocity; no orientation is singular", make_rA},
-    {"rp", "Euler parameters with a normalization constraint per body; no orientation is singular", make_rp},
-    {"reps", "ZXZ Euler angles; the body-fixed frame is chosen anew near sin(theta) = 0", make_reps},
+    {RA::name, RA::about, RA::space, make_rA},
+    {RP::name, RP::about, RP::space, make_rp},
+    {REPS::name, REPS::about, REPS::space, make_reps},
 };
 
 }  // namespace
 
-std::span<const FormulationEntry> formulations() {
-  return kFormulations;
+Registry<FormulationEntry>& formulations() {
+  static Registry<FormulationEntry> table("formulation", kFormulations);
+  return table;
 }
 
-const FormulationEntry* find_formulation(std::string_view name) {
-  const auto at = std::find_if(std::begin(kFormulations), std::end(kFormulations),
-                               [&](const FormulationEntry& entry) { return entry.name == name; });
-  return at == std::end(kFormulations) ? nullptr : at;
+const FormulationEntry& intrinsic_formulation() {
+  return *std::find_if(formulations().begin(), formulations().end(),
+                       [](const FormulationEntry& entry) { return entry.space == CoordinateSpace::lie_group; });
 }
 
 }  // namespace poinsot

@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 
+#include "core/registry.h"
+#include "formulations/formulation.h"
 #include "formulations/problem.h"
 
 namespace poinsot {
@@ -12,11 +14,16 @@ namespace poinsot {
 struct FormulationEntry {
   std::string_view name;
   std::string_view about;  // one line: what it is, what it refuses
+  CoordinateSpace space;   // what its coordinates are: decides who may use it
   // A problem over the rows of the model; rows listed in `dropped` (sorted) take no part: they are dependent.
   std::unique_ptr<Problem> (*make)(std::shared_ptr<const Model> model, std::span<const int> dropped);
 };
 
-std::span<const FormulationEntry> formulations();
-const FormulationEntry* find_formulation(std::string_view name);  // nullptr where no entry has the name
+Registry<FormulationEntry>& formulations();
+
+// The formulation in which a mechanism's state is judged, whatever formulation its motion is computed in: ranks,
+// initial states, reactions. The first on a Lie group, whose velocities are the bodies' own, six each, and never
+// singular.
+const FormulationEntry& intrinsic_formulation();
 
 }  // namespace poinsot

@@ -16,16 +16,18 @@
 
 #include "core/so3.h"
 #include "formulations/chart.h"
+#include "formulations/formulation.h"
 
 namespace poinsot {
 
 struct REPS {
   static constexpr std::string_view name = "reps";
+  static constexpr std::string_view about = "ZXZ Euler angles; the body-fixed frame is chosen anew near sin(theta) = 0";
   static constexpr int m = 3;
   static constexpr int stored = 4;  // φ, θ, ψ, number of the chart
   static constexpr int ambient = 3;
   static constexpr bool normalized = false;
-  static constexpr bool lie_group = false;
+  static constexpr CoordinateSpace space = CoordinateSpace::charts;
 
   static constexpr double kTooSmall = 1e-8;    // |sin θ| at which the rates are lost
   static constexpr double kLeaveChart = 0.25;  // |sin θ| below which the chart is left; another one offers √(2/3)

@@ -51,7 +51,7 @@ class RowBlocks {
     const auto write = [&](int row, int body, const X& variation, const Vec3<T>& point, const Vec3<T>& direction) {
       if (body == kGround) return;
       X x = by * variation;
-      if constexpr (F::lie_group) {
+      if constexpr (F::space == CoordinateSpace::lie_group) {
         if (!T_inverse.empty()) {
           const X psi = c_.at[index(body)].W().transpose() * C::Et_times(point, direction);
           x += T_inverse[index(body)].transpose() * psi - psi;

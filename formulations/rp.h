@@ -12,16 +12,19 @@
 #include <string_view>
 
 #include "core/so3.h"
+#include "formulations/formulation.h"
 
 namespace poinsot {
 
 struct RP {
   static constexpr std::string_view name = "rp";
+  static constexpr std::string_view about =
+      "Euler parameters with a normalization constraint per body; no orientation is singular";
   static constexpr int m = 4;
   static constexpr int stored = 4;
   static constexpr int ambient = 4;
   static constexpr bool normalized = true;
-  static constexpr bool lie_group = false;
+  static constexpr CoordinateSpace space = CoordinateSpace::vector_space;
 
   template <class T>
   using X = Eigen::Matrix<T, m, 1>;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/registry.h"
 #include "core/status.h"
 #include "formulations/problem.h"
 #include "integrators/settings.h"
@@ -72,7 +73,6 @@ struct IntegratorEntry {
   bool controls_error = false;  // chooses its steps by rtol and atol; `step` and `tolerance` mean nothing to it
 };
 
-std::span<const IntegratorEntry> integrators();
-const IntegratorEntry* find_integrator(std::string_view name);  // nullptr where no entry has the name
+Registry<IntegratorEntry>& integrators();
 
 }  // namespace poinsot

@@ -1,8 +1,5 @@
 #include "integrators/jacobian_policy.h"
 
-#include <algorithm>
-#include <iterator>
-
 namespace poinsot {
 namespace {
 
@@ -17,14 +14,9 @@ constexpr JacobianEntry kJacobians[] = {
 
 }  // namespace
 
-std::span<const JacobianEntry> jacobians() {
-  return kJacobians;
-}
-
-const JacobianEntry* find_jacobian(std::string_view name) {
-  const auto at = std::find_if(std::begin(kJacobians), std::end(kJacobians),
-                               [&](const JacobianEntry& entry) { return entry.name == name; });
-  return at == std::end(kJacobians) ? nullptr : at;
+Registry<JacobianEntry>& jacobians() {
+  static Registry<JacobianEntry> table("jacobian", kJacobians);
+  return table;
 }
 
 }  // namespace poinsot

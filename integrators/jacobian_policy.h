@@ -1,9 +1,9 @@
 // Which matrix Newton's method iterates with, and when it is made anew: the configuration's key "jacobian".
 #pragma once
 
-#include <span>
 #include <string_view>
 
+#include "core/registry.h"
 #include "formulations/problem.h"
 
 namespace poinsot {
@@ -22,7 +22,6 @@ struct JacobianEntry {
   Refresh refresh;
 };
 
-std::span<const JacobianEntry> jacobians();
-const JacobianEntry* find_jacobian(std::string_view name);  // nullptr where no entry has the name
+Registry<JacobianEntry>& jacobians();
 
 }  // namespace poinsot

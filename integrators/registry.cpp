@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <iterator>
-
 #include "integrators/integrator.h"
 #include "integrators/methods/dop853.h"
 #include "integrators/methods/dopri5.h"
@@ -63,14 +60,9 @@ constexpr IntegratorEntry kIntegrators[] = {
 
 }  // namespace
 
-std::span<const IntegratorEntry> integrators() {
-  return kIntegrators;
-}
-
-const IntegratorEntry* find_integrator(std::string_view name) {
-  const auto at = std::find_if(std::begin(kIntegrators), std::end(kIntegrators),
-                               [&](const IntegratorEntry& entry) { return entry.name == name; });
-  return at == std::end(kIntegrators) ? nullptr : at;
+Registry<IntegratorEntry>& integrators() {
+  static Registry<IntegratorEntry> table("integrator", kIntegrators);
+  return table;
 }
 
 }  // namespace poinsot

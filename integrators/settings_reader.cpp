@@ -21,13 +21,6 @@
 namespace poinsot {
 namespace {
 
-template <class Table>
-std::vector<std::string> names_of(const Table& table) {
-  std::vector<std::string> names;
-  for (const auto& entry : table) names.emplace_back(entry.name);
-  return names;
-}
-
 std::vector<std::string> integrator_names() {
   std::vector<std::string> names;
   for (const IntegratorEntry& entry : integrators())
@@ -42,11 +35,11 @@ const std::array kEntries{
                  },
                  false},  // as in the enumeration
     SettingEntry{"formulation", "orientation coordinates", &Settings::formulation,
-                 [] { return names_of(formulations()); }, false},
+                 [] { return formulations().names(); }, false},
     SettingEntry{"integrator", "time stepping of dynamics", &Settings::integrator, integrator_names, false},
     SettingEntry{"linear_solver", "solver of the linear systems", &Settings::linear_solver,
-                 [] { return names_of(linear_solvers()); }, false},
-    SettingEntry{"jacobian", "matrix of Newton's method", &Settings::jacobian, [] { return names_of(jacobians()); },
+                 [] { return linear_solvers().names(); }, false},
+    SettingEntry{"jacobian", "matrix of Newton's method", &Settings::jacobian, [] { return jacobians().names(); },
                  false},
     SettingEntry{"step", "step size h, s", &Settings::step, nullptr, false},
     SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false},
@@ -226,7 +219,7 @@ std::string to_json(const Settings& settings) {
 }
 
 void fit_time_grid(Settings& settings, std::vector<std::string>& notices) {
-  const IntegratorEntry* integrator = find_integrator(settings.integrator);
+  const IntegratorEntry* integrator = integrators().find(settings.integrator);
   if (settings.analysis == Analysis::dynamics && integrator && integrator->controls_error) return;
   // of the ratio, relative: far above the error of decimal fractions, far below a step
   constexpr double rounding = 1e-9;

@@ -17,18 +17,9 @@
 namespace poinsot {
 namespace {
 
-template <class Entry>
-const Entry& find(const Entry* entry, std::string_view key, std::string_view name, std::span<const Entry> all) {
-  if (entry) return *entry;
-  std::string names;
-  for (const Entry& e : all) names += (names.empty() ? "" : ", ") + std::string(e.name);
-  throw InputError(fmt::format("{} '{}' is not known; there are {}", key, name, names));
-}
-
 const IntegratorEntry& integrator_of(const Settings& settings) {
-  if (settings.analysis == Analysis::kinematics) return *find_integrator("kinematics");
-  const IntegratorEntry& entry =
-      find(find_integrator(settings.integrator), "integrator", settings.integrator, integrators());
+  if (settings.analysis == Analysis::kinematics) return integrators().require("kinematics");
+  const IntegratorEntry& entry = integrators().require(settings.integrator);
   if (entry.analysis != Analysis::dynamics) {
     throw InputError(fmt::format("integrator '{}' is not one of dynamics", entry.name));
   }
@@ -62,11 +53,9 @@ void refuse_free_motion(const Problem& problem) {
 
 Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe) {
   check_numbers(settings);
-  const FormulationEntry& formulation =
-      find(find_formulation(settings.formulation), "formulation", settings.formulation, formulations());
-  const LinearSolverEntry& linear_solver =
-      find(find_linear_solver(settings.linear_solver), "linear_solver", settings.linear_solver, linear_solvers());
-  find(find_jacobian(settings.jacobian), "jacobian", settings.jacobian, jacobians());
+  const FormulationEntry& formulation = formulations().require(settings.formulation);
+  const LinearSolverEntry& linear_solver = linear_solvers().require(settings.linear_solver);
+  (void)jacobians().require(settings.jacobian);
   const IntegratorEntry& integrator = integrator_of(settings);
 
   const auto model = std::make_shared<const Model>(compile(scene));

@@ -46,7 +46,7 @@ class Auto final : public LinearSolver {
  private:
   LinearStatus do_analyze(const Pattern& pattern) override {
     picked_ = saddle_point(pattern) ? "block" : "klu";
-    solver_ = find_linear_solver(picked_)->make();
+    solver_ = linear_solvers().require(picked_).make();
     return solver_->analyze(pattern);
   }
   LinearStatus do_factor() override { return solver_->factor(); }

@@ -31,14 +31,9 @@ constexpr LinearSolverEntry kEntries[] = {
 
 }  // namespace
 
-std::span<const LinearSolverEntry> linear_solvers() {
-  return kEntries;
-}
-
-const LinearSolverEntry* find_linear_solver(std::string_view name) {
-  for (const LinearSolverEntry& entry : kEntries)
-    if (entry.name == name) return &entry;
-  return nullptr;
+Registry<LinearSolverEntry>& linear_solvers() {
+  static Registry<LinearSolverEntry> table("linear_solver", kEntries);
+  return table;
 }
 
 }  // namespace poinsot

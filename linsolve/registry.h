@@ -3,9 +3,9 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string_view>
 
+#include "core/registry.h"
 #include "linsolve/linear_solver.h"
 
 namespace poinsot {
@@ -16,8 +16,6 @@ struct LinearSolverEntry {
   std::unique_ptr<LinearSolver> (*make)();
 };
 
-std::span<const LinearSolverEntry> linear_solvers();
-// nullptr where no entry has the name.
-const LinearSolverEntry* find_linear_solver(std::string_view name);
+Registry<LinearSolverEntry>& linear_solvers();
 
 }  // namespace poinsot

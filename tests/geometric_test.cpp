@@ -112,7 +112,7 @@ TEST(IntegratorRegistry, RefusalsAreInputErrors) {
   const Scene scene = scene_of("double_pendulum");
   for (const IntegratorEntry& entry : integrators()) {
     for (const Refusal& refusal : entry.refuses) {
-      ASSERT_NE(find_formulation(refusal.formulation), nullptr) << entry.name;
+      ASSERT_NE(formulations().find(refusal.formulation), nullptr) << entry.name;
       Settings s;
       s.integrator = entry.name;
       s.formulation = refusal.formulation;

@@ -110,7 +110,7 @@ TEST_P(LinearSolvers, LeaveResidualsLikeThoseOfKlu) {
         const auto found = largest_residual(*make(), systems);
         if (!found) continue;
         ++compared;
-        const auto of_klu = largest_residual(*find_linear_solver("klu")->make(), systems);
+        const auto of_klu = largest_residual(*linear_solvers().require("klu").make(), systems);
         ASSERT_TRUE(of_klu);
         EXPECT_LE(*found, std::max(kLargest * *of_klu, kAsGood))
             << motion.name << ' ' << formulation.name << (kind == MatrixKind::exact ? " exact" : " consistent")

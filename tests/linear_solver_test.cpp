@@ -183,13 +183,13 @@ TEST_P(LinearSolvers, ThrowsOnCallsOutOfOrderAndWrongSizes) {
 
 TEST(LinearSolverRegistry, FindsEveryEntryByItsName) {
   for (const LinearSolverEntry& entry : linear_solvers()) {
-    const LinearSolverEntry* found = find_linear_solver(entry.name);
+    const LinearSolverEntry* found = linear_solvers().find(entry.name);
     ASSERT_NE(found, nullptr);
     EXPECT_EQ(found->name, entry.name);
     EXPECT_FALSE(entry.about.empty());
     EXPECT_NE(entry.make(), nullptr);
   }
-  EXPECT_EQ(find_linear_solver("no such solver"), nullptr);
+  EXPECT_EQ(linear_solvers().find("no such solver"), nullptr);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 std::string_view pick(const Scene& scene, const FormulationEntry& formulation, MatrixKind kind) {
   const auto problem = formulation.make(std::make_shared<const Model>(compile(scene)), {});
-  const auto solver = find_linear_solver("auto")->make();
+  const auto solver = linear_solvers().require("auto").make();
   EXPECT_EQ(solver->picked(), "");
   EXPECT_TRUE(solver->analyze(problem->pattern(kind)).ok());
   return solver->picked();
@@ -42,7 +42,7 @@ TEST(Auto, LeavesKinematicsToKlu) {
 
 TEST(Auto, CountsWhatItsPickDoes) {
   const Pattern pattern{2, {{0, 0, 2, 2}}, {0, 0}};
-  const auto solver = find_linear_solver("auto")->make();
+  const auto solver = linear_solvers().require("auto").make();
   EXPECT_TRUE(solver->slots().empty());
   EXPECT_TRUE(solver->values().empty());
   ASSERT_TRUE(solver->analyze(pattern).ok());

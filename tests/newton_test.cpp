@@ -205,12 +205,12 @@ TEST_P(Newton, StepsAllocateNothing) {
         settings.linear_solver = name;
         if (compiled->name.find("Andrews") == 0) settings.step = 1e-5, settings.end = 4e-4, settings.tolerance = 0.1;
         const InitialState start = find_initial_state(compiled, settings);
-        const auto problem = find_formulation(formulation())->make(compiled, start.dropped);
+        const auto problem = formulations().require(formulation()).make(compiled, start.dropped);
         if (settings.analysis == Analysis::kinematics && problem->nv() != problem->nc()) continue;
         State state{std::vector<double>(index(problem->nq())), std::vector<double>(index(problem->nv())),
                     std::vector<double>(index(problem->nv())), std::vector<double>(index(problem->nc()))};
         ASSERT_TRUE(problem->from_bodies(start.bodies, state.q, state.v).ok());
-        const auto solver = find_linear_solver(name)->make();
+        const auto solver = linear_solvers().require(name).make();
         long steps = 0, fresh = 0, pivots = 0, allocated = 0;
         const Observer observe = [&](const Sample&) {
           const bool kept = std::string_view(name) == "dense" || solver->statistics().factorizations == pivots;
@@ -224,7 +224,7 @@ TEST_P(Newton, StepsAllocateNothing) {
         };
         Statistics statistics;
         const IntegratorEntry* integrator =
-            find_integrator(settings.analysis == Analysis::kinematics ? "kinematics" : "implicit_euler");
+            integrators().find(settings.analysis == Analysis::kinematics ? "kinematics" : "implicit_euler");
         const Status status = integrator->make()->run(*problem, *solver, settings, state, observe, statistics);
         EXPECT_TRUE(status.ok()) << status.message;
         EXPECT_EQ(steps, 41);

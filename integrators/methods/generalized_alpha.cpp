@@ -38,7 +38,7 @@ class Run {
         h_(grid_.step()),
         k_(settings.spectral_radius),
         scale_{1, h_ * k_.gamma * k_.gain(), h_ * h_ * k_.beta * k_.gain()},
-        policy_(*find_jacobian(settings.jacobian)),
+        policy_(jacobians().require(settings.jacobian)),
         system_(problem, solver, policy_.matrix, statistics, clock_),
         newton_(problem, system_, settings, policy_.refresh, statistics),
         consistent_(problem, settings.linear_solver),

@@ -72,7 +72,7 @@ class Run {
         statistics_(statistics),
         form_(problem),
         system_(problem, solver, statistics, clock_),
-        point_solver_(find_linear_solver(settings.linear_solver)->make()),
+        point_solver_(linear_solvers().require(settings.linear_solver).make()),
         points_(problem, *point_solver_, statistics, clock_),
         sizes_(2 * static_cast<std::size_t>(problem.nv())),
         sizes_now_(sizes_.size()),

@@ -12,7 +12,7 @@ class ImplicitEuler final : public Integrator {
  public:
   Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
-    const JacobianEntry& policy = *find_jacobian(settings.jacobian);
+    const JacobianEntry& policy = jacobians().require(settings.jacobian);
     const TimeGrid grid(settings);
     const double h = grid.step();
     const StepScale scale{1, h, h * h};

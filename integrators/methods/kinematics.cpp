@@ -24,7 +24,7 @@ class Kinematics final : public Integrator {
  public:
   Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
-    const JacobianEntry& policy = *find_jacobian(settings.jacobian);
+    const JacobianEntry& policy = jacobians().require(settings.jacobian);
     const bool predict = policy.refresh != Refresh::before_step;  // the original study's codes do not
     const TimeGrid grid(settings);
     PhaseClock clock;

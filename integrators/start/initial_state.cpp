@@ -74,7 +74,7 @@ class Assembler {
 
   // Position and velocity where they are off; in any case one factorization, which tells a singular system.
   Status project() {
-    const std::unique_ptr<Problem> problem = find_formulation("rA")->make(model_, result_.dropped);
+    const std::unique_ptr<Problem> problem = formulations().require("rA").make(model_, result_.dropped);
     std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
     check(problem->from_bodies(given_, q, v).ok(), "rA represents every orientation");
     Consistent consistent(*problem, settings_.linear_solver);
@@ -180,7 +180,7 @@ std::vector<BodyState> given_state(const Model& model) {
 }
 
 Violation violation(const std::shared_ptr<const Model>& model, const std::vector<BodyState>& states) {
-  const std::unique_ptr<Problem> problem = find_formulation("rA")->make(model, {});
+  const std::unique_ptr<Problem> problem = formulations().require("rA").make(model, {});
   std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
   check(problem->from_bodies(states, q, v).ok(), "rA represents every orientation");
   problem->set_position(0, q);

@@ -67,7 +67,7 @@ bool neighbour(Problem& problem, const std::vector<int>& dependent, std::span<co
   constexpr double kStep = 1e-2;
   auto model = std::make_shared<Model>(problem.model());
   for (Body& body : model->bodies) body.mass = 1, body.inertia.setIdentity();
-  const auto make = [&](const std::vector<int>& without) { return find_formulation("rA")->make(model, without); };
+  const auto make = [&](const std::vector<int>& without) { return formulations().require("rA").make(model, without); };
 
   const std::unique_ptr<Problem> here = make(dependent);
   std::vector<double> at_rest(static_cast<std::size_t>(here->nv()), 0.0);
@@ -112,7 +112,7 @@ std::vector<int> RankAnalysis::dependent_rows() const {
 }
 
 RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states) {
-  const std::unique_ptr<Problem> problem = find_formulation("rA")->make(model, {});
+  const std::unique_ptr<Problem> problem = formulations().require("rA").make(model, {});
   std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
   check(problem->from_bodies(states, q, v).ok(), "rA represents every orientation");
 

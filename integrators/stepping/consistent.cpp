@@ -23,7 +23,7 @@ double largest(std::span<const double> x) {
 }  // namespace
 
 Consistent::Consistent(const Problem& problem, std::string_view linear_solver)
-    : solver_(find_linear_solver(linear_solver)->make()),
+    : solver_(linear_solvers().require(linear_solver).make()),
       rhs_(static_cast<std::size_t>(problem.nv() + problem.nc())),
       zeros_(rhs_.size(), 0.0) {
   analyzed_ = solver_->analyze(problem.pattern(MatrixKind::consistent));

@@ -31,8 +31,8 @@ struct EqualSteps {
   template <class Make>
   EqualSteps(const Scene& scene, const Settings& settings, Make&& make)
       : model(std::make_shared<const Model>(compile(scene))), start(find_initial_state(model, settings)) {
-    problem = find_formulation(settings.formulation)->make(model, start.dropped);
-    solver = find_linear_solver("dense")->make();  // fresh pivots: orders are measured down to 1e-13
+    problem = formulations().require(settings.formulation).make(model, start.dropped);
+    solver = linear_solvers().require("dense").make();  // fresh pivots: orders are measured down to 1e-13
     stepper = make(*problem, *solver, statistics, clock);
     State state;
     state.q.resize(static_cast<std::size_t>(problem->nq()));

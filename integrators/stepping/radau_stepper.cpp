@@ -66,8 +66,8 @@ std::span<double> column(Eigen::Matrix<double, Eigen::Dynamic, 3>& m, Eigen::Ind
 RadauStepper::RadauStepper(Problem& problem, LinearSolver& solver, std::string_view linear_solver, double rtol,
                            double atol, Statistics& statistics, PhaseClock& clock)
     : problem_(problem),
-      filter_solver_(find_linear_solver(linear_solver)->make()),
-      point_solver_(find_linear_solver(linear_solver)->make()),
+      filter_solver_(linear_solvers().require(linear_solver).make()),
+      point_solver_(linear_solvers().require(linear_solver).make()),
       system_(problem, solver, statistics, clock),
       filter_(problem, *filter_solver_, statistics, clock),
       points_(problem, *point_solver_, statistics, clock),

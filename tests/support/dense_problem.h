@@ -26,7 +26,7 @@ inline std::span<double> view(VectorX& v) {
 }
 
 inline std::unique_ptr<Problem> make_problem(std::string_view formulation, const Model& model) {
-  return find_formulation(formulation)->make(std::make_shared<const Model>(model), {});
+  return formulations().require(formulation).make(std::make_shared<const Model>(model), {});
 }
 
 // Assembled as a linear solver would have it, in a dense array of which everything outside the pattern stays zero.

@@ -63,7 +63,7 @@ class Derivatives : public DualFixture<F> {
 
   // A step that has led by dq to (q, v): z = δq/position of a variation δa is T(dq) δa.
   static VectorX raised(const VectorX& dq, VectorX z) {
-    if constexpr (F::lie_group) {
+    if constexpr (F::space == CoordinateSpace::lie_group) {
       for (Eigen::Index b = 0; b < z.size() / kV; ++b) {
         const Vector3 theta = dq.segment<3>(b * kV + 3), x = z.segment<3>(b * kV + 3);
         z.segment<3>(b * kV + 3) = right_jacobian<double>(theta) * x;

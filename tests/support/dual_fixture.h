@@ -74,7 +74,7 @@ class DualFixture : public ::testing::Test {
       q.segment<3>(b * kQ) = random.vector();
       F::from_rotation(random.rotation(), x);
       if constexpr (F::normalized) q.segment<F::stored>(b * kQ + 3) *= random.uniform(0.7, 1.4);
-      if constexpr (requires { F::rechart; }) {
+      if constexpr (F::space == CoordinateSpace::charts) {
         if (random.integer(0, 1)) {
           for (int k = 0; k < 3; ++k) x[k] = 2 * random.normal();
           x[3] = random.integer(0, 2);
