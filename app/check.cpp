@@ -97,7 +97,7 @@ bool print_derivatives(const Model& model, std::span<const BodyState> states) {
   std::vector<std::string> wrong, names;
   for (const FormulationEntry& formulation : formulations()) {
     names.emplace_back(formulation.name);
-    for (const DerivativeCheck& derivative : check_derivatives(model, formulation.name, states)) {
+    for (const DerivativeCheck& derivative : formulation.check_derivatives(model, states)) {
       ++checked;
       if (derivative.ok)
         largest = std::max(largest, derivative.error);

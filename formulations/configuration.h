@@ -28,7 +28,7 @@ Jet2<Dual<T>> lift(const Jet2<double>& f, const Dual<T>& t) {
   return {{T(f.f), T(f.fd) * t.d}, {T(f.fd), T(f.fdd) * t.d}, T(f.fdd)};
 }
 
-template <class F, class T>
+template <Formulation F, class T>
 class Configuration {
  public:
   using Ambient = Eigen::Matrix<T, F::ambient, 1>;
@@ -139,7 +139,7 @@ class Configuration {
     return u;
   }
   // E(s) of every column
-  static Eigen::Matrix<T, 3, F::m> E_times(const Vec3<T>& s_of, const typename F::template Map<T>& z) {
+  static Eigen::Matrix<T, 3, F::m> E_times(const Vec3<T>& s_of, const Eigen::Matrix<T, F::ambient, F::m>& z) {
     Eigen::Matrix<T, 3, F::m> u;
     for (int k = 0; k < F::m; ++k) u.col(k) = E_times(s_of, Ambient(z.col(k)));
     return u;

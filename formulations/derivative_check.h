@@ -26,8 +26,4 @@ struct DerivativeCheck {
 // A wrong or forgotten term is of that size itself. 1e-9 is far from both.
 inline constexpr double kDerivativeTolerance = 1e-9;
 
-// All at t = 0 and at the states, one per body. `formulation` is a name of the registry.
-std::vector<DerivativeCheck> check_derivatives(const Model& model, std::string_view formulation,
-                                               std::span<const BodyState> states);
-
 }  // namespace poinsot

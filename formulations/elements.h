@@ -76,7 +76,7 @@ struct SpringElement {
   int i, j, p, q;
   double stiffness, damping, length;
 };
-struct TorsionRow {
+struct TorsionSpringElement {
   int i, j, a, b, c;
   double stiffness, damping, angle;
 };
@@ -126,7 +126,7 @@ struct Elements {
   int row_nodes = 0;
 
   std::vector<SpringElement> springs;
-  std::vector<TorsionRow> torsions;
+  std::vector<TorsionSpringElement> torsions;
   std::vector<PointForceElement> point_forces;
   std::vector<TorqueElement> torques;
   std::vector<LinearDrag> drags;

@@ -13,7 +13,7 @@
 
 namespace poinsot {
 
-template <class F, class T>
+template <Formulation F, class T>
 class Mechanism {
  public:
   using C = Configuration<F, T>;
@@ -189,7 +189,8 @@ class Mechanism {
   static Eigen::Map<const X> coordinates(const T* x) { return Eigen::Map<const X>(x); }
   static bool damped(const Elements& e) {
     return std::any_of(e.springs.begin(), e.springs.end(), [](const SpringElement& k) { return k.damping != 0; }) ||
-           std::any_of(e.torsions.begin(), e.torsions.end(), [](const TorsionRow& k) { return k.damping != 0; });
+           std::any_of(e.torsions.begin(), e.torsions.end(),
+                       [](const TorsionSpringElement& k) { return k.damping != 0; });
   }
 
   // Adds a row's force l on its two bodies.

@@ -16,7 +16,7 @@
 
 namespace poinsot {
 
-template <class F, class T>
+template <Formulation F, class T>
 class MechanismMatrix {
  public:
   using C = Configuration<F, T>;

@@ -14,7 +14,7 @@
 
 namespace poinsot {
 
-template <class F>
+template <Formulation F>
 class MechanismProblem final : public Problem {
  public:
   explicit MechanismProblem(std::shared_ptr<const Elements> elements)

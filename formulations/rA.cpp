@@ -1,12 +1,9 @@
 #include "formulations/rA.h"
 
-#include "formulations/make.h"
-#include "formulations/mechanism_problem.h"
+#include "formulations/formulation_entry.h"
 
 namespace poinsot {
 
-std::unique_ptr<Problem> make_rA(std::shared_ptr<const Model> model, std::span<const int> dropped) {
-  return std::make_unique<MechanismProblem<RA>>(std::make_shared<const Elements>(std::move(model), dropped));
-}
+template FormulationEntry formulation_entry<RA>();
 
 }  // namespace poinsot

@@ -1,6 +1,6 @@
 // The rA formulation: orientation is the matrix A itself, its rate the body angular velocity ω̄.
 //
-// How an attached vector s = A s̄ varies (shared/mathematics, "a formulation is how an attached vector varies"):
+// How an attached vector s = A s̄ varies (formulations/README.md, "A formulation"):
 //   δs = E(s) Ŵ δx with E(s) = −s̃, Ŵ = A and δx = θ, a rotation in the body frame:  δs = −A s̃̄ θ
 //   s̈⁰ = N s̄, N = A ω̃̄ω̃̄
 //   Σ (variation of (∂s/∂x)ᵀ w at fixed w) = H(S) = AᵀS − tr(AᵀS) I, S = Σ w s̄ᵀ      (= Σ s̃̄ (Aᵀw)~)
@@ -52,11 +52,7 @@ struct RA {
     rate.wg = at.A * rate.w;
   }
 
-  // Ȧ, so that ṡ = Ȧ s̄, and N, so that s̈⁰ = N s̄.
-  template <class T>
-  static Mat3<T> A_dot(const Position<T>& at, const Velocity<T>& rate, const T*) {
-    return at.A * tilde<T>(rate.w);
-  }
+  // N, so that s̈⁰ = N s̄.
   template <class T>
   static Mat3<T> A_ddot0(const Position<T>& at, const Velocity<T>& rate, const T*) {
     return at.A * (rate.w * rate.w.transpose() - rate.w.squaredNorm() * Mat3<T>::Identity());
@@ -127,5 +123,6 @@ struct RA {
     return Eigen::Map<const Vec3<T>>(xdd);
   }
 };
+static_assert(Formulation<RA>);
 
 }  // namespace poinsot

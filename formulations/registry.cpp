@@ -1,25 +1,23 @@
 #include "formulations/registry.h"
 
 #include <algorithm>
+#include <array>
 
-#include "formulations/make.h"
-#include "formulations/rA.h"
-#include "formulations/reps.h"
-#include "formulations/rp.h"
+#include "formulations/list.h"
 
 namespace poinsot {
 namespace {
 
-constexpr FormulationEntry kFormulations[] = {
-    {RA::name, RA::about, RA::space, make_rA},
-    {RP::name, RP::about, RP::space, make_rp},
-    {REPS::name, REPS::about, REPS::space, make_reps},
+template <class... F>
+struct Entries {
+  // Each is compiled in the formulation's own source file.
+  static std::array<FormulationEntry, sizeof...(F)> all() { return {formulation_entry<F>()...}; }
 };
 
 }  // namespace
 
 Registry<FormulationEntry>& formulations() {
-  static Registry<FormulationEntry> table("formulation", kFormulations);
+  static Registry<FormulationEntry> table("formulation", WithFormulations<Entries>::all());
   return table;
 }
 

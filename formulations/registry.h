@@ -1,11 +1,13 @@
-// The formulations there are. Help texts, error messages, conformance tests and benchmarks are made from this table.
+// The formulations by name. Help texts, error messages, conformance tests and benchmarks are made from this table.
 #pragma once
 
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/registry.h"
+#include "formulations/derivative_check.h"
 #include "formulations/formulation.h"
 #include "formulations/problem.h"
 
@@ -17,7 +19,13 @@ struct FormulationEntry {
   CoordinateSpace space;   // what its coordinates are: decides who may use it
   // A problem over the rows of the model; rows listed in `dropped` (sorted) take no part: they are dependent.
   std::unique_ptr<Problem> (*make)(std::shared_ptr<const Model> model, std::span<const int> dropped);
+  // Every analytic derivative at t = 0 and the states, one per body (formulations/derivative_check.h).
+  std::vector<DerivativeCheck> (*check_derivatives)(const Model& model, std::span<const BodyState> states);
 };
+
+// In formulations/formulation_entry.h.
+template <Formulation F>
+FormulationEntry formulation_entry();
 
 Registry<FormulationEntry>& formulations();
 

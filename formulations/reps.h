@@ -2,8 +2,8 @@
 // = 0.
 //
 // Near the singularity the body-fixed frame is chosen anew: A = R(ε) C with C one of three cyclic permutations of the
-// axes, the chart (formulations/chart.h), stored beside the angles. Everything below is written for A, so vectors and
-// inertias of the scene stay as they are, and a change of chart is a change of (ε, ε̇, ε̈) and of nothing else.
+// axes, the chart (formulations/euler_chart.h), stored beside the angles. Everything below is written for A, so vectors
+// and inertias of the scene stay as they are, and a change of chart is a change of (ε, ε̇, ε̈) and of nothing else.
 //   δs = E(s) W δε, E(s) = −s̃, W = [e_z, A₁ e_x, A₁A₂ e_z]: global angular velocity ω = W ε̇
 //   s̈⁰ = N s̄, N = Σ_ab (∂²A/∂ε_a∂ε_b) ε̇_a ε̇_b (the paper's D),   H(S)_ab = (∂²A/∂ε_a∂ε_b) : S
 // Kinetics in the chart's frame (J_c = C J̄ Cᵀ, ω_c = B ε̇): Bᵀ (J_c (B ε̈ + Ḃ ε̇) + ω̃_c J_c ω_c).
@@ -15,7 +15,7 @@
 #include <string_view>
 
 #include "core/so3.h"
-#include "formulations/chart.h"
+#include "formulations/euler_chart.h"
 #include "formulations/formulation.h"
 
 namespace poinsot {
@@ -65,7 +65,7 @@ struct REPS {
     R << cp * cs - sp * ct * ss, -cp * ss - sp * ct * cs, sp * st,  //
         sp * cs + cp * ct * ss, -sp * ss + cp * ct * cs, -cp * st,  //
         st * ss, st * cs, ct;
-    at.A = Chart::to_scene(at.chart, R);
+    at.A = EulerChart::to_scene(at.chart, R);
     at.W_hat << T(0), cp, sp * st,  //
         T(0), sp, -cp * st,         //
         T(1), T(0), ct;
@@ -78,13 +78,9 @@ struct REPS {
     const Eigen::Map<const Vec3<T>> ed(xd);
     rate.wc = at.B * ed;
     rate.wg = at.W_hat * ed;
-    rate.w = Chart::vector_to_scene<T>(at.chart, rate.wc);
+    rate.w = EulerChart::vector_to_scene<T>(at.chart, rate.wc);
   }
 
-  template <class T>
-  static Mat3<T> A_dot(const Position<T>& at, const Velocity<T>& rate, const T*) {
-    return tilde<T>(rate.wg) * at.A;
-  }
   // Ä⁰ = (ω̇⁰)~ A + ω̃ω̃ A with ω̇⁰ = Ẇ ε̇
   template <class T>
   static Mat3<T> A_ddot0(const Position<T>& at, const Velocity<T>& rate, const T* xd) {
@@ -135,18 +131,18 @@ struct REPS {
   template <class T>
   static X<T> inertia_residual(const Position<T>& at, const Velocity<T>& rate, const T* xd, const T* xdd,
                                const Mat3<T>& J) {
-    const Mat3<T> Jc = Chart::inertia_to_chart(at.chart, J);
+    const Mat3<T> Jc = EulerChart::inertia_to_chart(at.chart, J);
     const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot(at, xd) * Eigen::Map<const Vec3<T>>(xd);
     return at.B.transpose() * (Jc * wd + rate.wc.cross(Jc * rate.wc));
   }
   template <class T>
   static XX<T> mass(const Position<T>& at, const Mat3<T>& J) {
-    return at.B.transpose() * Chart::inertia_to_chart(at.chart, J) * at.B;
+    return at.B.transpose() * EulerChart::inertia_to_chart(at.chart, J) * at.B;
   }
   static constexpr bool simplified_keeps_rate_term = false;
   template <class T>
   static XX<T> inertia_rate_variation(const Position<T>& at, const Velocity<T>& rate, const T* xd, const Mat3<T>& J) {
-    const Mat3<T> Jc = Chart::inertia_to_chart(at.chart, J);
+    const Mat3<T> Jc = EulerChart::inertia_to_chart(at.chart, J);
     const Vec3<T> ed = Eigen::Map<const Vec3<T>>(xd);
     const Mat3<T> L = tilde<T>(rate.wc) * Jc - tilde<T>(Jc * rate.wc);
     Mat3<T> inner = Jc * B_dot(at, xd) + L * at.B;
@@ -158,7 +154,7 @@ struct REPS {
   template <class T>
   static XX<T> inertia_position_variation(const Position<T>& at, const Velocity<T>& rate, const T* xd, const T* xdd,
                                           const Mat3<T>& J) {
-    const Mat3<T> Jc = Chart::inertia_to_chart(at.chart, J);
+    const Mat3<T> Jc = EulerChart::inertia_to_chart(at.chart, J);
     const Vec3<T> ed = Eigen::Map<const Vec3<T>>(xd), edd = Eigen::Map<const Vec3<T>>(xdd);
     const Mat3<T> L = tilde<T>(rate.wc) * Jc - tilde<T>(Jc * rate.wc);
     const Vec3<T> u = Jc * (at.B * edd + B_dot(at, xd) * ed) + rate.wc.cross(Jc * rate.wc);
@@ -180,13 +176,13 @@ struct REPS {
   // Chart 0 is the scene's own frame; another one is taken only where it is (nearly) singular.
   template <class T>
   static void from_rotation(const Mat3<T>& A, T* x) {
-    Chart::angles(A, plain(Chart::sin_theta(A, 0)) > kLeaveChart ? 0 : Chart::best(A), x);
+    EulerChart::angles(A, plain(EulerChart::sin_theta(A, 0)) > kLeaveChart ? 0 : EulerChart::best(A), x);
   }
   template <class T>
   static bool rates_from(const Position<T>& at, const Vec3<T>& w, T* xd) {  // ε̇ = B⁻¹ ω_c
     using std::abs;
     if (plain(abs(at.st)) < kTooSmall) return false;
-    const Vec3<T> wc = Chart::vector_to_chart<T>(at.chart, w);
+    const Vec3<T> wc = EulerChart::vector_to_chart<T>(at.chart, w);
     xd[0] = (at.ss * wc[0] + at.cs * wc[1]) / at.st;
     xd[1] = at.cs * wc[0] - at.ss * wc[1];
     xd[2] = wc[2] - at.ct * xd[0];
@@ -195,19 +191,19 @@ struct REPS {
   template <class T>
   static Vec3<T> angular_acceleration(const Position<T>& at, const Velocity<T>&, const T* xd, const T* xdd) {
     const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot(at, xd) * Eigen::Map<const Vec3<T>>(xd);
-    return Chart::vector_to_scene<T>(at.chart, wd);
+    return EulerChart::vector_to_scene<T>(at.chart, wd);
   }
 
   // Changes to the best chart where this one is nearly singular; ε̈ keeps the angular acceleration. True when it did.
   static bool rechart(const Position<double>& at, const Velocity<double>& rate, double* x, double* xd, double* xdd) {
     if (std::abs(at.st) >= kLeaveChart) return false;
     const Vec3<double> wd = angular_acceleration(at, rate, xd, xdd);
-    Chart::angles(at.A, Chart::best(at.A), x);
+    EulerChart::angles(at.A, EulerChart::best(at.A), x);
     Position<double> there;
     position(x, there);
     rates_from(there, rate.w, xd);
     const Vec3<double> bias =
-        Chart::vector_to_scene<double>(there.chart, B_dot(there, xd) * Eigen::Map<const Vec3<double>>(xd));
+        EulerChart::vector_to_scene<double>(there.chart, B_dot(there, xd) * Eigen::Map<const Vec3<double>>(xd));
     rates_from<double>(there, wd - bias, xdd);
     return true;
   }
@@ -263,5 +259,6 @@ struct REPS {
     return xd[1] * B_partial(at, 1) + xd[2] * B_partial(at, 2);
   }
 };
+static_assert(Formulation<REPS>);
 
 }  // namespace poinsot

@@ -1,12 +1,9 @@
 #include "formulations/rp.h"
 
-#include "formulations/make.h"
-#include "formulations/mechanism_problem.h"
+#include "formulations/formulation_entry.h"
 
 namespace poinsot {
 
-std::unique_ptr<Problem> make_rp(std::shared_ptr<const Model> model, std::span<const int> dropped) {
-  return std::make_unique<MechanismProblem<RP>>(std::make_shared<const Elements>(std::move(model), dropped));
-}
+template FormulationEntry formulation_entry<RP>();
 
 }  // namespace poinsot

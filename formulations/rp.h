@@ -62,13 +62,6 @@ struct RP {
   }
 
   template <class T>
-  static Mat3<T> A_dot(const Position<T>& at, const Velocity<T>& rate, const T* xd) {
-    const T stretch = at.W_hat.row(3).dot(Eigen::Map<const Vec4<T>>(xd));
-    Mat3<T> W = tilde<T>(rate.wg);
-    W.diagonal().array() += stretch;
-    return W * at.A;
-  }
-  template <class T>
   static Mat3<T> A_ddot0(const Position<T>&, const Velocity<T>&, const T* xd) {
     return T(2) * rotation_from_parameters<T>(Eigen::Map<const Vec4<T>>(xd));
   }
@@ -169,5 +162,6 @@ struct RP {
     return t;
   }
 };
+static_assert(Formulation<RP>);
 
 }  // namespace poinsot

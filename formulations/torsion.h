@@ -22,7 +22,7 @@ class Torsion {
 
   // Angle of a torsion spring with its full turns: of all that fit, the one nearest to `before`, so that it goes on
   // over ±π within a step.
-  static T angle(const C& c, const TorsionRow& k, double before) {
+  static T angle(const C& c, const TorsionSpringElement& k, double before) {
     using std::atan2;
     constexpr double turn = 2 * std::numbers::pi;
     const Vec3<T>& v = c.s[index(k.c)];
@@ -35,7 +35,7 @@ class Torsion {
     T x, y, xd = T(0), yd = T(0), rho2, torque;
     Vec3<T> u, c;
 
-    Twist(const C& at, const TorsionRow& k, double before) : c(at.s[index(k.c)]) {
+    Twist(const C& at, const TorsionSpringElement& k, double before) : c(at.s[index(k.c)]) {
       const Vec3<T>&a = at.s[index(k.a)], &b = at.s[index(k.b)];
       x = a.dot(c);
       y = b.dot(c);
@@ -53,7 +53,7 @@ class Torsion {
 
   // K = k ∇θ∇θᵀ + torque ∇²θ + c ∇θ (∂θ̇/∂q)ᵀ, D = c ∇θ∇θᵀ.
   template <class Sink>
-  static void matrix(const C& c, const TorsionRow& k, double before, const T& cq, const T& cv,
+  static void matrix(const C& c, const TorsionSpringElement& k, double before, const T& cq, const T& cv,
                      const std::vector<XX>& T_inverse, Sink&& sink) {
     const Twist w(c, k, before);
     const Vec3<T>&a = c.s[index(k.a)], &b = c.s[index(k.b)];
@@ -116,7 +116,7 @@ class Torsion {
  private:
   using Line = Eigen::Matrix<T, 1, F::m>;
 
-  static Vec3<T> u_bar(const C& c, const TorsionRow& k, const Twist& w) {
+  static Vec3<T> u_bar(const C& c, const TorsionSpringElement& k, const Twist& w) {
     return (w.x * c.s_bar(k.b) - w.y * c.s_bar(k.a)) / w.rho2;
   }
 };

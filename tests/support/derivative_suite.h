@@ -1,5 +1,4 @@
-// Every derivative of one formulation against dual numbers and Taylor remainders; instantiated in a file per
-// formulation, because kernels on dual numbers are slow to compile.
+// Every derivative of one formulation against dual numbers and Taylor remainders.
 //
 // The expected side is always the plain function (Φ, G v − ν, the residual of a step, the energy) evaluated on dual
 // numbers along a direction; the tested side is what Problem computes by its formulas.

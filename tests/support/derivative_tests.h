@@ -6,6 +6,14 @@
 
 namespace poinsot::test {
 
+// How the instances of a suite over formulations are called.
+struct FormulationNames {
+  template <class F>
+  static std::string GetName(int) {
+    return std::string(F::name);
+  }
+};
+
 TYPED_TEST_SUITE_P(Derivatives);
 
 TYPED_TEST_P(Derivatives, OfSingleRows) {
@@ -235,7 +243,7 @@ TYPED_TEST_P(Derivatives, OfTheEnergyAreThePowerOfTheForces) {
     typename TestFixture::Duals duals(model);
     duals.stand(Dual<double>(t, 1.0), q, TestFixture::dual(VectorX::Zero(problem->nv()), v), TestFixture::dual(v, a));
     const auto& torsions = duals.mechanism.c.elements->torsions;
-    for (const TorsionRow& torsion : torsions) {
+    for (const TorsionSpringElement& torsion : torsions) {
       power -= torsion.damping * std::pow(Torsion<TypeParam, Dual<double>>::angle(duals.mechanism.c, torsion, 0).d, 2);
     }
     const double expected = v.dot(out) + power;

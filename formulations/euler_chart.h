@@ -11,7 +11,7 @@
 
 namespace poinsot {
 
-struct Chart {
+struct EulerChart {
   template <class T>
   static Mat3<T> to_scene(int chart, const Mat3<T>& R) {
     if (chart == 0) return R;

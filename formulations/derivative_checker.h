@@ -1,53 +1,37 @@
-#include "formulations/derivative_check.h"
-
-#include <fmt/format.h>
+// The derivative check of a formulation (formulations/derivative_check.h), compiled with it: the residuals on dual
+// numbers on one side, the formulas of its Problem on the other.
+#pragma once
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <limits>
 #include <memory>
+#include <span>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/check.h"
 #include "core/dual.h"
+#include "formulations/derivative_check.h"
 #include "formulations/mechanism.h"
+#include "formulations/mechanism_problem.h"
 #include "formulations/model_part.h"
-#include "formulations/rA.h"
-#include "formulations/registry.h"
-#include "formulations/reps.h"
-#include "formulations/rp.h"
 
 namespace poinsot {
-namespace {
 
-using Vector = Eigen::VectorXd;
-using Matrix = Eigen::MatrixXd;
-using D = Dual<double>;
-using DualVector = Eigen::Matrix<D, Eigen::Dynamic, 1>;
-
-std::span<const double> view(const Vector& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
-}
-std::span<double> view(Vector& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
-}
-DualVector dual(const Vector& value, const Vector& direction) {
-  DualVector x(value.size());
-  for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = D(value[k], direction[k]);
-  return x;
-}
-Vector derivative(const DualVector& x) {
-  return Vector::NullaryExpr(x.size(), [&](Eigen::Index k) { return x[k].d; });
-}
-
-template <class F>
-class Checker {
+// Of one part of a model, in formulation F.
+template <Formulation F>
+class DerivativeChecker {
  public:
-  Checker(const Part& part, std::string name, std::vector<DerivativeCheck>& out)
+  DerivativeChecker(const Part& part, std::string name, std::vector<DerivativeCheck>& out)
       : part_(part),
         name_(std::move(name)),
         out_(out),
-        problem_(formulations().require(F::name).make(std::make_shared<const Model>(part.model), {})),
-        duals_(std::make_shared<const Elements>(std::make_shared<const Model>(part.model), std::span<const int>())),
+        elements_(std::make_shared<const Elements>(std::make_shared<const Model>(part.model), std::span<const int>())),
+        problem_(std::make_unique<MechanismProblem<F>>(elements_)),
+        duals_(elements_),
         q_(problem_->nq()),
         v_(problem_->nv()) {
     const bool regular = problem_->from_bodies(part.states, view(q_), view(v_)).ok();
@@ -102,6 +86,22 @@ class Checker {
   }
 
  private:
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::MatrixXd;
+  using D = Dual<double>;
+  using DualVector = Eigen::Matrix<D, Eigen::Dynamic, 1>;
+
+  static std::span<const double> view(const Vector& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+  static std::span<double> view(Vector& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+  static DualVector dual(const Vector& value, const Vector& direction) {
+    DualVector x(value.size());
+    for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = D(value[k], direction[k]);
+    return x;
+  }
+  static Vector derivative(const DualVector& x) {
+    return Vector::NullaryExpr(x.size(), [&](Eigen::Index k) { return x[k].d; });
+  }
+
   template <class Derived>
   static double largest(const Eigen::MatrixBase<Derived>& m) {
     return m.size() == 0 ? 0 : m.cwiseAbs().maxCoeff();
@@ -169,23 +169,29 @@ class Checker {
   const Part& part_;
   std::string name_;
   std::vector<DerivativeCheck>& out_;
+  std::shared_ptr<const Elements> elements_;
   std::unique_ptr<Problem> problem_;
   Mechanism<F, D> duals_;
   Vector q_, v_;
   DualVector dual_q_, dual_v_;
 };
 
-template <class F>
-std::vector<DerivativeCheck> check_all(const Model& model, std::span<const BodyState> states) {
-  static constexpr const char* kKinds[] = {"constraint", "joint", "driver"};
+// Every constraint, joint, driver and force of the model at the states.
+template <Formulation F>
+std::vector<DerivativeCheck> check_derivatives_in(const Model& model, std::span<const BodyState> states) {
+  check(states.size() == model.bodies.size(), "the derivative check has a state for every body");
+  static constexpr std::string_view kKinds[] = {"constraint", "joint", "driver"};
   std::vector<DerivativeCheck> out;
+  const auto named = [](std::string_view kind, const std::string& name) {
+    return std::string(kind) + " '" + name + "'";
+  };
   for (const Group& group : model.groups) {
     const Part part = part_of(model, states, group);
-    Checker<F>(part, fmt::format("{} '{}'", kKinds[static_cast<int>(group.kind)], group.name), out).rows();
+    DerivativeChecker<F>(part, named(kKinds[static_cast<int>(group.kind)], group.name), out).rows();
   }
   const auto force = [&](const auto& element, const std::string& name) {
     const Part part = part_of(states, element);
-    Checker<F>(part, fmt::format("force '{}'", name), out).force();
+    DerivativeChecker<F>(part, named("force", name), out).force();
   };
   for (const PointForce& element : model.point_forces) force(element, element.name);
   for (const Torque& element : model.torques) force(element, element.name);
@@ -193,20 +199,6 @@ std::vector<DerivativeCheck> check_all(const Model& model, std::span<const BodyS
   for (const TorsionElement& element : model.torsions) force(element, element.spring.name);
   for (const LinearDrag& element : model.drags) force(element, element.name);
   return out;
-}
-
-}  // namespace
-
-std::vector<DerivativeCheck> check_derivatives(const Model& model, std::string_view formulation,
-                                               std::span<const BodyState> states) {
-  check(states.size() == model.bodies.size(), "the derivative check has a state for every body");
-  constexpr std::pair<std::string_view, std::vector<DerivativeCheck> (*)(const Model&, std::span<const BodyState>)>
-      kCheckers[] = {{RA::name, check_all<RA>}, {RP::name, check_all<RP>}, {REPS::name, check_all<REPS>}};
-  for (const auto& [name, checker] : kCheckers) {
-    if (name == formulation) return checker(model, states);
-  }
-  check(false, "the derivative check knows every formulation");
-  return {};
 }
 
 }  // namespace poinsot
