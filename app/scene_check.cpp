@@ -27,10 +27,10 @@ std::vector<Conflict> find_conflicts(const std::shared_ptr<const Model>& model, 
   Consistent consistent(*independent, Settings{}.linear_solver);
   // A projection that fails leaves the state where it was, and the rows are measured there.
   const std::vector<double> q_given = q, v_given = v;
-  if (!consistent.project_position(*independent, 0, q).ok()) q = q_given;
+  if (!consistent.project_position(0, q).ok()) q = q_given;
   independent->set_position(0, q);
   independent->set_velocity(v);
-  if (!consistent.project_velocity(*independent, 0, v).ok()) v = v_given;
+  if (!consistent.project_velocity(0, v).ok()) v = v_given;
 
   whole->set_position(0, q);
   whole->set_velocity(v);

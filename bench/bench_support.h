@@ -14,6 +14,8 @@
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
 #include "integrators/start/initial_state.h"
+#include "integrators/state.h"
+#include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
 
 namespace poinsot::bench {
@@ -47,12 +49,13 @@ class Standing {
       : model_(std::make_shared<const Model>(compile(scene))) {
     const InitialState start = find_initial_state(model_, Settings());
     problem = formulation.make(model_, start.dropped);
-    q.resize(static_cast<std::size_t>(problem->nq()));
-    v.resize(static_cast<std::size_t>(problem->nv()));
-    good = start.status.ok() && problem->from_bodies(start.bodies, q, v).ok();
+    State state(*problem);
+    good = start.status.ok() && problem->from_bodies(start.bodies, span(state.q), span(state.v)).ok();
+    q.assign(state.q.begin(), state.q.end());
+    v.assign(state.v.begin(), state.v.end());
     a.assign(v.size(), 0.1);
     dq.assign(v.size(), 1e-4);
-    lambda.assign(static_cast<std::size_t>(problem->nc()), 1.0);
+    lambda.assign(state.lambda().size(), 1.0);
     problem->set_position(0, q);
     problem->set_velocity(v);
   }

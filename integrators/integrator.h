@@ -13,6 +13,7 @@
 #include "core/status.h"
 #include "formulations/problem.h"
 #include "integrators/settings.h"
+#include "integrators/state.h"
 #include "linsolve/linear_solver.h"
 
 namespace poinsot {
@@ -44,15 +45,11 @@ struct Sample {
 };
 using Observer = std::function<void(const Sample&)>;
 
-// Where a run starts: consistent at t = 0.
-struct State {
-  std::vector<double> q, v, a, lambda;
-};
-
 class Integrator {
  public:
   virtual ~Integrator() = default;
-  // Advances `state` from 0 to settings.end. After a failure `state` and the samples given out are still good.
+  // Advances `state`, consistent at 0, to settings.end. After a failure its q and v are those of the last good step, as
+  // the samples given out are.
   virtual Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state,
                      const Observer& observe, Statistics& statistics) = 0;
 };

@@ -9,9 +9,10 @@
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
+#include "integrators/start/first_state.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/singular_position.h"
-#include "integrators/stepping/consistent.h"
+#include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
 
 namespace poinsot {
@@ -68,37 +69,18 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
 
   const std::unique_ptr<Problem> problem = formulation.make(model, start.dropped);
   if (settings.analysis == Analysis::kinematics) refuse_free_motion(*problem);
-  State state;
-  state.q.resize(static_cast<std::size_t>(problem->nq()));
-  state.v.resize(static_cast<std::size_t>(problem->nv()));
-  state.a.resize(state.v.size());
-  state.lambda.resize(static_cast<std::size_t>(problem->nc()));
-  outcome.status = problem->from_bodies(start.bodies, state.q, state.v);
+  State state(*problem);
+  outcome.status = find_first_state(start, settings, *problem, state);
   std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
   if (!outcome.status.ok()) return outcome;
-  if (settings.analysis == Analysis::dynamics) {
-    problem->set_position(0, state.q);
-    problem->set_velocity(state.v);
-    const bool known = formulation.name == "rA" && !start.a.empty() && !problem->has_discrete_state();
-    if (problem->has_discrete_state()) problem->accept(0, state.q, state.v, state.a);
-    problem->set_position(0, state.q);
-    problem->set_velocity(state.v);
-    if (known) {
-      state.a = std::move(start.a);
-      state.lambda = std::move(start.lambda);
-    } else {
-      outcome.status = Consistent(*problem, linear_solver.name).accelerations(*problem, 0, state.a, state.lambda);
-      if (!outcome.status.ok()) return outcome;
-    }
-  }
-  const std::vector<double> q_start = state.q;
+  const Eigen::VectorXd q_start = state.q;
   const std::unique_ptr<LinearSolver> solver = linear_solver.make();
   outcome.status = integrator.make()->run(*problem, *solver, settings, state, observe, outcome.statistics);
   const Failure failure = outcome.status.failure;
   if (settings.analysis == Analysis::dynamics &&
       (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {
     const int rows = static_cast<int>(model->rows.size() - start.dropped.size());
-    const std::string why = near_singular_position(*problem, rows, q_start, outcome.status.time, state.q);
+    const std::string why = near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
     if (!why.empty()) outcome.status.message += "; " + why;
   }
   outcome.statistics.linear_solver = solver->picked().empty() ? linear_solver.name : solver->picked();

@@ -5,9 +5,8 @@
 
 #include <tuple>
 
-#include "core/index.h"
 #include "core/scene_generator.h"
-#include "integrators/start/initial_state.h"
+#include "integrators/start/first_state.h"
 #include "tests/support/allocations.h"
 #include "tests/support/simulation.h"
 
@@ -207,9 +206,8 @@ TEST_P(Newton, StepsAllocateNothing) {
         const InitialState start = find_initial_state(compiled, settings);
         const auto problem = formulations().require(formulation()).make(compiled, start.dropped);
         if (settings.analysis == Analysis::kinematics && problem->nv() != problem->nc()) continue;
-        State state{std::vector<double>(index(problem->nq())), std::vector<double>(index(problem->nv())),
-                    std::vector<double>(index(problem->nv())), std::vector<double>(index(problem->nc()))};
-        ASSERT_TRUE(problem->from_bodies(start.bodies, state.q, state.v).ok());
+        State state(*problem);
+        ASSERT_TRUE(find_first_state(start, settings, *problem, state).ok());
         const auto solver = linear_solvers().require(name).make();
         long steps = 0, fresh = 0, pivots = 0, allocated = 0;
         const Observer observe = [&](const Sample&) {

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "core/check.h"
-#include "integrators/stepping/consistent_point.h"
+#include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/stabilized_index2.h"
@@ -73,11 +73,11 @@ class Run {
         form_(problem),
         system_(problem, solver, statistics, clock_),
         point_solver_(linear_solvers().require(settings.linear_solver).make()),
-        points_(problem, *point_solver_, statistics, clock_),
+        consistent_(problem, *point_solver_, statistics, clock_),
         sizes_(2 * static_cast<std::size_t>(problem.nv())),
         sizes_now_(sizes_.size()),
-        at_(points_.make(0, state)),
-        next_(points_.make()) {
+        at_(state),
+        next_(problem) {
     SUNContext context = nullptr;
     check(SUNContext_Create(nullptr, &context) == 0, "SUNDIALS gives a context");
     context_.reset(context);
@@ -100,8 +100,8 @@ class Run {
 
   Status prepare(const State& state) {
     if (Status status = system_.prepare(form_.pattern(), form_.unknowns()); !status.ok()) return status;
-    if (Status status = points_.prepare(); !status.ok()) return status;
-    form_.start(state.q, state.v, state.a, state.lambda, values(y_.get()), values(y_dot_.get()));
+    if (Status status = consistent_.prepare(); !status.ok()) return status;
+    form_.start(state, values(y_.get()), values(y_dot_.get()));
     void* ida = ida_.get();
     const auto done = [](int flag) { check(flag == IDA_SUCCESS, "IDA accepts what it is given"); };
     done(IDAInit(ida, residual, 0, y_.get(), y_dot_.get()));
@@ -117,7 +117,7 @@ class Run {
 
   Status integrate() {
     clock_.start();
-    points_.stand(at_);
+    consistent_.stand(at_);
     give_out();
     const Status status = advance();
     count();
@@ -125,7 +125,7 @@ class Run {
     return status;
   }
 
-  void give(State& state) const { points_.give(at_, state); }
+  const State& state() const { return at_; }
 
  private:
   using Vector = Owned<N_Vector, N_VDestroy>;
@@ -169,7 +169,7 @@ class Run {
     if (share_ == 1) return step_too_small(t, h, linear_status_);
     share_ = 1;
     count();
-    form_.start(span(at_.q), span(at_.v), points_.a(at_), points_.lambda(at_), values(y_.get()), values(y_dot_.get()));
+    form_.start(at_, values(y_.get()), values(y_dot_.get()));
     check(IDAReInit(ida_.get(), t, y_.get(), y_dot_.get()) == IDA_SUCCESS, "IDA starts anew");
     return {};
   }
@@ -190,7 +190,7 @@ class Run {
     next_.t = t;
     std::ranges::copy(form_.q(y), next_.q.begin());
     std::ranges::copy(form_.v(y), next_.v.begin());
-    if (Status status = points_.complete(next_); !status.ok()) return status;
+    if (Status status = consistent_.complete(next_); !status.ok()) return status;
     std::swap(at_, next_);
     return {};
   }
@@ -207,7 +207,7 @@ class Run {
 
   void give_out() {
     clock_.lap(Phase::other);
-    sample(observe_, problem_, at_.t, span(at_.q), span(at_.v), points_.a(at_), points_.lambda(at_), statistics_);
+    sample(observe_, problem_, at_, statistics_);
     clock_.skip();
   }
 
@@ -261,9 +261,9 @@ class Run {
   StabilizedIndex2 form_;
   TimedSystem system_;
   std::unique_ptr<LinearSolver> point_solver_;
-  ConsistentPoints points_;
+  Consistent consistent_;
   std::vector<double> sizes_, sizes_now_;
-  Point at_, next_;  // the last point given out, and the next one while it is made
+  State at_, next_;  // the last point given out, and the next one while it is made
   Status linear_status_;
   double share_ = kShare;  // of the tolerance
 
@@ -281,7 +281,7 @@ class Ida final : public Integrator {
     Run run(problem, solver, settings, state, observe, statistics);
     if (Status status = run.prepare(state); !status.ok()) return status;
     const Status status = run.integrate();
-    run.give(state);
+    state = run.state();
     return status;
   }
 };

@@ -10,15 +10,12 @@
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/step_system.h"
 #include "integrators/stepping/time_grid.h"
-#include "linsolve/registry.h"
+#include "integrators/stepping/vectors.h"
 
 namespace poinsot {
 namespace {
 
 using Vector = Eigen::VectorXd;
-std::span<double> span(Vector& x) {
-  return {x.data(), static_cast<std::size_t>(x.size())};
-}
 
 class Kinematics final : public Integrator {
  public:
@@ -33,9 +30,8 @@ class Kinematics final : public Integrator {
     std::unique_ptr<Consistent> inverse_dynamics;
     if (settings.reactions) inverse_dynamics = std::make_unique<Consistent>(problem, settings.linear_solver);
 
-    Vector q = Eigen::Map<Vector>(state.q.data(), problem.nq()), v = Eigen::Map<Vector>(state.v.data(), problem.nv());
-    Vector a = Vector::Zero(problem.nv()), delta(problem.nc()), q_next(q.size()), dq(v.size()), lambda;
-    if (settings.reactions) lambda.setZero(problem.nc());
+    Vector &q = state.q, &v = state.v, delta(problem.nc()), q_next(q.size()), dq(v.size());
+    if (!settings.reactions) state.z.setZero(problem.nv());  // no multipliers
 
     Status status;
     clock.start();
@@ -48,27 +44,25 @@ class Kinematics final : public Integrator {
       }
       status = position(problem, system, settings, policy.refresh, t, q, q_next, delta, statistics);
       if (!status.ok()) break;
-      status = rates(problem, system, t, q, v, a, delta);
+      status = rates(problem, system, t, state, delta);
       if (!status.ok()) break;
+      state.t = t;
       if (n > 0) ++statistics.steps;
-      if (problem.has_discrete_state() && problem.accept(t, span(q), span(v), span(a))) {
+      if (problem.has_discrete_state() && problem.accept(t, span(q), span(v), state.a())) {
         problem.set_position(t, span(q));
         problem.set_velocity(span(v));
       }
       if (grid.sampled(n)) {
         clock.lap(Phase::other);
         if (inverse_dynamics) {
-          status = inverse_dynamics->accelerations(problem, t, span(a), span(lambda));
+          status = inverse_dynamics->accelerations(t, span(state.z));
           if (!status.ok()) break;
         }
-        sample(observe, problem, t, span(q), span(v), span(a), span(lambda), statistics);
+        sample(observe, problem, state, statistics);
         clock.skip();
       }
     }
     finish(clock, statistics);
-    state.q.assign(q.begin(), q.end());
-    state.v.assign(v.begin(), v.end());
-    state.a.assign(a.begin(), a.end());
     return status;
   }
 
@@ -105,16 +99,16 @@ class Kinematics final : public Integrator {
                     problem.describe_unknown(static_cast<int>(largest)))};
   }
 
-  static Status rates(Problem& problem, StepSystem& system, double t, Vector& q, Vector& v, Vector& a, Vector& rhs) {
-    problem.set_position(t, span(q));
+  static Status rates(Problem& problem, StepSystem& system, double t, State& x, Vector& rhs) {
+    problem.set_position(t, span(x.q));
     if (Status status = system.refresh(t, {}, {}, {}, {}); !status.ok()) return status;
     problem.nu(span(rhs));
     if (Status status = system.solve(t, span(rhs)); !status.ok()) return status;
-    v = rhs;
-    problem.set_velocity(span(v));
+    x.v = rhs;
+    problem.set_velocity(span(x.v));
     problem.gamma(span(rhs));
     if (Status status = system.solve(t, span(rhs)); !status.ok()) return status;
-    a = rhs;
+    x.z.head(problem.nv()) = rhs;
     return {};
   }
 };

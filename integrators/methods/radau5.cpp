@@ -28,7 +28,7 @@ class Radau5 final : public Integrator {
     Method method(problem, solver, settings.linear_solver, settings.rtol, settings.absolute_tolerance(), statistics,
                   clock);
     if (Status status = method.prepare(); !status.ok()) return status;
-    method.start(0, state);
+    method.start(state);
     return controlled_run(method, kRule, problem, settings, state, observe, statistics, clock);
   }
 };

@@ -30,50 +30,43 @@ class Run {
         velocity_rows_(velocity_rows(problem)),
         nv_(problem.nv()),
         nc_(problem.nc()),
-        q_(Eigen::Map<Vector>(state.q.data(), problem.nq())),
-        v_(Eigen::Map<Vector>(state.v.data(), nv_)),
-        z_(nv_ + nc_),
-        out_(nv_ + nc_),
-        q_n_(q_),
-        v_n_(v_),
+        x_(state),
+        z_(state.z),
+        q_n_(state.q),
+        v_n_(state.v),
         u_(nv_),
         dq_(nv_),
         e_(nv_),
         momentum_(nv_),
         rows_(nc_),
         rhs_(nv_ + nc_),
-        zeros_(Vector::Zero(nv_ + nc_)) {
-    out_ << Eigen::Map<Vector>(state.a.data(), nv_), Eigen::Map<Vector>(state.lambda.data(), nc_);
-    z_ = out_;
-  }
+        zeros_(Vector::Zero(nv_ + nc_)) {}
 
   Status operator()() {
     if (Status status = here_->system.prepare(); !status.ok()) return status;
     stand(here_->problem, 0);
-    give(here_->problem, 0);
+    sample(observe_, here_->problem, x_, statistics_);
     clock_.start();
     Status status = factor(*here_, 0);
     for (std::int64_t n = 1; n <= grid_.steps && status.ok(); ++n) {
       const double t = grid_.time(n);
-      q_n_.swap(q_);
-      v_n_.swap(v_);
+      q_n_.swap(x_.q);
+      v_n_.swap(x_.v);
       status = first_half(t);
       if (status.ok()) status = second_half(t);
       if (!status.ok()) {  // the last accepted step stays
-        q_.swap(q_n_);
-        v_.swap(v_n_);
+        x_.q.swap(q_n_);
+        x_.v.swap(v_n_);
         break;
       }
+      x_.t = t;
       ++statistics_.steps;
       std::swap(here_, there_);
       if (here_->problem.has_discrete_state()) status = accept(t);
       if (status.ok() && grid_.sampled(n)) status = sample_at(t);
     }
     finish(clock_, statistics_);
-    state_.q.assign(q_.begin(), q_.end());
-    state_.v.assign(v_.begin(), v_.end());
-    state_.a.assign(out_.begin(), out_.begin() + nv_);
-    state_.lambda.assign(out_.begin() + nv_, out_.end());
+    state_ = x_;
     return status;
   }
 
@@ -85,11 +78,8 @@ class Run {
   };
 
   void stand(Problem& problem, double t) {
-    problem.set_position(t, span(q_));
-    problem.set_velocity(span(v_));
-  }
-  void give(const Problem& problem, double t) {
-    sample(observe_, problem, t, span(q_), span(v_), span(out_, 0, nv_), span(out_, nv_, nc_), statistics_);
+    problem.set_position(t, span(x_.q));
+    problem.set_velocity(span(x_.v));
   }
   Status factor(End& end, double t) {
     return end.system.refresh(t, {}, {}, span(zeros_, 0, nv_), span(zeros_, nv_, nc_));
@@ -103,9 +93,9 @@ class Run {
     const auto residual = [&](Vector& r) {
       u_.noalias() = v_n_ + (0.5 * h_) * z_.head(nv_);
       dq_.noalias() = h_ * u_;
-      end.retract(span(q_n_), span(dq_), span(q_));
+      end.retract(span(q_n_), span(dq_), span(x_.q));
       begin.set_velocity(span(u_));
-      end.set_position(t, span(q_));
+      end.set_position(t, span(x_.q));
       begin.equations_of_motion(span(z_, 0, nv_), span(z_, nv_, nc_), span(r, 0, nv_));
       find_even_part(begin);
       r.head(nv_) += e_;
@@ -119,7 +109,7 @@ class Run {
       z_ += delta;
       return {};
     };
-    return newton_.solve(t, position, q_, residual, matrix, correct);
+    return newton_.solve(t, position, x_.q, residual, matrix, correct);
   }
 
   void add_velocity_rows(Vector& r) {
@@ -148,8 +138,8 @@ class Run {
     u_.noalias() = v_n_ + (0.5 * h_) * z_.head(nv_);
     dq_.noalias() = h_ * u_;
     Problem& end = there_->problem;
-    end.retract(span(q_n_), span(dq_), span(q_));
-    end.set_position(t, span(q_));
+    end.retract(span(q_n_), span(dq_), span(x_.q));
+    end.set_position(t, span(x_.q));
     end.set_velocity(span(u_));
     if (Status status = factor(*there_, t); !status.ok()) return status;
     find_even_part(end);
@@ -158,14 +148,14 @@ class Run {
     end.velocity_residual(span(rhs_, nv_, nc_));
     rhs_.tail(nc_) *= -2 / h_;
     if (Status status = there_->system.solve(t, span(rhs_)); !status.ok()) return status;
-    v_.noalias() = u_ + (0.5 * h_) * rhs_.head(nv_);
+    x_.v.noalias() = u_ + (0.5 * h_) * rhs_.head(nv_);
     z_ = 2 * rhs_ - z_;  // where the next first half begins its iteration: the line through the last two halves
     return {};
   }
 
   Status accept(double t) {
-    here_->problem.set_velocity(span(v_));
-    if (!here_->problem.accept(t, span(q_), span(v_), span(rhs_, 0, nv_))) return {};
+    here_->problem.set_velocity(span(x_.v));
+    if (!here_->problem.accept(t, span(x_.q), span(x_.v), span(rhs_, 0, nv_))) return {};
     z_ = rhs_;
     stand(here_->problem, t);
     return factor(*here_, t);
@@ -173,13 +163,13 @@ class Run {
 
   Status sample_at(double t) {
     Problem& problem = here_->problem;
-    problem.set_velocity(span(v_));
-    problem.equations_of_motion(span(zeros_, 0, nv_), span(zeros_, nv_, nc_), span(out_, 0, nv_));
-    out_.head(nv_) = -out_.head(nv_);
-    problem.gamma(span(out_, nv_, nc_));
-    if (Status status = here_->system.solve(t, span(out_)); !status.ok()) return status;
+    problem.set_velocity(span(x_.v));
+    problem.equations_of_motion(span(zeros_, 0, nv_), span(zeros_, nv_, nc_), span(x_.z, 0, nv_));
+    x_.z.head(nv_) = -x_.z.head(nv_);
+    problem.gamma(span(x_.z, nv_, nc_));
+    if (Status status = here_->system.solve(t, span(x_.z)); !status.ok()) return status;
     clock_.lap(Phase::other);
-    give(problem, t);
+    sample(observe_, problem, x_, statistics_);
     clock_.skip();
     return {};
   }
@@ -197,7 +187,8 @@ class Run {
   Broyden broyden_;
   std::vector<int> velocity_rows_;
   Eigen::Index nv_, nc_;
-  Vector q_, v_, z_, out_;  // z: unknowns of the first half; out: the (a, λ) given out
+  State x_;
+  Vector z_;  // unknowns of the first half; x_.z is the (a, λ) given out
   Vector q_n_, v_n_, u_, dq_, e_, momentum_, rows_, rhs_, zeros_;
 };
 

@@ -74,25 +74,25 @@ class Assembler {
 
   // Position and velocity where they are off; in any case one factorization, which tells a singular system.
   Status project() {
-    const std::unique_ptr<Problem> problem = formulations().require("rA").make(model_, result_.dropped);
+    const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, result_.dropped);
     std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
     check(problem->from_bodies(given_, q, v).ok(), "rA represents every orientation");
     Consistent consistent(*problem, settings_.linear_solver);
     if (off_position()) {
-      if (Status status = consistent.project_position(*problem, 0, q); !status.ok()) return status;
+      if (Status status = consistent.project_position(0, q); !status.ok()) return status;
     }
     problem->set_position(0, q);
     problem->set_velocity(v);
     // a moved pose moves G, and the velocities with it
     if (off_velocity() || off_position()) {
-      if (Status status = consistent.project_velocity(*problem, 0, v); !status.ok()) return status;
+      if (Status status = consistent.project_velocity(0, v); !status.ok()) return status;
     }
-    std::vector<double> a(v.size()), lambda(static_cast<std::size_t>(problem->nc()));
-    if (Status status = consistent.accelerations(*problem, 0, a, lambda); !status.ok()) return status;
+    std::vector<double> z(v.size() + static_cast<std::size_t>(problem->nc()));
+    if (Status status = consistent.accelerations(0, z); !status.ok()) return status;
     if (off_velocity() || off_position()) {
-      problem->to_bodies(a, result_.bodies);
+      problem->to_bodies(std::span(z).first(v.size()), result_.bodies);
     } else {
-      result_.a = std::move(a), result_.lambda = std::move(lambda);
+      result_.z = std::move(z);
     }
     return {};
   }
@@ -180,7 +180,7 @@ std::vector<BodyState> given_state(const Model& model) {
 }
 
 Violation violation(const std::shared_ptr<const Model>& model, const std::vector<BodyState>& states) {
-  const std::unique_ptr<Problem> problem = formulations().require("rA").make(model, {});
+  const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model, {});
   std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
   check(problem->from_bodies(states, q, v).ok(), "rA represents every orientation");
   problem->set_position(0, q);

@@ -22,7 +22,7 @@ struct InitialState {
   std::vector<BodyState> bodies;
   std::vector<int> dropped;  // model rows that depend on others and agree with them, sorted
   std::vector<std::string> notices;
-  std::vector<double> a, lambda;  // in rA, at the bodies as given; empty where they were moved
+  std::vector<double> z;  // (a, λ) in rA, at the bodies as given; empty where they were moved
 };
 
 // Throws InputError where the scene asks for what cannot be: conflicting constraints, a pose far from the constraints,

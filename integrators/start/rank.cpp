@@ -67,7 +67,7 @@ bool neighbour(Problem& problem, const std::vector<int>& dependent, std::span<co
   constexpr double kStep = 1e-2;
   auto model = std::make_shared<Model>(problem.model());
   for (Body& body : model->bodies) body.mass = 1, body.inertia.setIdentity();
-  const auto make = [&](const std::vector<int>& without) { return formulations().require("rA").make(model, without); };
+  const auto make = [&](const std::vector<int>& without) { return intrinsic_formulation().make(model, without); };
 
   const std::unique_ptr<Problem> here = make(dependent);
   std::vector<double> at_rest(static_cast<std::size_t>(here->nv()), 0.0);
@@ -77,7 +77,8 @@ bool neighbour(Problem& problem, const std::vector<int>& dependent, std::span<co
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   for (std::size_t k = 0; k < at_rest.size(); ++k) move[k] = normal(random);
-  if (!Consistent(*here, Settings{}.linear_solver).solve(*here, 0, move).ok()) return false;
+  Consistent consistent(*here, Settings{}.linear_solver);
+  if (!consistent.factor(0).ok() || !consistent.solve(0, move).ok()) return false;
   move.resize(at_rest.size());
   double length = 0;
   for (const double x : move) length = std::hypot(length, x);
@@ -94,7 +95,7 @@ bool neighbour(Problem& problem, const std::vector<int>& dependent, std::span<co
 
   const std::unique_ptr<Problem> there =
       make(dependent_columns(transposed_gradient(problem, beside, states), kRankTolerance));
-  if (!Consistent(*there, Settings{}.linear_solver).project_position(*there, 0, beside).ok()) return false;
+  if (!Consistent(*there, Settings{}.linear_solver).project_position(0, beside).ok()) return false;
   if (distance() < 0.5 * moved) return false;  // the constraints take it back where it was
   problem.set_position(0, beside);
   std::vector<double> Phi(static_cast<std::size_t>(problem.nc()));
@@ -112,7 +113,7 @@ std::vector<int> RankAnalysis::dependent_rows() const {
 }
 
 RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states) {
-  const std::unique_ptr<Problem> problem = formulations().require("rA").make(model, {});
+  const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model, {});
   std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
   check(problem->from_bodies(states, q, v).ok(), "rA represents every orientation");
 

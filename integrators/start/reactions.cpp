@@ -24,7 +24,7 @@ constexpr double kDependent = 1e-8;
 Reactions::Reactions(const Problem& problem) : lambda_(problem.model().rows.size()) {
   if (problem.model_rows().size() == lambda_.size()) return;
   const auto model = std::make_shared<const Model>(problem.model());
-  whole_ = formulations().require("rA").make(model, {});
+  whole_ = intrinsic_formulation().make(model, {});
   q_.resize(static_cast<std::size_t>(whole_->nq()));
   v_.resize(static_cast<std::size_t>(whole_->nv()));
 }

@@ -4,97 +4,188 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "integrators/stepping/step_system.h"
+#include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
 
 namespace poinsot {
 namespace {
 
-constexpr int kProjections = 30;
-constexpr double kSmall = 1e-14;  // a correction of this relative size is rounding
+constexpr int kFarCorrections = 30;
+constexpr double kFarNegligible = 1e-14;  // relative to the largest coordinate: rounding
+
+constexpr int kCorrections = 6;
+constexpr double kRounding = 1e-15;    // product of two corrections that leaves nothing to correct
+constexpr double kNegligible = 1e-14;  // a correction of this size is the rounding of the coordinates
 
 double largest(std::span<const double> x) {
   double m = 0;
-  for (double e : x) m = std::isfinite(e) ? std::max(m, std::abs(e)) : INFINITY;
+  for (double e : x) m = std::isfinite(e) ? std::max(m, std::abs(e)) : HUGE_VAL;
   return m;
 }
 
 }  // namespace
 
-Consistent::Consistent(const Problem& problem, std::string_view linear_solver)
-    : solver_(linear_solvers().require(linear_solver).make()),
-      rhs_(static_cast<std::size_t>(problem.nv() + problem.nc())),
-      zeros_(rhs_.size(), 0.0) {
-  analyzed_ = solver_->analyze(problem.pattern(MatrixKind::consistent));
+Consistent::Consistent(Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock)
+    : Consistent(problem, solver, statistics, clock, nullptr) {}
+
+Consistent::Consistent(Problem& problem, std::string_view linear_solver)
+    : Consistent(problem, std::make_unique<Aside>(Aside{linear_solvers().require(linear_solver).make(), {}, {}})) {}
+
+Consistent::Consistent(Problem& problem, std::unique_ptr<Aside>&& aside)
+    : Consistent(problem, *aside->solver, aside->statistics, aside->clock, std::move(aside)) {}
+
+Consistent::Consistent(Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock,
+                       std::unique_ptr<Aside>&& aside)
+    : problem_(problem),
+      aside_(std::move(aside)),
+      system_(problem, solver, MatrixKind::consistent, statistics, clock),
+      nv_(static_cast<std::size_t>(problem.nv())),
+      nc_(static_cast<std::size_t>(problem.nc())),
+      rhs_(problem.nv() + problem.nc()),
+      zeros_(Eigen::VectorXd::Zero(problem.nv() + problem.nc())),
+      rows_(problem.nc()),
+      q_moved_(problem.nq()) {}
+
+Status Consistent::prepare() {
+  Status status = system_.prepare();
+  prepared_ = status.ok();
+  return status;
 }
 
-Status Consistent::factor(Problem& problem, double t) {
-  if (!analyzed_.ok()) return explain(problem, t, analyzed_);
-  problem.assemble(MatrixKind::consistent, {}, {}, zeros_, zeros_, solver_->slots(), solver_->values());
-  const LinearStatus status = solver_->factor();
-  return status.ok() ? Status{} : explain(problem, t, status);
+Status Consistent::factor(double t) {
+  if (!prepared_) {
+    if (Status status = prepare(); !status.ok()) return status;
+  }
+  const std::span<const double> zeros = span(zeros_);
+  return system_.refresh(t, {}, {}, zeros.first(nv_), zeros.subspan(nv_));
 }
 
-Status Consistent::accelerations(Problem& problem, double t, std::span<double> a, std::span<double> lambda) {
-  if (Status status = factor(problem, t); !status.ok()) return status;
-  const std::size_t nv = a.size(), nc = lambda.size();
-  const std::span<double> rhs(rhs_);
-  problem.equations_of_motion(std::span(zeros_).first(nv), std::span(zeros_).first(nc), rhs.first(nv));
-  for (std::size_t k = 0; k < nv; ++k) rhs_[k] = -rhs_[k];
-  problem.gamma(rhs.subspan(nv));
-  if (LinearStatus status = solver_->solve(rhs); !status.ok()) return explain(problem, t, status);
-  std::copy_n(rhs_.begin(), nv, a.begin());
-  std::copy_n(rhs_.begin() + static_cast<std::ptrdiff_t>(nv), nc, lambda.begin());
-  return {};
+Status Consistent::accelerations(double t, std::span<double> z) {
+  if (Status status = factor(t); !status.ok()) return status;
+  const std::span<const double> zeros = span(zeros_);
+  problem_.equations_of_motion(zeros.first(nv_), zeros.subspan(nv_), z.first(nv_));
+  for (double& x : z.first(nv_)) x = -x;
+  problem_.gamma(z.subspan(nv_));
+  return system_.solve(t, z);
 }
 
-Status Consistent::solve(Problem& problem, double t, std::span<double> b) {
-  if (Status status = factor(problem, t); !status.ok()) return status;
-  const LinearStatus status = solver_->solve(b);
-  return status.ok() ? Status{} : explain(problem, t, status);
+Status Consistent::position_correction(double t) {
+  std::ranges::fill(moves(), 0.0);
+  problem_.position_residual(rows());
+  for (double& x : rows()) x = -x;
+  return system_.solve(t, span(rhs_));
 }
 
-Status Consistent::project_position(Problem& problem, double t, std::vector<double>& q) {
-  const std::size_t nv = static_cast<std::size_t>(problem.nv());
-  const std::span<double> rhs(rhs_);
-  std::vector<double> next(q.size()), at_rest(nv, 0.0);
-  double before = INFINITY;
-  for (int k = 0; k < kProjections; ++k) {
-    problem.set_position(t, q);
-    problem.set_velocity(at_rest);
-    if (Status status = factor(problem, t); !status.ok()) return status;
-    std::fill_n(rhs_.begin(), nv, 0.0);
-    problem.position_residual(rhs.subspan(nv));
-    for (double& x : rhs.subspan(nv)) x = -x;
-    if (LinearStatus status = solver_->solve(rhs); !status.ok()) return explain(problem, t, status);
-    const double correction = largest(rhs.first(nv));
+Status Consistent::velocity_correction(double t) {
+  std::ranges::fill(moves(), 0.0);
+  problem_.velocity_residual(rows());
+  for (double& x : rows()) x = -x;
+  return system_.solve(t, span(rhs_));
+}
+
+Status Consistent::project_position(double t, std::span<double> q) {
+  double before = HUGE_VAL;
+  for (int k = 0; k < kFarCorrections; ++k) {
+    problem_.set_position(t, q);
+    problem_.set_velocity(std::span<const double>(span(zeros_)).first(nv_));
+    if (Status status = factor(t); !status.ok()) return status;
+    if (Status status = position_correction(t); !status.ok()) return status;
+    const double correction = largest(moves());
     if (!std::isfinite(correction)) break;
-    problem.retract(q, rhs.first(nv), next);
-    q.swap(next);
-    problem.set_position(t, q);
+    problem_.retract(q, moves(), span(q_moved_));
+    std::ranges::copy(q_moved_, q.begin());
+    problem_.set_position(t, q);
     // quadratic convergence: done where the correction is rounding, or has stopped to shrink at a small size
     const double scale = std::max(1.0, largest(q));
-    if (correction <= kSmall * scale || (correction < 1e-9 * scale && correction >= 0.5 * before)) return {};
+    if (correction <= kFarNegligible * scale || (correction < 1e-9 * scale && correction >= 0.5 * before)) return {};
     before = correction;
   }
   return {Failure::inconsistent_state, t,
-          fmt::format("at t = {:.9g} s no position near the given one satisfies the constraints", t)};
+          fmt::format("at t = {:.9g} s no position near the given one "
+                      "satisfies the constraints",
+                      t)};
 }
 
-Status Consistent::project_velocity(Problem& problem, double t, std::vector<double>& v) {
-  const std::size_t nv = v.size();
-  const std::span<double> rhs(rhs_);
-  if (Status status = factor(problem, t); !status.ok()) return status;
+Status Consistent::project_velocity(double t, std::span<double> v) {
+  if (Status status = factor(t); !status.ok()) return status;
   for (int k = 0; k < 2; ++k) {  // the second pass takes out the rounding of large corrections
-    std::fill_n(rhs_.begin(), nv, 0.0);
-    problem.velocity_residual(rhs.subspan(nv));
-    for (double& x : rhs.subspan(nv)) x = -x;
-    if (LinearStatus status = solver_->solve(rhs); !status.ok()) return explain(problem, t, status);
-    for (std::size_t i = 0; i < nv; ++i) v[i] += rhs_[i];
-    problem.set_velocity(v);
+    if (Status status = velocity_correction(t); !status.ok()) return status;
+    for (std::size_t i = 0; i < nv_; ++i) v[i] += moves()[i];
+    problem_.set_velocity(v);
   }
   return {};
+}
+
+void Consistent::stand(const State& at) {
+  problem_.set_position(at.t, span(at.q));
+  problem_.set_velocity(span(at.v));
+}
+
+Status Consistent::accelerations(State& at) {
+  stand(at);
+  return accelerations(at.t, span(at.z));
+}
+
+Status Consistent::project(State& at, bool& moved) {
+  moved = false;
+  double first = 0, before = HUGE_VAL;
+  for (int k = 0;; ++k) {
+    if (Status status = position_correction(at.t); !status.ok()) return status;
+    const double correction = largest(moves());
+    if (k == 0 && correction <= kNegligible) break;
+    if (k == kCorrections || !(correction < before)) {
+      return {Failure::inconsistent_state, at.t,
+              fmt::format("at t = {:.9g} s the step leads too far from the "
+                          "constraints to be projected onto them; try smaller "
+                          "tolerances",
+                          at.t)};
+    }
+    problem_.retract(span(at.q), moves(), span(q_moved_));
+    at.q.swap(q_moved_);
+    stand(at);
+    moved = true;
+    first = std::max(first, correction);
+    if (first * correction <= kRounding) break;
+    before = correction;
+  }
+  for (int k = 0; k < kCorrections; ++k) {
+    if (Status status = velocity_correction(at.t); !status.ok()) return status;
+    const double correction = largest(moves());
+    if (correction <= kNegligible * std::max(1.0, largest(span(at.v)))) break;
+    at.v += rhs_.head(problem_.nv());
+    problem_.set_velocity(span(at.v));
+    moved = true;
+    if (first * correction <= kRounding) break;
+  }
+  return {};
+}
+
+void Consistent::residual(const State& at, std::span<double> out) {
+  problem_.equations_of_motion(at.a(), at.lambda(), out.first(nv_));
+  const std::span<double> rows = out.subspan(nv_);
+  problem_.set_velocity(at.a());
+  problem_.velocity_residual(rows);  // G a − ν
+  problem_.set_velocity(span(at.v));
+  problem_.nu(span(rows_));
+  for (std::size_t k = 0; k < nc_; ++k) rows[k] += span(rows_)[k];
+  problem_.gamma(span(rows_));
+  for (std::size_t k = 0; k < nc_; ++k) rows[k] -= span(rows_)[k];
+}
+
+Status Consistent::refine(State& at) {
+  residual(at, span(rhs_));
+  if (Status status = system_.solve(at.t, span(rhs_)); !status.ok()) return status;
+  at.z -= rhs_;
+  return {};
+}
+
+Status Consistent::complete(State& at) {
+  if (Status status = accelerations(at); !status.ok()) return status;
+  bool moved = false;
+  if (Status status = project(at, moved); !status.ok()) return status;
+  return moved ? refine(at) : Status{};
 }
 
 }  // namespace poinsot

@@ -1,38 +1,82 @@
-// The consistent linear system [M Gᵀ; G 0] of a state: accelerations and multipliers, and mass-orthogonal projections.
+// A state made consistent: accelerations and multipliers, mass-orthogonal projections onto the constraints.
 //
-//   accelerations: M a + Gᵀλ = Q, G a = γ          positions: M δq + Gᵀμ = 0, G δq = −Φ (repeated)
-//   velocities:    M δv + Gᵀμ = 0, G δv = ν − G v
+//   [M Gᵀ; G 0] [a; λ] = [Q; γ]
+//   positions: M δq + Gᵀμ = 0, G δq = −Φ, q ← q ⊞ δq, repeated;   velocities: M δv + Gᵀμ = 0, G δv = ν − G v
+//
+// From afar (project_position, project_velocity) every correction of the position has a matrix of its own. From nearby
+// (project) all share one: a method that leaves the constraints by the size e of its local error is brought back by
+// simplified Newton steps with the factorization that belongs to the accelerations; one correction leaves e². One step
+// of iterative refinement makes a and λ belong to the projected state, again up to e². Neither costs a factorization or
+// the order.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <span>
 #include <string_view>
-#include <vector>
 
-#include "formulations/problem.h"
-#include "linsolve/linear_solver.h"
+#include "integrators/stepping/step_system.h"
 
 namespace poinsot {
 
 class Consistent {
  public:
-  Consistent(const Problem& problem, std::string_view linear_solver);
+  // Part of a run: counted and timed there.
+  Consistent(Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock);
+  // Beside a run: with a linear solver of its own, counted nowhere.
+  Consistent(Problem& problem, std::string_view linear_solver);
 
-  // The problem stands at (t, q, v); a and lambda are written.
-  Status accelerations(Problem& problem, double t, std::span<double> a, std::span<double> lambda);
-  // b ← [M Gᵀ; G 0]⁻¹ b at the problem's point.
-  Status solve(Problem& problem, double t, std::span<double> b);
+  // Analyses the pattern. Where steps must not allocate, call it before the clock starts; else the first factorization
+  // does.
+  Status prepare();
+  // Factors [M Gᵀ; G 0] at the point where the problem stands.
+  Status factor(double t);
+  // b ← [M Gᵀ; G 0]⁻¹ b with the factorization at hand.
+  Status solve(double t, std::span<double> b) { return system_.solve(t, b); }
+
+  // The problem stands at (t, q, v); z = (a, λ) is written. The factorization belongs to this point.
+  Status accelerations(double t, std::span<double> z);
   // Moves q onto Φ = 0 to rounding; the problem stands at the result. Fails with inconsistent_state where it cannot.
-  Status project_position(Problem& problem, double t, std::vector<double>& q);
+  Status project_position(double t, std::span<double> q);
   // The problem stands at (t, q) and (·, v); v and the problem are moved onto G v = ν.
-  Status project_velocity(Problem& problem, double t, std::vector<double>& v);
+  Status project_velocity(double t, std::span<double> v);
+
+  // The same for a state, `at`.
+  void stand(const State& at);
+  Status accelerations(State& at);
+  // M a + Gᵀλ − Q and G a − γ of a state the problem stands at.
+  void residual(const State& at, std::span<double> out);
+  // Moves q and v onto the constraints with the factorization at hand, which belongs to a state nearby, and says
+  // whether they moved; the problem stands at the result.
+  Status project(State& at, bool& moved);
+  // (a, λ) of the state the problem stands at, from those of a state nearby and its factorization.
+  Status refine(State& at);
+  // Accelerations, projection, refinement: the consistent state beside (q, v).
+  Status complete(State& at);
 
  private:
-  Status factor(Problem& problem, double t);
+  // What a run lends.
+  struct Aside {
+    std::unique_ptr<LinearSolver> solver;
+    Statistics statistics;
+    PhaseClock clock;
+  };
+  Consistent(Problem& problem, std::unique_ptr<Aside>&& aside);
+  Consistent(Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock,
+             std::unique_ptr<Aside>&& aside);
 
-  std::unique_ptr<LinearSolver> solver_;
-  LinearStatus analyzed_;
-  std::vector<double> rhs_, zeros_;
+  // δq and δv for the constraints' residuals at the problem's point, in moves().
+  Status position_correction(double t);
+  Status velocity_correction(double t);
+  std::span<double> moves() { return std::span(rhs_.data(), nv_); }
+  std::span<double> rows() { return std::span(rhs_.data() + nv_, nc_); }
+
+  Problem& problem_;
+  std::unique_ptr<Aside> aside_;
+  StepSystem system_;
+  bool prepared_ = false;
+  const std::size_t nv_, nc_;
+  Eigen::VectorXd rhs_, zeros_, rows_, q_moved_;
 };
 
 }  // namespace poinsot

@@ -2,7 +2,7 @@
 // end.
 //
 // A Method is a stepper with: Status attempt(to, rejections, error), Status complete(), Status interpolate(t),
-// interpolated(), settle(), state(), points(); double first_step(end); double retry(h, rejections, usual), the step to
+// interpolated(), settle(), state(); double first_step(end); double retry(h, rejections, usual), the step to
 // try after so many rejections in a row; double adopt(h, wanted), the step after a completed one of length h.
 #pragma once
 
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "integrators/stepping/consistent_point.h"
+#include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/step_control.h"
@@ -67,17 +67,16 @@ Status controlled_steps(Method& method, const StepRule& rule, const Settings& se
 template <class Method>
 Status controlled_run(Method& method, const StepRule& rule, Problem& problem, const Settings& settings, State& state,
                       const Observer& observe, Statistics& statistics, PhaseClock& clock) {
-  const auto give_out = [&](const Point& at) {
+  const auto give_out = [&](const State& at) {
     clock.lap(Phase::other);
-    sample(observe, problem, at.t, span(at.q), span(at.v), method.points().a(at), method.points().lambda(at),
-           statistics);
+    sample(observe, problem, at, statistics);
     clock.skip();
   };
   clock.start();
   give_out(method.state());
   const Status status = controlled_steps(method, rule, settings, give_out, statistics);
   finish(clock, statistics);
-  method.points().give(method.state(), state);
+  state = method.state();
   return status;
 }
 

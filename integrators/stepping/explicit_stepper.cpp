@@ -18,32 +18,33 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
                                  double atol, Statistics& statistics, PhaseClock& clock)
     : pair_(pair),
       problem_(problem),
-      points_(problem, solver, statistics, clock),
+      consistent_(problem, solver, statistics, clock),
       rtol_(rtol),
       atol_(atol),
       nv_(static_cast<std::size_t>(problem.nv())),
       last_(static_cast<Eigen::Index>(pair.stages.size())),
-      error_needs_last_(std::ranges::any_of(pair.error, [&](const Term& term) { return term.stage == last_; })) {
+      error_needs_last_(std::ranges::any_of(pair.error, [&](const Term& term) { return term.stage == last_; })),
+      state_(problem),
+      next_(problem),
+      sample_(problem) {
   const Eigen::Index nv = problem.nv();
-  for (Point* point : {&state_, &next_, &sample_}) *point = points_.make();
   q_n_.setZero(problem.nq());
   for (Vector* x : {&y_n_, &y_, &sizes_, &sizes_next_, &scale_, &combined_}) x->setZero(2 * nv);
   k_.setZero(2 * nv, columns(pair));
   r_.setZero(2 * nv, static_cast<Eigen::Index>(3 + pair.dense.size()));
 }
 
-void ExplicitStepper::start(double t, const State& state) {
-  state_ = points_.make(t, state);
+void ExplicitStepper::start(const State& state) {
+  state_ = state;
   elsewhere_ = true;
   settle();
 }
 
 void ExplicitStepper::settle() {
   if (elsewhere_ || problem_.has_discrete_state()) {
-    points_.stand(state_);
-    if (problem_.has_discrete_state() &&
-        problem_.accept(state_.t, span(state_.q), span(state_.v), span(state_.z).first(nv_))) {
-      points_.stand(state_);
+    consistent_.stand(state_);
+    if (problem_.has_discrete_state() && problem_.accept(state_.t, span(state_.q), span(state_.v), state_.a())) {
+      consistent_.stand(state_);
     }
   }
   elsewhere_ = false;
@@ -63,15 +64,15 @@ double ExplicitStepper::norm(Terms terms) {
 
 // Stands at y, or at the point of the constraints beside it; writes position, velocity and (a, λ) there into `at`, f
 // into column k.
-Status ExplicitStepper::evaluate(Point& at, const Vector& y, Eigen::Index k) {
+Status ExplicitStepper::evaluate(State& at, const Vector& y, Eigen::Index k) {
   const Eigen::Index nv = problem_.nv();
   at.v = y.tail(nv);
   problem_.retract(span(q_n_), span(y).first(nv_), span(at.q));
-  if (Status status = points_.accelerations(at); !status.ok()) return status;
+  if (Status status = consistent_.accelerations(at); !status.ok()) return status;
   if (project_stages_) {
     bool moved = false;
-    if (Status status = points_.project(at, moved); !status.ok()) return status;
-    if (Status status = points_.accelerations(at); !status.ok()) return status;
+    if (Status status = consistent_.project(at, moved); !status.ok()) return status;
+    if (Status status = consistent_.accelerations(at); !status.ok()) return status;
   }
   k_.col(k).head(nv) = at.v;
   problem_.lower(span(y).first(nv_), {k_.col(k).data(), nv_});
@@ -146,9 +147,9 @@ Status ExplicitStepper::complete() {
     if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
   }
   bool moved = false;
-  if (Status status = points_.project(next_, moved); !status.ok()) return status;
+  if (Status status = consistent_.project(next_, moved); !status.ok()) return status;
   if (moved) {
-    if (Status status = points_.refine(next_); !status.ok()) return status;
+    if (Status status = consistent_.refine(next_); !status.ok()) return status;
   }
   std::swap(state_, next_);
   elsewhere_ = false;
@@ -191,7 +192,7 @@ Status ExplicitStepper::by_polynomial(double t) {
   sample_.t = t;
   sample_.v = y_n_.tail(problem_.nv()) + combined_.tail(problem_.nv());
   problem_.retract(span(q_n_), std::span<const double>(span(combined_)).first(nv_), span(sample_.q));
-  return points_.complete(sample_);
+  return consistent_.complete(sample_);
 }
 
 Status ExplicitStepper::by_short_step(double t) {
@@ -199,7 +200,7 @@ Status ExplicitStepper::by_short_step(double t) {
   sample_.t = t;
   sample_.v = y_.tail(problem_.nv());
   problem_.retract(span(q_n_), span(y_).first(nv_), span(sample_.q));
-  return points_.complete(sample_);
+  return consistent_.complete(sample_);
 }
 
 }  // namespace poinsot

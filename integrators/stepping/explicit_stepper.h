@@ -6,7 +6,7 @@
 //   δq' = T(δq)⁻¹ v,   v' = a,   [M Gᵀ; G 0] [a; λ] = [Q; γ]:   one assembly, factorization and solve a stage
 //
 // f(y_{n+1}) is the first stage of the next step. Its factorization serves the projection onto the constraints as well
-// (consistent_point.h), which costs neither a stage nor the order.
+// (consistent.h), which costs neither a stage nor the order.
 //
 // Beside a singular position (where G loses rank, at a distance τ in time) a stage that is off the constraints by e has
 // accelerations wrong by e/τ, and error control would creep up to the point and never pass it. Accelerations of points
@@ -17,7 +17,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "integrators/stepping/consistent_point.h"
+#include "integrators/stepping/consistent.h"
 #include "integrators/stepping/runge_kutta_pair.h"
 
 namespace poinsot {
@@ -29,9 +29,9 @@ class ExplicitStepper {
   ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, LinearSolver& solver, double rtol, double atol,
                   Statistics& statistics, PhaseClock& clock);
 
-  Status prepare() { return points_.prepare(); }
-  // The state is consistent at t. The problem stands there afterwards.
-  void start(double t, const State& state);
+  Status prepare() { return consistent_.prepare(); }
+  // From a consistent state. The problem stands there afterwards.
+  void start(const State& state);
 
   // Hairer's automatic choice; one evaluation.
   Status first_step(double end, double& h);
@@ -47,15 +47,14 @@ class ExplicitStepper {
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
   void settle();
 
-  const Point& state() const { return state_; }
-  const Point& interpolated() const { return sample_; }
-  const ConsistentPoints& points() const { return points_; }
+  const State& state() const { return state_; }
+  const State& interpolated() const { return sample_; }
 
  private:
   // y_n + h Σ weight k
   void advance(double h, Terms terms, Vector& y) const;
   double norm(Terms terms);
-  Status evaluate(Point& at, const Vector& y, Eigen::Index k);
+  Status evaluate(State& at, const Vector& y, Eigen::Index k);
   Status run_through_stages(double to);
   Status prepare_dense();
   Status by_polynomial(double t);
@@ -63,14 +62,14 @@ class ExplicitStepper {
 
   const RungeKuttaPair& pair_;
   Problem& problem_;
-  ConsistentPoints points_;
+  Consistent consistent_;
   const double rtol_, atol_;
   const std::size_t nv_;
   const Eigen::Index last_;  // index of k_{s+1}
   const bool error_needs_last_;
   bool project_stages_ = false;
 
-  Point state_, next_, sample_;
+  State state_, next_, sample_;
   Vector q_n_;      // where the step began; y_n_ = (0, v_n)
   Vector y_n_, y_;  // 2 nv
   Eigen::MatrixXd k_, r_;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/time_grid.h"
@@ -11,35 +10,18 @@
 
 namespace poinsot {
 
-struct SteppedState {
+struct SteppedState : State {
   using Vector = Eigen::VectorXd;
 
-  explicit SteppedState(const State& state)
-      : q(map(state.q)),
-        v(map(state.v)),
-        z(state.a.size() + state.lambda.size()),
-        q_n(q),
-        v_n(v),
-        nv(v.size()),
-        nc(z.size() - nv) {
-    z << map(state.a), map(state.lambda);
-  }
+  explicit SteppedState(const State& state) : State(state), q_n(q), v_n(v), nv(v.size()), nc(z.size() - nv) {}
 
-  std::span<double> a() { return span(z, 0, nv); }
-  std::span<double> lambda() { return span(z, nv, nc); }
-  void stand(Problem& problem, double t) const {
-    problem.set_position(t, span(q));
+  void stand(Problem& problem, double at) const {
+    problem.set_position(at, span(q));
     problem.set_velocity(span(v));
   }
 
-  Vector q, v, z;   // z = (a, λ)
   Vector q_n, v_n;  // where the step began
   Eigen::Index nv, nc;
-
- private:
-  static Eigen::Map<const Vector> map(const std::vector<double>& x) {
-    return {x.data(), static_cast<Eigen::Index>(x.size())};
-  }
 };
 
 // `x` is consistent at 0 and ends in `state`.
@@ -48,12 +30,9 @@ struct SteppedState {
 template <class Step, class Stand>
 Status fixed_steps(SteppedState& x, const TimeGrid& grid, State& state, const Observer& observe, Statistics& statistics,
                    PhaseClock& clock, Step&& step, Stand&& stand) {
-  const auto give_out = [&](const Problem& problem, double t) {
-    sample(observe, problem, t, span(x.q), span(x.v), x.a(), x.lambda(), statistics);
-  };
   const Problem& start = stand(0);
   const bool discrete = start.has_discrete_state();
-  give_out(start, 0);
+  sample(observe, start, x, statistics);
   clock.start();
   Status status;
   for (std::int64_t n = 1; n <= grid.steps; ++n) {
@@ -65,23 +44,20 @@ Status fixed_steps(SteppedState& x, const TimeGrid& grid, State& state, const Ob
       x.v.swap(x.v_n);
       break;
     }
+    x.t = t;
     ++statistics.steps;
     if (!discrete && !grid.sampled(n)) continue;
     Problem& problem = stand(t);
     if (discrete && problem.accept(t, span(x.q), span(x.v), x.a())) x.stand(problem, t);
     if (grid.sampled(n)) {
       clock.lap(Phase::other);
-      give_out(problem, t);
+      sample(observe, problem, x, statistics);
       clock.skip();
     }
   }
   finish(clock, statistics);
-  state.q.assign(x.q.begin(), x.q.end());
-  state.v.assign(x.v.begin(), x.v.end());
-  if (status.ok()) {  // after a failure z is what Newton's method left
-    std::ranges::copy(x.a(), state.a.begin());
-    std::ranges::copy(x.lambda(), state.lambda.begin());
-  }
+  if (!status.ok()) x.z = state.z;  // not what Newton's method left
+  state = x;
   return status;
 }
 

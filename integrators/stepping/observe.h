@@ -3,25 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <vector>
 
 #include "core/phase_clock.h"
 #include "integrators/integrator.h"
+#include "integrators/stepping/vectors.h"
 
 namespace poinsot {
 
-// The problem stands at (t, q, v).
-inline void sample(const Observer& observe, const Problem& problem, double t, std::span<const double> q,
-                   std::span<const double> v, std::span<const double> a, std::span<const double> lambda,
-                   Statistics& statistics) {
+// The problem stands at `at`.
+inline void sample(const Observer& observe, const Problem& problem, const State& at, Statistics& statistics) {
   static thread_local std::vector<double> r;  // kept: with a sample at every step, steps still allocate nothing
   r.resize(static_cast<std::size_t>(problem.nc()));
   problem.position_residual(r);
   for (double x : r) statistics.violation.position = std::max(statistics.violation.position, std::abs(x));
   problem.velocity_residual(r);
   for (double x : r) statistics.violation.velocity = std::max(statistics.violation.velocity, std::abs(x));
-  if (observe) observe({t, problem, q, v, a, lambda});
+  if (observe) observe({at.t, problem, span(at.q), span(at.v), at.a(), at.lambda()});
 }
 
 inline void finish(PhaseClock& clock, Statistics& statistics) {

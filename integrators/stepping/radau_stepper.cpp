@@ -70,15 +70,19 @@ RadauStepper::RadauStepper(Problem& problem, LinearSolver& solver, std::string_v
       point_solver_(linear_solvers().require(linear_solver).make()),
       system_(problem, solver, statistics, clock),
       filter_(problem, *filter_solver_, statistics, clock),
-      points_(problem, *point_solver_, statistics, clock),
+      consistent_(problem, *point_solver_, statistics, clock),
       step_(problem),
       within_(problem),
       rtol_(0.1 * std::pow(rtol, 2.0 / 3)),
       atol_(atol / rtol * rtol_),
       nv_(problem.nv()),
       n_(problem.nv() + problem.nc()),
-      statistics_(statistics) {
-  for (Point* point : {&state_, &next_, &sample_, &before_, &stage_}) *point = points_.make();
+      statistics_(statistics),
+      state_(problem),
+      next_(problem),
+      sample_(problem),
+      before_(problem),
+      stage_(problem) {
   for (Columns* x : {&Z_, &Z_before_, &R_}) x->setZero(n_, 3);
   for (Columns* x : {&V_, &dQ_, &V_old_, &dQ_old_, &rates_}) x->setZero(nv_, 3);
   for (Vector* x : {&sizes_, &sizes_next_, &scale_, &change_, &e_}) x->setZero(2 * nv_);
@@ -98,7 +102,7 @@ Status RadauStepper::prepare() {
   write_filter(step_, 1, problem_.nv(), EntryRecorder{filter.blocks});
   if (Status status = system_.prepare(stages, std::move(unknowns)); !status.ok()) return status;
   if (Status status = filter_.prepare(filter); !status.ok()) return status;
-  return points_.prepare();
+  return consistent_.prepare();
 }
 
 template <class Sink>
@@ -128,17 +132,16 @@ void RadauStepper::write_filter(const Linearized& linear, double h, int nv, Sink
                      });
 }
 
-void RadauStepper::start(double t, const State& state) {
-  state_ = points_.make(t, state);
+void RadauStepper::start(const State& state) {
+  state_ = state;
   h_before_ = step_.h = 0;
   settle();
 }
 
 void RadauStepper::settle() {
-  points_.stand(state_);
-  if (problem_.has_discrete_state() &&
-      problem_.accept(state_.t, span(state_.q), span(state_.v), span(state_.z, 0, nv_))) {
-    points_.stand(state_);
+  consistent_.stand(state_);
+  if (problem_.has_discrete_state() && problem_.accept(state_.t, span(state_.q), span(state_.v), state_.a())) {
+    consistent_.stand(state_);
     h_before_ = step_.h = 0;  // the stages are those of other coordinates
     convergence_ = 1;
   }
@@ -157,16 +160,16 @@ double RadauStepper::first_step(double end) const {
 }
 
 // The problem stands at stage i as it is now, and stage_ says where that is.
-void RadauStepper::stand_at_stage(const Point& from, double to, Eigen::Index i) {
+void RadauStepper::stand_at_stage(const State& from, double to, Eigen::Index i) {
   stage_.t = i == 2 ? to : from.t + method().c[i] * (to - from.t);
   stage_.v = V_.col(i);
   stage_.z = Z_.col(i);
   problem_.retract(span(from.q), column(dQ_, i), span(stage_.q));
-  points_.stand(stage_);
+  consistent_.stand(stage_);
 }
 
 // The matrix of `linear`, linearized at the stages as they are predicted unless it is kept from a step of this length.
-Status RadauStepper::refresh(const Point& from, double to, Linearized& linear) {
+Status RadauStepper::refresh(const State& from, double to, Linearized& linear) {
   const double h = to - from.t;
   const bool kept = linear.is_for(h);
   if (kept && in_solver_ == &linear) return {};
@@ -174,7 +177,7 @@ Status RadauStepper::refresh(const Point& from, double to, Linearized& linear) {
   Status status = system_.refresh(from.t, [&](std::span<const int> slots, std::span<double> values) {
     for (Eigen::Index i = 0; i < 3 && !kept; ++i) {
       stand_at_stage(from, to, i);
-      linear.at[static_cast<std::size_t>(i)].assemble(problem_, points_.a(stage_), points_.lambda(stage_));
+      linear.at[static_cast<std::size_t>(i)].assemble(problem_, stage_.a(), stage_.lambda());
     }
     write_stages(linear, h, static_cast<int>(n_), problem_.nv(), EntryWriter{slots.data(), values.data()});
   });
@@ -191,7 +194,7 @@ Status RadauStepper::refresh(const Point& from, double to, Linearized& linear) {
 }
 
 // From the stages of the completed step, or constant.
-void RadauStepper::predict(const Point& from, double h) {
+void RadauStepper::predict(const State& from, double h) {
   for (Eigen::Index i = 0; i < 3; ++i) {
     if (h_before_ == 0) {
       Z_.col(i) = from.z;
@@ -204,7 +207,7 @@ void RadauStepper::predict(const Point& from, double h) {
 }
 
 // v_i and δq_i of the stages' accelerations. (Eigen's other products allocate.)
-void RadauStepper::move(const Point& from, double h, int sweeps) {
+void RadauStepper::move(const State& from, double h, int sweeps) {
   const Matrix hA = h * method().A;
   V_.noalias() = Z_.topRows(nv_).lazyProduct(hA.transpose());
   V_.colwise() += from.v;
@@ -215,13 +218,13 @@ void RadauStepper::move(const Point& from, double h, int sweeps) {
   }
 }
 
-void RadauStepper::set_scale(const Point& from, const Vector& q, const Vector& v) {
+void RadauStepper::set_scale(const State& from, const Vector& q, const Vector& v) {
   component_sizes(problem_, span(from.q), span(from.v), span(sizes_));
   component_sizes(problem_, span(q), span(v), span(sizes_next_));
   scale_.array() = atol_ + rtol_ * sizes_.array().max(sizes_next_.array());
 }
 
-Status RadauStepper::stages(const Point& from, double to, Linearized& linear) {
+Status RadauStepper::stages(const State& from, double to, Linearized& linear) {
   const bool kept = linear.is_for(to - from.t);
   Status status = newton(from, to, linear);
   if (status.ok() || !kept) return status;
@@ -231,7 +234,7 @@ Status RadauStepper::stages(const Point& from, double to, Linearized& linear) {
 
 // Newton's iteration; ends where what is left, by the rate of convergence θ, is far below the tolerance. A step that
 // will not get there is given up soon, because it is tried again with a shorter one.
-Status RadauStepper::newton(const Point& from, double to, Linearized& linear) {
+Status RadauStepper::newton(const State& from, double to, Linearized& linear) {
   const double h = to - from.t;
   predict(from, h);
   if (Status status = refresh(from, to, linear); !status.ok()) return status;
@@ -244,7 +247,7 @@ Status RadauStepper::newton(const Point& from, double to, Linearized& linear) {
   for (int k = 0; k < (patient ? kPatience : kIterations); ++k) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       stand_at_stage(from, to, i);
-      points_.residual(stage_, column(R_, i));
+      consistent_.residual(stage_, column(R_, i));
     }
     if (Status status = system_.solve(from.t, {R_.data(), static_cast<std::size_t>(R_.size())}); !status.ok()) {
       return status;
@@ -288,7 +291,7 @@ Status RadauStepper::attempt(double to, double& error) {
   return error_of(state_, h_, error);
 }
 
-void RadauStepper::end_of_step(const Point& from, double to, Point& at) {
+void RadauStepper::end_of_step(const State& from, double to, State& at) {
   at.t = to;
   at.v = V_.col(2);
   at.z = Z_.col(2);
@@ -296,7 +299,7 @@ void RadauStepper::end_of_step(const Point& from, double to, Point& at) {
 }
 
 // x = (1 − hμ J)⁻¹ e, e = hμ f(y_n) + μ Σ e_i (y_i − y_n), J linearized at the first stage.
-Status RadauStepper::error_of(const Point& from, double h, double& error) {
+Status RadauStepper::error_of(const State& from, double h, double& error) {
   const Method& m = method();
   const double hmu = h * m.mu;
   e_.head(nv_) = hmu * from.v + m.mu * dQ_.lazyProduct(m.e);
@@ -312,7 +315,7 @@ Status RadauStepper::error_of(const Point& from, double h, double& error) {
 }
 
 Status RadauStepper::complete() {
-  if (Status status = points_.complete(next_); !status.ok()) return status;
+  if (Status status = consistent_.complete(next_); !status.ok()) return status;
   before_ = state_;
   std::swap(state_, next_);
   Z_before_ = Z_;
@@ -328,7 +331,7 @@ Status RadauStepper::interpolate(double t) {
   fast_ = fast;
   convergence_ = convergence;
   end_of_step(before_, t, sample_);
-  return points_.complete(sample_);
+  return consistent_.complete(sample_);
 }
 
 }  // namespace poinsot

@@ -7,7 +7,7 @@
 //   v_i = v_n + h Σ A_ij a_j,   δq_i = h Σ A_ij T(δq_j)⁻¹ v_j      (in rA by sweeps, which contract by h |ω̄|)
 //
 // Index 1: no order is lost in the multipliers, as it would be in index 2 or 3, and nothing is scaled by powers of h.
-// The stage at the end of the step is projected onto Φ = 0 and G v = ν (consistent_point.h).
+// The stage at the end of the step is projected onto Φ = 0 and G v = ν (consistent.h).
 //
 // Newton's matrix has the exact stiffness and damping of every stage: with D_i and K_i at stage i, its block rows are
 //   Σ_j (δ_ij M_i + h A_ij D_i + h² (A²)_ij K_i) Δa_j + G_iᵀ Δλ_i,   G_i Δa_i,
@@ -24,7 +24,7 @@
 #include <memory>
 #include <string_view>
 
-#include "integrators/stepping/consistent_point.h"
+#include "integrators/stepping/consistent.h"
 #include "integrators/stepping/linearization.h"
 
 namespace poinsot {
@@ -39,8 +39,8 @@ class RadauStepper {
                Statistics& statistics, PhaseClock& clock);
 
   Status prepare();
-  // The state is consistent at t. The problem stands there afterwards.
-  void start(double t, const State& state);
+  // From a consistent state. The problem stands there afterwards.
+  void start(const State& state);
 
   // A step whose explicit Euler error is small; no evaluation.
   double first_step(double end) const;
@@ -57,9 +57,8 @@ class RadauStepper {
 
   // Whether steps of the same length are worth their kept matrix.
   bool converges_fast() const { return fast_; }
-  const Point& state() const { return state_; }
-  const Point& interpolated() const { return sample_; }
-  const ConsistentPoints& points() const { return points_; }
+  const State& state() const { return state_; }
+  const State& interpolated() const { return sample_; }
 
  private:
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
@@ -77,27 +76,27 @@ class RadauStepper {
   static void write_stages(const Linearized& linear, double h, int n, int nv, Sink&& entry);
   template <class Sink>
   static void write_filter(const Linearized& linear, double h, int nv, Sink&& entry);
-  void stand_at_stage(const Point& from, double to, Eigen::Index i);
-  Status refresh(const Point& from, double to, Linearized& linear);
-  Status stages(const Point& from, double to, Linearized& linear);
-  Status newton(const Point& from, double to, Linearized& linear);
-  void predict(const Point& from, double h);
-  void move(const Point& from, double h, int sweeps);
-  void set_scale(const Point& from, const Vector& q, const Vector& v);
-  Status error_of(const Point& from, double h, double& error);
-  void end_of_step(const Point& from, double to, Point& at);
+  void stand_at_stage(const State& from, double to, Eigen::Index i);
+  Status refresh(const State& from, double to, Linearized& linear);
+  Status stages(const State& from, double to, Linearized& linear);
+  Status newton(const State& from, double to, Linearized& linear);
+  void predict(const State& from, double h);
+  void move(const State& from, double h, int sweeps);
+  void set_scale(const State& from, const Vector& q, const Vector& v);
+  Status error_of(const State& from, double h, double& error);
+  void end_of_step(const State& from, double to, State& at);
 
   Problem& problem_;
   std::unique_ptr<LinearSolver> filter_solver_, point_solver_;
   TimedSystem system_, filter_;
-  ConsistentPoints points_;
+  Consistent consistent_;
   Linearized step_, within_;               // within_: of samples
   const Linearized* in_solver_ = nullptr;  // whose matrix system_ has factored; filter_'s is always that of step_
   const double rtol_, atol_;
   const Eigen::Index nv_, n_;
   Statistics& statistics_;
 
-  Point state_, next_, sample_, before_, stage_;  // before_: where the completed step began
+  State state_, next_, sample_, before_, stage_;  // before_: where the completed step began
   Columns Z_, V_, dQ_;                            // (a, λ), velocity and δq of the stages
   Columns Z_before_;                              // of the completed step
   double h_ = 0, h_before_ = 0;                   // h_before_ = 0: nothing to extrapolate

@@ -18,15 +18,14 @@ StabilizedIndex2::StabilizedIndex2(Problem& problem)
   rates_.resize(static_cast<std::size_t>(rates_layout_.nonzeros()));
 }
 
-void StabilizedIndex2::start(std::span<const double> q, std::span<const double> v, std::span<const double> a,
-                             std::span<const double> lambda, std::span<double> y, std::span<double> y_dot) const {
+void StabilizedIndex2::start(const State& state, std::span<double> y, std::span<double> y_dot) const {
   std::ranges::fill(y, 0.0);
   std::ranges::fill(y_dot, 0.0);
-  std::ranges::copy(q, y.begin());
-  std::ranges::copy(v, y.subspan(nv()).begin());
-  std::ranges::copy(lambda, y.subspan(2 * nv()).begin());
-  std::ranges::copy(v, y_dot.begin());
-  std::ranges::copy(a, y_dot.subspan(nv()).begin());
+  std::ranges::copy(state.q, y.begin());
+  std::ranges::copy(state.v, y.subspan(nv()).begin());
+  std::ranges::copy(state.lambda(), y.subspan(2 * nv()).begin());
+  std::ranges::copy(state.v, y_dot.begin());
+  std::ranges::copy(state.a(), y_dot.subspan(nv()).begin());
 }
 
 void StabilizedIndex2::stand(double t, std::span<const double> y) {

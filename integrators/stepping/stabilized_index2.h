@@ -17,6 +17,7 @@
 #include <span>
 #include <vector>
 
+#include "integrators/state.h"
 #include "integrators/stepping/linearization.h"
 
 namespace poinsot {
@@ -27,8 +28,7 @@ class StabilizedIndex2 {
 
   int size() const { return 2 * (nv_ + nc_); }
   // y and ẏ of a consistent state.
-  void start(std::span<const double> q, std::span<const double> v, std::span<const double> a,
-             std::span<const double> lambda, std::span<double> y, std::span<double> y_dot) const;
+  void start(const State& state, std::span<double> y, std::span<double> y_dot) const;
   std::span<const double> q(std::span<const double> y) const { return y.first(nv()); }
   std::span<const double> v(std::span<const double> y) const { return y.subspan(nv(), nv()); }
 

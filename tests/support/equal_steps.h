@@ -3,17 +3,14 @@
 
 #include <array>
 
-#include "integrators/stepping/equal_steps.h"
+#include "integrators/equal_steps.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
 
-template <class Stepper>
-using Bench = EqualSteps<Stepper>;
-
 // The motion after every quarter of `steps` steps, a multiple of four.
 template <class Stepper>
-std::vector<Snapshot> quarters(Bench<Stepper> bench, double end, int steps) {
+std::vector<Snapshot> quarters(EqualSteps<Stepper> bench, double end, int steps) {
   std::vector<Snapshot> samples;
   check(bench.march(end, steps, steps / 4, [&](const Sample& s) { samples.push_back(snapshot(s)); }).ok(),
         "the steps exist and can be projected");

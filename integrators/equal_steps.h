@@ -6,8 +6,7 @@
 
 #include "core/check.h"
 #include "formulations/registry.h"
-#include "integrators/start/initial_state.h"
-#include "integrators/stepping/consistent.h"
+#include "integrators/start/first_state.h"
 #include "integrators/stepping/explicit_stepper.h"
 #include "integrators/stepping/radau_stepper.h"
 #include "integrators/stepping/vectors.h"
@@ -30,21 +29,14 @@ struct EqualSteps {
   // make(problem, solver, statistics, clock) makes the stepper.
   template <class Make>
   EqualSteps(const Scene& scene, const Settings& settings, Make&& make)
-      : model(std::make_shared<const Model>(compile(scene))), start(find_initial_state(model, settings)) {
+      : model(std::make_shared<const Model>(compile(scene))), start(find_initial_state(model, Settings{})) {
     problem = formulations().require(settings.formulation).make(model, start.dropped);
-    solver = linear_solvers().require("dense").make();  // fresh pivots: orders are measured down to 1e-13
+    solver = linear_solvers().require(settings.linear_solver).make();
     stepper = make(*problem, *solver, statistics, clock);
-    State state;
-    state.q.resize(static_cast<std::size_t>(problem->nq()));
-    state.v.resize(static_cast<std::size_t>(problem->nv()));
-    state.a.resize(state.v.size());
-    state.lambda.resize(static_cast<std::size_t>(problem->nc()));
-    check(problem->from_bodies(start.bodies, state.q, state.v).ok(), "the formulation represents the start");
-    problem->set_position(0, state.q);
-    problem->set_velocity(state.v);
-    check(Consistent(*problem, "dense").accelerations(*problem, 0, state.a, state.lambda).ok(), "the start is regular");
+    State first(*problem);
+    check(find_first_state(start, settings, *problem, first).ok(), "the start is regular");
     check(stepper->prepare().ok(), "the pattern can be analysed");
-    stepper->start(0, state);
+    stepper->start(first);
   }
 
   // `steps` steps to time `end`; a sample after every `every` of them.
@@ -54,10 +46,10 @@ struct EqualSteps {
       if (Status status = stepper->complete(); !status.ok()) return status;
       stepper->settle();
       if (n % every != 0) continue;
-      const Point& at = stepper->state();
+      const State& at = stepper->state();
       problem->set_position(at.t, span(at.q));
       problem->set_velocity(span(at.v));
-      observe({at.t, *problem, span(at.q), span(at.v), stepper->points().a(at), stepper->points().lambda(at)});
+      observe({at.t, *problem, span(at.q), span(at.v), at.a(), at.lambda()});
     }
     return {};
   }
