@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -37,7 +38,9 @@ class Configuration {
 
   explicit Configuration(std::shared_ptr<const Elements> of)
       : elements(std::move(of)),
-        at(static_cast<std::size_t>(elements->nb)),
+        centre(static_cast<std::size_t>(elements->nb)),
+        v(centre.size() * kVelocities),
+        at(centre.size()),
         rate(at.size()),
         s(elements->markers.size()),
         s_dot(s.size(), Vec3<T>::Zero()),
@@ -57,10 +60,12 @@ class Configuration {
     }
   }
 
-  void set_position(const T& t, const T* q_in) {
-    q = q_in;
+  void set_position(const T& t, const T* q) {
     if (!std::is_floating_point_v<T> || t != time) set_time(t);
-    for (std::size_t b = 0; b < at.size(); ++b) F::position(x(q, static_cast<int>(b)), at[b]);
+    for (std::size_t b = 0; b < at.size(); ++b, q += kCoordinates) {
+      centre[b] = Eigen::Map<const Vec3<T>>(q);
+      F::position(q + 3, at[b]);
+    }
     for (std::size_t k = 0; k < static_cast<std::size_t>(elements->ground_markers); ++k) {
       const Marker& marker = elements->markers[k];
       s[k] = at[static_cast<std::size_t>(marker.body)].A * marker.s_bar.template cast<T>();
@@ -68,11 +73,8 @@ class Configuration {
   }
 
   void set_velocity(const T* v_in) {
-    v = v_in;
-    for (std::size_t b = 0; b < at.size(); ++b) {
-      const T* xd = this->xd(v, static_cast<int>(b));
-      F::velocity(at[b], xd, rate[b]);
-    }
+    std::copy_n(v_in, v.size(), v.begin());
+    for (std::size_t b = 0; b < at.size(); ++b) F::velocity(at[b], xd(static_cast<int>(b)), rate[b]);
   }
 
   // Ŵ ẋ: global angular velocity, in rp also the stretch rate.
@@ -81,7 +83,7 @@ class Configuration {
     Ambient z;
     z.template head<3>() = rate[b].wg;
     if constexpr (F::ambient == 4) {
-      z[3] = at[b].W().row(3).dot(Eigen::Map<const Eigen::Matrix<T, F::m, 1>>(xd(v, body)));
+      z[3] = at[b].W().row(3).dot(Eigen::Map<const Eigen::Matrix<T, F::m, 1>>(xd(body)));
     }
     return z;
   }
@@ -93,10 +95,14 @@ class Configuration {
     }
   }
 
-  Vec3<T> r(int body) const { return vector3(q, body, kCoordinates); }
-  Vec3<T> rd(int body) const { return vector3(v, body, kVelocities); }
-  const T* x(const T* q_of, int body) const { return q_of + body * kCoordinates + 3; }
-  const T* xd(const T* v_of, int body) const { return v_of + body * kVelocities + 3; }
+  Vec3<T> r(int body) const {
+    return body == kGround ? Vec3<T>(Vec3<T>::Zero()) : centre[static_cast<std::size_t>(body)];
+  }
+  Vec3<T> rd(int body) const {
+    return body == kGround ? Vec3<T>(Vec3<T>::Zero())
+                           : Vec3<T>(Eigen::Map<const Vec3<T>>(v.data() + body * kVelocities));
+  }
+  const T* xd(int body) const { return v.data() + body * kVelocities + 3; }
 
   const Vec4<T>& p(int body) const { return at[static_cast<std::size_t>(body)].p; }  // in rp
   T mass(int body) const { return T(elements->inertia[static_cast<std::size_t>(body)].mass); }
@@ -115,7 +121,7 @@ class Configuration {
   // ∂ṡ/∂x
   Eigen::Matrix<T, 3, F::m> s_dot_variation(int body, int marker) const {
     const std::size_t b = static_cast<std::size_t>(body);
-    return F::s_dot_variation(at[b], rate[b], xd(v, body), s_bar(marker));
+    return F::s_dot_variation(at[b], rate[b], xd(body), s_bar(marker));
   }
 
   // d = r_j + s_q − r_i − s_p and its rate.
@@ -167,8 +173,8 @@ class Configuration {
 
   std::shared_ptr<const Elements> elements;
   T time = T(std::numeric_limits<double>::quiet_NaN());
-  const T* q = nullptr;  // the caller's; valid while the caller's point is
-  const T* v = nullptr;
+  std::vector<Vec3<T>> centre;  // r of every body
+  std::vector<T> v;             // all velocities; what is kept is kept here, and nothing refers to the caller's vectors
   std::vector<typename F::template Position<T>> at;
   std::vector<typename F::template Velocity<T>> rate;
   std::vector<Vec3<T>> s, s_dot;  // of every marker, global
@@ -177,10 +183,6 @@ class Configuration {
   std::vector<double> twist;      // angle of every torsion spring at the last accepted step, rad
 
  private:
-  static Vec3<T> vector3(const T* data, int body, int stride) {
-    return body == kGround ? Vec3<T>(Vec3<T>::Zero()) : Vec3<T>(Eigen::Map<const Vec3<T>>(data + body * stride));
-  }
-
   static Jet2<T> evaluate(const RightSide& side, const T& t) {
     const Jet2<double> jet = side.f.at(plain(t));
     if (!side.squared) return lift(jet, t);

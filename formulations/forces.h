@@ -129,7 +129,7 @@ class Forces {
       D.template bottomRightCorner<F::m, F::m>() = W.transpose() * dragged;
       K.template bottomRightCorner<F::m, F::m>() =
           F::torque_variation(at, Vec3<T>(drag * c.rate[index(k.body)].wg)) +
-          dragged.transpose() * F::angular_velocity_variation(at, c.rate[index(k.body)], c.xd(c.v, k.body));
+          dragged.transpose() * F::angular_velocity_variation(at, c.rate[index(k.body)], c.xd(k.body));
       sink.body_block(k.body, k.body, Block(cq * K + cv * lowered(D, k.body)));
     }
   }

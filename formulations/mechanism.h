@@ -70,7 +70,7 @@ class Mechanism {
     Rows<F, T>::holonomic(c, times_v);
     Rows<F, T>::velocity(c, times_v);
     if constexpr (F::normalized) {
-      for (int b = 0; b < nb(); ++b) out[c.elements->rows + b] = c.p(b).dot(coordinates(c.xd(c.v, b)));
+      for (int b = 0; b < nb(); ++b) out[c.elements->rows + b] = c.p(b).dot(coordinates(c.xd(b)));
     }
   }
 
@@ -81,10 +81,10 @@ class Mechanism {
 
   void gamma(T* out) {
     c.compute_s_dot();
-    for (int b = 0; b < nb(); ++b) N_[index(b)] = F::A_ddot0(c.at[index(b)], c.rate[index(b)], c.xd(c.v, b));
+    for (int b = 0; b < nb(); ++b) N_[index(b)] = F::A_ddot0(c.at[index(b)], c.rate[index(b)], c.xd(b));
     Rows<F, T>::gamma(c, N_, out);
     if constexpr (F::normalized) {
-      for (int b = 0; b < nb(); ++b) out[c.elements->rows + b] = -coordinates(c.xd(c.v, b)).squaredNorm();
+      for (int b = 0; b < nb(); ++b) out[c.elements->rows + b] = -coordinates(c.xd(b)).squaredNorm();
     }
   }
 
@@ -126,7 +126,7 @@ class Mechanism {
     const Vec3<T> gravity = c.elements->model->gravity.template cast<T>();
     for (int b = 0; b < nb(); ++b) {
       const auto& at = c.at[index(b)];
-      const T* xd = c.xd(c.v, b);
+      const T* xd = c.xd(b);
       const T* ab = a + b * kV;
       Eigen::Map<Vec3<T>>(out + b * kV) = c.mass(b) * (Eigen::Map<const Vec3<T>>(ab) - gravity) + wrench_[index(b)].f;
       X x = at.W().transpose() * wrench_[index(b)].e;

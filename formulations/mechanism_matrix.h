@@ -72,7 +72,7 @@ class MechanismMatrix {
     const Mat3<T>& J = c.J(b);
     const auto& at = c.at[index(b)];
     const auto& rate = c.rate[index(b)];
-    const T* xd = c.xd(c.v, b);
+    const T* xd = c.xd(b);
     const int r = b * kV, x = r + 3;
 
     const Eigen::Matrix<T, 1, 1> m(ca * c.mass(b));

@@ -67,7 +67,7 @@ class MechanismProblem final : public Problem {
       state.rd = c.rd(b);
       state.w = c.rate[k].w;
       state.rdd = Eigen::Map<const Vector3>(ab);
-      state.wd = F::angular_acceleration(c.at[k], c.rate[k], c.xd(c.v, b), ab + 3);
+      state.wd = F::angular_acceleration(c.at[k], c.rate[k], c.xd(b), ab + 3);
     }
   }
 

@@ -9,8 +9,8 @@
 // q by body, nq/bodies numbers each; v, a and position variations by body, nv/bodies numbers each, r first; λ by row,
 // rows in the model's order, after them rp's normalization rows, one per body.
 //
-// First set_position, then set_velocity, then ask; a new position invalidates the velocity. The problem refers to q and
-// v, it does not copy them: they stay where and what they are while it is asked. Position variations δq are applied by
+// First set_position, then set_velocity, then ask; a new position invalidates the velocity. The problem keeps what it
+// needs of q and v and refers to no vector of the caller's once a call is over. Position variations δq are applied by
 // retract(); a velocity v held for a time h is the variation h v (in rA: A exp(h ω̃̄)).
 #pragma once
 

@@ -87,7 +87,7 @@ class RateRows {
   // w·δṡ
   static X turned(const C& c, int body, const Vec3<T>& s_bar, const Vec3<T>& w) {
     if (body == kGround) return X::Zero();
-    return F::s_dot_variation(c.at[index(body)], c.rate[index(body)], c.xd(c.v, body), s_bar).transpose() * w;
+    return F::s_dot_variation(c.at[index(body)], c.rate[index(body)], c.xd(body), s_bar).transpose() * w;
   }
   // ẇ·δd + w·δḋ without r, as rows for the two bodies
   template <class Row>

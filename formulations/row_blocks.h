@@ -84,7 +84,7 @@ class RowBlocks {
     if constexpr (F::normalized) {
       for (int b = 0; b < c_.elements->nb; ++b) {
         sink_.block(c_.elements->rows + b, b * kV + 3,
-                    Eigen::Matrix<T, 1, F::m>(Eigen::Map<const X>(c_.xd(c_.v, b)).transpose()));
+                    Eigen::Matrix<T, 1, F::m>(Eigen::Map<const X>(c_.xd(b)).transpose()));
       }
     }
   }
