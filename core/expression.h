@@ -25,6 +25,8 @@ class Expression {
  public:
   Expression() = default;  // the constant 0
   explicit Expression(double constant);
+  Expression(const Expression&) = default;  // and no moves: what was moved from would be no function
+  Expression& operator=(const Expression&) = default;
 
   // Grammar: + - * / ^ and unary signs, parentheses, numbers, `pi`, `e`, the variable `t`, and the functions listed by
   // function_names(). `^` binds to the right and tighter than a sign on its left: -t^2 = -(t^2).

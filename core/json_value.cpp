@@ -9,9 +9,7 @@
 #include "core/input_error.h"
 
 namespace poinsot {
-namespace {
 
-// What was found, in a few words: short values as they stand, the others by kind.
 std::string describe(const nlohmann::json& value) {
   constexpr std::size_t kLongest = 60;
   if (value.is_object()) return "an object";
@@ -25,8 +23,6 @@ std::string describe(const nlohmann::json& value) {
   }
   return text;
 }
-
-}  // namespace
 
 std::string pointer_token(std::string_view key) {
   std::string token;

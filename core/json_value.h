@@ -54,6 +54,9 @@ class JsonValue {
   std::string_view file_;
 };
 
+// What was found, in a few words, for messages: short values as they stand, the others by kind.
+std::string describe(const nlohmann::json& value);
+
 // The token of a JSON pointer (RFC 6901) for a key.
 std::string pointer_token(std::string_view key);
 

@@ -7,6 +7,10 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/nearest_rotation.h"
+#include "core/scene_names.h"
+#include "core/scene_types.h"
+#include "core/scene_validation.h"
 
 namespace poinsot {
 namespace {
@@ -27,10 +31,16 @@ class Compiler {
     model_.name = scene_.name;
     model_.gravity = scene_.gravity;
     model_.bodies = scene_.bodies;
+    for (Body& body : model_.bodies) {  // what was given to a few digits
+      body.inertia = (0.5 * body.inertia + 0.5 * body.inertia.transpose()).eval();
+      body.orientation = nearest_rotation(body.orientation);
+    }
     for (const Constraint& c : scene_.constraints) constraint(c);
     for (const Joint& j : scene_.joints) joint(j);
     for (const Driver& d : scene_.drivers) driver(d);
-    for (const Force& f : scene_.forces) std::visit([&](const auto& force) { add(force); }, f);
+    for (const Force& f : scene_.forces) {
+      std::visit([&](auto force) { force.name = force_names_.next(force.name, type_name(f)), add(force); }, f);
+    }
     return std::move(model_);
   }
 
@@ -50,8 +60,10 @@ class Compiler {
   }
 
   template <class Item>
-  void begin(GroupKind kind, const Item& item, const char* type, const Vector3& point_j) {
-    model_.groups.push_back({kind, item.name, type, item.i, item.j, static_cast<int>(model_.rows.size()), 0, point_j});
+  void begin(GroupKind kind, const Item& item, const Vector3& point_j) {
+    const char* type = type_name(item.type);
+    model_.groups.push_back({kind, row_names_.next(item.name, type), type, item.i, item.j,
+                             static_cast<int>(model_.rows.size()), 0, point_j});
   }
 
   // A row of the group begun last.
@@ -67,14 +79,9 @@ class Compiler {
   }
 
   void constraint(const Constraint& c) {
-    static constexpr std::pair<RowType, const char*> kTypes[] = {{RowType::DP1, "DP1"},
-                                                                 {RowType::DP2, "DP2"},
-                                                                 {RowType::D, "D"},
-                                                                 {RowType::CD, "CD"},
-                                                                 {RowType::pfaffian, "pfaffian"}};
-    const auto& [type, type_name] = kTypes[static_cast<int>(c.type)];
-    begin(GroupKind::constraint, c, type_name, c.s_j);
-    Row& r = row(type);
+    static constexpr RowType kRows[] = {RowType::DP1, RowType::DP2, RowType::D, RowType::CD, RowType::pfaffian};
+    begin(GroupKind::constraint, c, c.s_j);
+    Row& r = row(kRows[static_cast<std::size_t>(c.type)]);
     r.a_i = c.a_i, r.a_j = c.a_j;
     r.s_i = c.s_i, r.s_j = c.s_j;
     r.c = c.c;
@@ -84,44 +91,40 @@ class Compiler {
 
   // The paper's Table 1. `axis` is global, at the initial pose, like everything a joint says.
   void joint(const Joint& j) {
+    begin(GroupKind::joint, j, point_in(j.j, j.point));
     switch (j.type) {
       case JointType::revolute:
-        begin_joint(j, "revolute");
         coincident(j);
-        parallel(j, j.axis);
+        parallel(j, j.axis.stableNormalized());
         break;
       case JointType::spherical:
-        begin_joint(j, "spherical");
         coincident(j);
         break;
       case JointType::universal:
-        begin_joint(j, "universal");
         coincident(j);
-        perpendicular(j, j.axis_i, j.axis_j);
+        perpendicular(j, j.axis_i.stableNormalized(), j.axis_j.stableNormalized());
         break;
-      case JointType::cylindrical:
-        begin_joint(j, "cylindrical");
-        parallel(j, j.axis);
-        on_axis(j);
+      case JointType::cylindrical: {
+        const Vector3 axis = j.axis.stableNormalized();
+        parallel(j, axis);
+        on_axis(j, axis);
         break;
+      }
       case JointType::translational: {
-        begin_joint(j, "translational");
-        parallel(j, j.axis);
-        on_axis(j);
-        const auto [a, b] = perpendiculars(j.axis);
+        const Vector3 axis = j.axis.stableNormalized();
+        parallel(j, axis);
+        on_axis(j, axis);
+        const auto [a, b] = perpendiculars(axis);
         perpendicular(j, a, b);
         break;
       }
       case JointType::fixed:
-        begin_joint(j, "fixed");
         coincident(j);
         parallel(j, Vector3::UnitZ());
         perpendicular(j, Vector3::UnitX(), Vector3::UnitY());
         break;
     }
   }
-
-  void begin_joint(const Joint& j, const char* type) { begin(GroupKind::joint, j, type, point_in(j.j, j.point)); }
 
   // 3 CD: the joint's point is the same on both bodies.
   void coincident(const Joint& j) {
@@ -148,8 +151,8 @@ class Compiler {
   }
 
   // 2 DP2, the paper's perpendicular 2: the point of body j stays on the axis through that of body i.
-  void on_axis(const Joint& j) {
-    const auto [a, b] = perpendiculars(j.axis);
+  void on_axis(const Joint& j, const Vector3& axis) {
+    const auto [a, b] = perpendiculars(axis);
     for (const Vector3& normal : {a, b}) {
       Row& r = row(RowType::DP2);
       r.a_i = direction_in(j.i, normal);
@@ -160,13 +163,13 @@ class Compiler {
 
   void driver(const Driver& d) {
     if (d.type == DriverType::angle) {
-      begin(GroupKind::driver, d, "angle", Vector3::Zero());
+      begin(GroupKind::driver, d, Vector3::Zero());
       Row& r = row(RowType::angle);
-      std::tie(r.a_i, r.b_i) = perpendiculars(d.axis);
+      std::tie(r.a_i, r.b_i) = perpendiculars(d.axis.stableNormalized());
       r.a_j = direction_in(d.j, direction_from(d.i, r.a_i));
       r.f = d.value;
     } else {
-      begin(GroupKind::driver, d, "distance", d.s_j);
+      begin(GroupKind::driver, d, d.s_j);
       Row& r = row(RowType::D);
       r.s_i = d.s_i, r.s_j = d.s_j;
       r.f = d.value;
@@ -181,18 +184,21 @@ class Compiler {
   void add(const TorsionSpring& spring) {
     TorsionElement element;
     element.spring = spring;
-    std::tie(element.a_i, element.b_i) = perpendiculars(spring.axis);
+    element.spring.axis.stableNormalize();
+    std::tie(element.a_i, element.b_i) = perpendiculars(element.spring.axis);
     element.c_j = direction_in(spring.j, direction_from(spring.i, element.a_i));
     model_.torsions.push_back(std::move(element));
   }
 
   const Scene& scene_;
   Model model_;
+  ItemNames row_names_, force_names_;
 };
 
 }  // namespace
 
 Model compile(const Scene& scene) {
+  validate(scene);
   return Compiler(scene).run();
 }
 

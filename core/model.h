@@ -61,6 +61,8 @@ struct Model {
   std::vector<LinearDrag> drags;
 };
 
+// Throws InputError where the scene breaks a rule of core/scene_validation.h. Names are given to what has none,
+// axes are normalized, inertias and orientations given to a few digits made symmetric and orthogonal.
 Model compile(const Scene& scene);
 
 // "constraint 'driver'", "joint 'revolute1' (its row 4 of 5)": how messages speak of a row.

@@ -3,6 +3,19 @@
 //
 // Conventions: bodies are numbered from 0 in scene order, the ground is `kGround`. Vectors ending in _i (_j) are given
 // in the frame of body i (j); "global" is said where it is not. Orientation A takes body to global components.
+//
+// A scene needs no file: fill in a Scene and give it to simulate() (integrators/simulate.h) or compile().
+//
+//   Scene scene;
+//   scene.gravity = {0, 0, -9.81};
+//   Body rod;
+//   rod.name = "rod", rod.mass = 1, rod.inertia = Vector3(0.001, 0.083, 0.083).asDiagonal(), rod.position = {0, 0.5,
+//   0}; scene.bodies.push_back(rod); Joint hinge;  // at the origin, about x, from the ground to body 0 hinge.i =
+//   kGround, hinge.j = 0, hinge.axis = {1, 0, 0}; scene.joints.push_back(hinge); Torque motor; motor.body = 0,
+//   motor.torque[0] = Expression::parse("2*sin(t)"); scene.forces.push_back(motor);
+//
+// Whatever takes a scene first holds it to the rules of core/scene_validation.h, those of scene files; what is broken
+// is an InputError that names the place as a file would: "/joints/0/axis: found the zero vector, expected a direction".
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +38,7 @@ struct Body {
   double mass = 0;                             // kg
   Matrix3 inertia = Matrix3::Zero();           // kg m², about the centre of mass, body frame, positive semidefinite
   Vector3 position = Vector3::Zero();          // m, of the centre of mass, global
-  Matrix3 orientation = Matrix3::Identity();   // A, on SO(3) to rounding (projected on loading)
+  Matrix3 orientation = Matrix3::Identity();   // A; compile() takes the rotation nearest to what is given
   Vector3 velocity = Vector3::Zero();          // m/s, global
   Vector3 angular_velocity = Vector3::Zero();  // rad/s, body frame
 };
@@ -35,7 +48,7 @@ struct Body {
 enum class ConstraintType { DP1, DP2, D, CD, pfaffian };
 
 struct Constraint {
-  std::string name;
+  std::string name;  // empty, here and below: called by type and number, "DP11", "revolute2"
   ConstraintType type = ConstraintType::DP1;
   int i = kGround, j = kGround;
   Vector3 a_i = Vector3::Zero(), a_j = Vector3::Zero();  // directions: DP1 both, DP2 a_i, pfaffian a_j
@@ -58,9 +71,9 @@ struct Joint {
   JointType type = JointType::revolute;
   int i = kGround, j = kGround;
   Vector3 point = Vector3::Zero();   // m, global, at the initial pose
-  Vector3 axis = Vector3::Zero();    // unit, global, at the initial pose: revolute, cylindrical, translational
-  Vector3 axis_i = Vector3::Zero();  // unit, global, at the initial pose: universal, fixed in body i
-  Vector3 axis_j = Vector3::Zero();  // unit, global, at the initial pose: universal, fixed in body j
+  Vector3 axis = Vector3::Zero();    // global, at the initial pose, of any length: revolute, cylindrical, translational
+  Vector3 axis_i = Vector3::Zero();  // as axis: universal, fixed in body i
+  Vector3 axis_j = Vector3::Zero();  // as axis: universal, fixed in body j, perpendicular to axis_i
 };
 
 enum class DriverType { angle, distance };
@@ -69,7 +82,7 @@ struct Driver {
   std::string name;
   DriverType type = DriverType::angle;
   int i = kGround, j = kGround;
-  Vector3 axis = Vector3::Zero();                        // unit, in body i's frame: angle
+  Vector3 axis = Vector3::Zero();                        // of any length, in body i's frame: angle
   Vector3 s_i = Vector3::Zero(), s_j = Vector3::Zero();  // m: distance
   Expression value;                                      // angle in rad from the initial pose, or length in m
 };
@@ -106,7 +119,7 @@ struct Spring {
 struct TorsionSpring {
   std::string name;
   int i = kGround, j = kGround;
-  Vector3 axis = Vector3::Zero();  // unit, in body i's frame
+  Vector3 axis = Vector3::Zero();  // of any length, in body i's frame
   double stiffness = 0;            // N m/rad
   double damping = 0;              // N m s/rad
   double angle = 0;                // rad, unloaded
@@ -131,7 +144,7 @@ struct Scene {
   std::vector<Driver> drivers;
   std::vector<Force> forces;
 
-  std::string source;  // the text it was read from, for the run record
+  std::string source;  // the text it was read from, for the run record; empty where it was not
 };
 
 }  // namespace poinsot

@@ -4,15 +4,11 @@
 
 namespace poinsot {
 
-Body read_body(const JsonValue& item, BodyNames& bodies, int number) {
+Body read_body(const JsonValue& item) {
   item.keys("a body", {"name", "mass", "inertia", "position", "orientation", "velocity", "angular_velocity"});
   Body body;
-  const JsonValue name = item.required("name");
-  bodies.add(name, number);
-  body.name = name.string();
-  const JsonValue mass = item.required("mass");
-  body.mass = mass.number("a positive number");
-  if (!(body.mass > 0)) mass.expected("a positive number");
+  body.name = read_name(item.required("name"));
+  body.mass = item.required("mass").number("a positive number");
   body.inertia = read_inertia(item.required("inertia"));
   body.position = read_vector(item.required("position"));
   body.orientation = optional_or(item, "orientation", read_orientation, body.orientation);

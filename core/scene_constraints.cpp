@@ -2,43 +2,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "core/scene_parts.h"
+#include "core/scene_types.h"
 #include "core/scene_values.h"
 
 namespace poinsot {
 namespace {
 
-template <class Type>
-struct TypeName {
-  const char* name;
-  Type type;
-};
-
-constexpr TypeName<ConstraintType> kConstraints[] = {{"DP1", ConstraintType::DP1},
-                                                     {"DP2", ConstraintType::DP2},
-                                                     {"D", ConstraintType::D},
-                                                     {"CD", ConstraintType::CD},
-                                                     {"pfaffian", ConstraintType::pfaffian}};
-constexpr TypeName<JointType> kJoints[] = {
-    {"revolute", JointType::revolute},           {"spherical", JointType::spherical},
-    {"universal", JointType::universal},         {"cylindrical", JointType::cylindrical},
-    {"translational", JointType::translational}, {"fixed", JointType::fixed}};
-constexpr TypeName<DriverType> kDrivers[] = {{"angle", DriverType::angle}, {"distance", DriverType::distance}};
-
-// The item's entry in the table of types.
 template <class Type, std::size_t N>
 const TypeName<Type>& read_type(const JsonValue& item, const TypeName<Type> (&table)[N]) {
   const JsonValue value = item.required("type");
-  const std::string& name = value.string();
-  std::string allowed;
-  for (const TypeName<Type>& entry : table) {
-    if (name == entry.name) return entry;
-    allowed += (allowed.empty() ? "" : ", ") + std::string(entry.name);
-  }
-  value.expected("one of " + allowed);
+  const auto* entry = std::ranges::find(table, value.string(), &TypeName<Type>::name);
+  if (entry == std::end(table)) value.expected(one_of(table));
+  return *entry;
 }
 
 template <class Item>
@@ -54,26 +32,25 @@ void read_points(const JsonValue& item, Vector3& s_i, Vector3& s_j) {
 
 Constraint::Alternate read_alternate(const JsonValue& value) {
   value.keys("an alternate", {"a_i", "a_j", "f"});
-  return {read_direction(value.required("a_i")), read_direction(value.required("a_j")),
-          read_function(value.required("f"))};
+  return {read_vector(value.required("a_i")), read_vector(value.required("a_j")), read_function(value.required("f"))};
 }
 
 }  // namespace
 
-Constraint read_constraint(const JsonValue& item, const BodyNames& bodies, ItemNames& names) {
-  const auto& [type_name, type] = read_type(item, kConstraints);
+Constraint read_constraint(const JsonValue& item, const BodyNames& bodies) {
+  const ConstraintType type = read_type(item, kConstraintTypes).type;
   Constraint c;
   c.type = type;
   switch (type) {
     case ConstraintType::DP1:
       item.keys("a DP1", {"type", "name", "bodies", "a_i", "a_j", "f", "alternate"});
-      c.a_i = read_direction(item.required("a_i"));
-      c.a_j = read_direction(item.required("a_j"));
+      c.a_i = read_vector(item.required("a_i"));
+      c.a_j = read_vector(item.required("a_j"));
       if (const auto alternate = item.optional("alternate")) c.alternate = read_alternate(*alternate);
       break;
     case ConstraintType::DP2:
       item.keys("a DP2", {"type", "name", "bodies", "a_i", "s_i", "s_j", "f"});
-      c.a_i = read_direction(item.required("a_i"));
+      c.a_i = read_vector(item.required("a_i"));
       read_points(item, c.s_i, c.s_j);
       break;
     case ConstraintType::D:
@@ -82,23 +59,23 @@ Constraint read_constraint(const JsonValue& item, const BodyNames& bodies, ItemN
       break;
     case ConstraintType::CD:
       item.keys("a CD", {"type", "name", "bodies", "c", "s_i", "s_j", "f"});
-      c.c = read_direction(item.required("c"));
+      c.c = read_vector(item.required("c"));
       read_points(item, c.s_i, c.s_j);
       break;
     case ConstraintType::pfaffian:
       item.keys("a pfaffian constraint", {"type", "name", "bodies", "a_j", "s_i", "s_j", "f"});
-      c.a_j = read_direction(item.required("a_j"));
+      c.a_j = read_vector(item.required("a_j"));
       read_points(item, c.s_i, c.s_j);
       break;
   }
   read_bodies(item, bodies, c);
   c.f = optional_or(item, "f", read_function, Expression());
-  c.name = names.next(item, type_name);
+  c.name = optional_or(item, "name", read_name, std::string());
   return c;
 }
 
-Joint read_joint(const JsonValue& item, const BodyNames& bodies, ItemNames& names) {
-  const auto& [type_name, type] = read_type(item, kJoints);
+Joint read_joint(const JsonValue& item, const BodyNames& bodies) {
+  const auto& [type_name, type] = read_type(item, kJointTypes);
   Joint j;
   j.type = type;
   switch (type) {
@@ -106,39 +83,31 @@ Joint read_joint(const JsonValue& item, const BodyNames& bodies, ItemNames& name
     case JointType::fixed:
       item.keys(fmt::format("a {} joint", type_name), {"type", "name", "bodies", "point"});
       break;
-    case JointType::universal: {
+    case JointType::universal:
       item.keys("a universal joint", {"type", "name", "bodies", "point", "axis_i", "axis_j"});
-      j.axis_i = read_axis(item.required("axis_i"));
-      const JsonValue axis_j = item.required("axis_j");
-      j.axis_j = read_axis(axis_j);
-      constexpr double kSquare = 1e-2;  // what is given to a few digits is left to the assembly of the initial pose
-      const double cosine = j.axis_i.dot(j.axis_j);
-      if (std::abs(cosine) > kSquare) {
-        axis_j.fail(fmt::format("found an axis at {:.4g} rad to axis_i, expected one perpendicular to it",
-                                std::acos(std::clamp(cosine, -1.0, 1.0))));
-      }
+      j.axis_i = read_vector(item.required("axis_i"));
+      j.axis_j = read_vector(item.required("axis_j"));
       break;
-    }
     case JointType::revolute:
     case JointType::cylindrical:
     case JointType::translational:
       item.keys(fmt::format("a {} joint", type_name), {"type", "name", "bodies", "point", "axis"});
-      j.axis = read_axis(item.required("axis"));
+      j.axis = read_vector(item.required("axis"));
       break;
   }
   j.point = read_vector(item.required("point"));
   read_bodies(item, bodies, j);
-  j.name = names.next(item, type_name);
+  j.name = optional_or(item, "name", read_name, std::string());
   return j;
 }
 
-Driver read_driver(const JsonValue& item, const BodyNames& bodies, ItemNames& names) {
-  const auto& [type_name, type] = read_type(item, kDrivers);
+Driver read_driver(const JsonValue& item, const BodyNames& bodies) {
+  const DriverType type = read_type(item, kDriverTypes).type;
   Driver d;
   d.type = type;
   if (type == DriverType::angle) {
     item.keys("an angle driver", {"type", "name", "bodies", "axis", "angle"});
-    d.axis = read_axis(item.required("axis"));
+    d.axis = read_vector(item.required("axis"));
     d.value = read_function(item.required("angle"));
   } else {
     item.keys("a distance driver", {"type", "name", "bodies", "s_i", "s_j", "length"});
@@ -146,7 +115,7 @@ Driver read_driver(const JsonValue& item, const BodyNames& bodies, ItemNames& na
     d.value = read_function(item.required("length"));
   }
   read_bodies(item, bodies, d);
-  d.name = names.next(item, type_name);
+  d.name = optional_or(item, "name", read_name, std::string());
   return d;
 }
 

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "core/scene_parts.h"
+#include "core/scene_types.h"
 #include "core/scene_values.h"
 
 namespace poinsot {
@@ -11,11 +12,9 @@ namespace {
 Frame read_frame(const JsonValue& item, Frame otherwise) {
   const std::optional<JsonValue> value = item.optional("frame");
   if (!value) return otherwise;
-  constexpr std::string_view kAllowed = "one of global, body";
-  const std::string& name = value->string(kAllowed);
-  if (name == "global") return Frame::global;
-  if (name == "body") return Frame::body;
-  value->expected(kAllowed);
+  const auto* entry = std::ranges::find(kFrames, value->string(one_of(kFrames)), &TypeName<Frame>::name);
+  if (entry == std::end(kFrames)) value->expected(one_of(kFrames));
+  return entry->type;
 }
 
 void read_functions(const JsonValue& value, Expression (&out)[3]) {
@@ -58,9 +57,7 @@ Spring read_spring(const JsonValue& item, const BodyNames& bodies) {
   spring.s_j = read_vector(item.required("s_j"));
   spring.stiffness = item.required("stiffness").number();
   spring.damping = optional_or(item, "damping", read_number, 0.0);
-  const JsonValue length = item.required("length");
-  spring.length = length.number("a number that is not negative");
-  if (spring.length < 0) length.expected("a number that is not negative");
+  spring.length = item.required("length").number("a number that is not negative");
   return spring;
 }
 
@@ -68,7 +65,7 @@ TorsionSpring read_torsion_spring(const JsonValue& item, const BodyNames& bodies
   item.keys("a torsion spring", {"type", "name", "bodies", "axis", "stiffness", "damping", "angle"});
   TorsionSpring spring;
   std::tie(spring.i, spring.j) = bodies.read_pair(item.required("bodies"));
-  spring.axis = read_axis(item.required("axis"));
+  spring.axis = read_vector(item.required("axis"));
   spring.stiffness = item.required("stiffness").number();
   spring.damping = optional_or(item, "damping", read_number, 0.0);
   spring.angle = optional_or(item, "angle", read_number, 0.0);
@@ -89,29 +86,20 @@ Force as_force(const JsonValue& item, const BodyNames& bodies) {
   return read(item, bodies);
 }
 
-struct ForceType {
-  const char* name;
-  Force (*read)(const JsonValue& item, const BodyNames& bodies);
-};
-constexpr ForceType kForces[] = {{"force", as_force<read_point_force>},
-                                 {"torque", as_force<read_torque>},
-                                 {"spring", as_force<read_spring>},
-                                 {"torsion_spring", as_force<read_torsion_spring>},
-                                 {"linear_drag", as_force<read_linear_drag>}};
+// In the order of kForceTypes.
+constexpr Force (*kRead[])(const JsonValue& item, const BodyNames& bodies) = {
+    as_force<read_point_force>, as_force<read_torque>, as_force<read_spring>, as_force<read_torsion_spring>,
+    as_force<read_linear_drag>};
+static_assert(std::size(kRead) == std::size(kForceTypes));
 
 }  // namespace
 
-Force read_force(const JsonValue& item, const BodyNames& bodies, ItemNames& names) {
+Force read_force(const JsonValue& item, const BodyNames& bodies) {
   const JsonValue type = item.required("type");
-  const std::string& type_name = type.string();
-  const ForceType* entry = std::ranges::find(kForces, type_name, &ForceType::name);
-  if (entry == std::end(kForces)) {
-    std::string allowed;
-    for (const ForceType& known : kForces) allowed += (allowed.empty() ? "" : ", ") + std::string(known.name);
-    type.expected("one of " + allowed);
-  }
-  Force force = entry->read(item, bodies);
-  std::visit([&](auto& concrete) { concrete.name = names.next(item, type_name); }, force);
+  const auto* entry = std::ranges::find(kForceTypes, type.string(), &TypeName<std::size_t>::name);
+  if (entry == std::end(kForceTypes)) type.expected(one_of(kForceTypes));
+  Force force = kRead[entry->type](item, bodies);
+  std::visit([&](auto& concrete) { concrete.name = optional_or(item, "name", read_name, std::string()); }, force);
   return force;
 }
 

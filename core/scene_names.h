@@ -6,36 +6,38 @@
 #include <string_view>
 #include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "core/json_value.h"
 #include "core/scene.h"
 
 namespace poinsot {
 
-// A name heads columns and stands in messages: not empty, no control characters.
-std::string read_name(const JsonValue& value);
-
+// The bodies of a scene by name, as a scene file refers to them. Of two with one name the first is found.
 class BodyNames {
  public:
-  void add(const JsonValue& name, int number);                  // refuses "ground" and what is taken
+  explicit BodyNames(const std::vector<Body>& bodies);  // which stay while this is used
+
   int read(const JsonValue& value) const;                       // a body; the ground too
-  int read_moving(const JsonValue& value) const;                // a body, not the ground
-  std::pair<int, int> read_pair(const JsonValue& value) const;  // two different ones: [i, j]
+  int read_moving(const JsonValue& value) const;                // a body; the ground is for validate() to refuse
+  std::pair<int, int> read_pair(const JsonValue& value) const;  // [i, j]
 
  private:
-  std::unordered_map<std::string, int> numbers_;
-  std::string list_;  // "a, b, c", while it is short
+  const std::vector<Body>& bodies_;
+  std::unordered_map<std::string_view, int> numbers_;
 };
 
-// Names that may come once. What has none is called by its type and number: the third revolute joint is "revolute3".
+// ": ground, a, b", what `first` and the bodies are called, for messages; empty where there are many of them.
+std::string after_colon(std::string_view first, const std::vector<Body>& bodies);
+
+// What has no name is called by its type and number: the third revolute joint is "revolute3".
 class ItemNames {
  public:
-  // The name of the object, which is the next one of its type.
-  std::string next(const JsonValue& item, const std::string& type);
+  // The name of the next item of its type; `given` is empty where it has none of its own.
+  std::string next(const std::string& given, std::string_view type);
 
  private:
-  std::map<std::string, int> counts_;                   // by type
-  std::unordered_map<std::string, std::string> taken_;  // name → where
+  std::map<std::string_view, int> counts_;  // by type
 };
 
 }  // namespace poinsot

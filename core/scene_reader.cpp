@@ -1,7 +1,11 @@
 #include "core/scene_reader.h"
 
+#include <fmt/format.h>
+
+#include "core/input_error.h"
 #include "core/json_document.h"
 #include "core/scene_parts.h"
+#include "core/scene_validation.h"
 #include "core/scene_values.h"
 
 namespace poinsot {
@@ -16,6 +20,15 @@ void for_each(const JsonValue& root, std::string_view section, const std::string
   for (std::size_t k = 0; k < size; ++k) {
     const JsonValue item = list->at(k);
     read(item);
+  }
+}
+
+template <class Validate>
+void in_file(std::string_view file, Validate validate) {
+  try {
+    validate();
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
   }
 }
 
@@ -34,23 +47,20 @@ Scene parse_scene(std::string_view text, std::string_view file) {
   if (const auto about = root.optional("about")) scene.about = about->string();
   scene.gravity = optional_or(root, "gravity", read_vector, scene.gravity);
 
-  const JsonValue list = root.required("bodies");
-  if (list.size("an array of bodies") == 0) list.expected("at least one body");
-  BodyNames bodies;
-  for_each(root, "bodies", "an array of bodies", [&](const JsonValue& item) {
-    scene.bodies.push_back(read_body(item, bodies, static_cast<int>(scene.bodies.size())));
-  });
-
-  // Constraints, joints and drivers share their names: reactions are told apart by them.
-  ItemNames rows, forces;
+  (void)root.required("bodies");
+  for_each(root, "bodies", "an array of bodies",
+           [&](const JsonValue& item) { scene.bodies.push_back(read_body(item)); });
+  in_file(file, [&] { validate_bodies(scene.bodies); });
+  const BodyNames bodies(scene.bodies);
   for_each(root, "constraints", "an array of constraints",
-           [&](const JsonValue& item) { scene.constraints.push_back(read_constraint(item, bodies, rows)); });
+           [&](const JsonValue& item) { scene.constraints.push_back(read_constraint(item, bodies)); });
   for_each(root, "joints", "an array of joints",
-           [&](const JsonValue& item) { scene.joints.push_back(read_joint(item, bodies, rows)); });
+           [&](const JsonValue& item) { scene.joints.push_back(read_joint(item, bodies)); });
   for_each(root, "drivers", "an array of drivers",
-           [&](const JsonValue& item) { scene.drivers.push_back(read_driver(item, bodies, rows)); });
+           [&](const JsonValue& item) { scene.drivers.push_back(read_driver(item, bodies)); });
   for_each(root, "forces", "an array of forces",
-           [&](const JsonValue& item) { scene.forces.push_back(read_force(item, bodies, forces)); });
+           [&](const JsonValue& item) { scene.forces.push_back(read_force(item, bodies)); });
+  in_file(file, [&] { validate(scene); });
 
   scene.source = text;
   return scene;

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
+
+#include "core/nearest_rotation.h"
 
 namespace poinsot {
 namespace {
@@ -18,27 +18,6 @@ Matrix3 read_matrix(const JsonValue& value, std::string_view allowed) {
     matrix.row(static_cast<Eigen::Index>(k)) = read_vector(row).transpose();
   }
   return matrix;
-}
-
-// The rotation nearest to A, by Newton–Schulz: R ← R (3 I − RᵀR) / 2, quadratic near SO(3) and exact on I.
-Matrix3 project(const Matrix3& A, const JsonValue& value) {
-  const auto defect = [](const Matrix3& R) { return (R.transpose() * R - Matrix3::Identity()).cwiseAbs().maxCoeff(); };
-  constexpr double kFar = 10 * kOrientationTolerance;  // a defect that the tolerance, moving each entry, cannot reach
-  const double given = defect(A);
-  if (!(given <= kFar)) {
-    value.fail(fmt::format("found a matrix A with AᵀA off the identity by {:.2g}, expected a rotation to within {}",
-                           given, kOrientationTolerance));
-  }
-  if (A.determinant() < 0) value.fail("found a reflection (its determinant is -1), expected a rotation");
-  if (given <= 4 * std::numeric_limits<double>::epsilon()) return A;
-  Matrix3 R = A;
-  for (int k = 0; k < 4; ++k) R = R * (1.5 * Matrix3::Identity() - 0.5 * R.transpose() * R);
-  const double moved = (R - A).cwiseAbs().maxCoeff();
-  if (moved > kOrientationTolerance) {
-    value.fail(fmt::format("found entries up to {:.2g} off the nearest rotation, expected at most {}", moved,
-                           kOrientationTolerance));
-  }
-  return R;
 }
 
 Matrix3 read_euler_parameters(const JsonValue& value) {
@@ -64,6 +43,13 @@ Matrix3 turn(double angle, const Vector3& axis) {
 
 }  // namespace
 
+std::string read_name(const JsonValue& value) {
+  constexpr std::string_view kAllowed = "a name without control characters";
+  const std::string& name = value.string(kAllowed);
+  if (name.empty()) value.expected(kAllowed);
+  return name;
+}
+
 Vector3 read_vector(const JsonValue& value) {
   constexpr std::string_view kAllowed = "an array of 3 numbers";
   if (value.size(kAllowed) != 3) value.expected(kAllowed);
@@ -73,16 +59,6 @@ Vector3 read_vector(const JsonValue& value) {
     vector[static_cast<Eigen::Index>(k)] = component.number();
   }
   return vector;
-}
-
-Vector3 read_direction(const JsonValue& value) {
-  const Vector3 direction = read_vector(value);
-  if (direction.isZero(0)) value.fail("found the zero vector, expected a direction");
-  return direction;
-}
-
-Vector3 read_axis(const JsonValue& value) {
-  return read_direction(value).stableNormalized();
 }
 
 Expression read_function(const JsonValue& value) {
@@ -99,17 +75,7 @@ Matrix3 read_inertia(const JsonValue& value) {
   constexpr std::string_view kAllowed = "3 principal moments or a symmetric 3x3 matrix";
   if (value.size(kAllowed) != 3) value.expected(kAllowed);
   const JsonValue first = value.at(0);
-  const Matrix3 J = first.is_array() ? read_matrix(value, kAllowed) : Matrix3(read_vector(value).asDiagonal());
-  const double rounding = 1e-12 * J.cwiseAbs().maxCoeff();
-  if ((J - J.transpose()).cwiseAbs().maxCoeff() > rounding) {
-    value.fail(fmt::format("found a matrix that is not symmetric, expected {}", kAllowed));
-  }
-  const Matrix3 symmetric = 0.5 * (J + J.transpose());
-  const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
-  if (!(moments[0] >= -rounding)) {
-    value.fail(fmt::format("found a principal moment of {:.6g}, expected none below zero", moments[0]));
-  }
-  return symmetric;
+  return first.is_array() ? read_matrix(value, kAllowed) : Matrix3(read_vector(value).asDiagonal());
 }
 
 Matrix3 read_orientation(const JsonValue& value) {
@@ -122,13 +88,16 @@ Matrix3 read_orientation(const JsonValue& value) {
         fmt::format("found {} orientation, expected exactly one of matrix, euler_parameters, axis with angle, zxz",
                     spellings == 0 ? "no" : "more than one"));
   }
-  if (matrix) return project(read_matrix(*matrix, "a 3x3 matrix as 3 rows"), *matrix);
+  if (matrix) return read_matrix(*matrix, "a 3x3 matrix as 3 rows");
   if (parameters) return read_euler_parameters(*parameters);
   if (zxz) {
     const Vector3 angles = read_vector(*zxz);
     return turn(angles[0], Vector3::UnitZ()) * turn(angles[1], Vector3::UnitX()) * turn(angles[2], Vector3::UnitZ());
   }
-  return turn(value.required("angle").number(), read_axis(value.required("axis")));
+  const JsonValue about = value.required("axis");
+  const Vector3 direction = read_vector(about);
+  if (direction.isZero(0)) about.fail("found the zero vector, expected a direction");
+  return turn(value.required("angle").number(), direction.stableNormalized());
 }
 
 }  // namespace poinsot

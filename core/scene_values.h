@@ -1,5 +1,7 @@
-// The values that scenes are made of, read and checked: vectors, directions, functions of time, inertias, orientations.
+// The values that scenes are made of, read: names, vectors, functions of time, inertias, orientations.
 #pragma once
+
+#include <string>
 
 #include "core/expression.h"
 #include "core/json_value.h"
@@ -7,19 +9,15 @@
 
 namespace poinsot {
 
+std::string read_name(const JsonValue& value);  // not empty
 Vector3 read_vector(const JsonValue& value);
-Vector3 read_direction(const JsonValue& value);  // not zero; its length is kept
-Vector3 read_axis(const JsonValue& value);       // not zero; normalized
 Expression read_function(const JsonValue& value);
 
-// Three principal moments, or a symmetric 3 × 3 matrix; positive semidefinite. kg m². The triangle inequalities of
-// principal moments are not asked for: idealized bodies such as diag(4, 2, 0) are in use.
+// Three principal moments, or a 3 × 3 matrix. kg m².
 Matrix3 read_inertia(const JsonValue& value);
 
-// {"matrix"}, {"euler_parameters"}, {"axis", "angle"} or {"zxz"}: A = Rz(φ) Rx(θ) Rz(ψ). What is given to a few digits
-// is projected to SO(3) where that moves no entry by more than kOrientationTolerance, and refused beyond.
+// {"matrix"}, {"euler_parameters"}, {"axis", "angle"} or {"zxz"}: A = Rz(φ) Rx(θ) Rz(ψ).
 Matrix3 read_orientation(const JsonValue& value);
-inline constexpr double kOrientationTolerance = 1e-4;
 
 // "item" read from the object, or `otherwise` where the key is absent.
 template <class T>

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/check.h"
+#include "core/scene_types.h"
 
 namespace poinsot {
 namespace {
@@ -13,24 +14,6 @@ namespace {
 // Adding zero turns −0 into 0: the sign of a zero says nothing in a scene.
 std::string vector(const Vector3& v) {
   return fmt::format("[{}, {}, {}]", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
-}
-
-std::string_view type_name(JointType type) {
-  switch (type) {
-    case JointType::revolute:
-      return "revolute";
-    case JointType::spherical:
-      return "spherical";
-    case JointType::universal:
-      return "universal";
-    case JointType::cylindrical:
-      return "cylindrical";
-    case JointType::translational:
-      return "translational";
-    case JointType::fixed:
-      break;
-  }
-  return "fixed";
 }
 
 std::string body(const Body& b) {

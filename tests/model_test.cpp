@@ -162,8 +162,8 @@ TEST(Model, angle_driver_turns_body_j_about_an_axis_of_body_i) {
 }
 
 TEST(Model, distance_driver_is_a_squared_distance) {
-  Scene scene;
-  scene.bodies.resize(1);
+  Random random(13);
+  Scene scene = two_bodies(random);
   scene.bodies[0].position = {3, 4, 0};
   Driver& driver = scene.drivers.emplace_back();
   driver.type = DriverType::distance;

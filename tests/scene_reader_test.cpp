@@ -127,13 +127,15 @@ TEST(SceneReader, reads_values_and_defaults) {
   EXPECT_EQ(body.orientation, Matrix3::Identity());
   EXPECT_EQ(body.velocity, Vector3::Zero());
   EXPECT_EQ(scene.gravity, Vector3::Zero());
-  EXPECT_TRUE(scene.joints[0].axis.isApprox(Vector3(0, 0.6, 0.8), 1e-15));
+  EXPECT_EQ(scene.joints[0].axis, Vector3(0, 3, 4));
   EXPECT_EQ(scene.joints[0].i, kGround);
   EXPECT_EQ(scene.joints[0].j, 0);
+  const Model model = compile(scene);
+  EXPECT_TRUE(model.rows[3].a_j.isApprox(Vector3(0, 0.6, 0.8), 1e-15));
   const char* names[] = {"revolute1", "hinge", "spherical1", "revolute3"};
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(scene.joints[k].name, names[k]);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(model.groups[k].name, names[k]);
+  EXPECT_EQ(model.torques[0].name, "torque1");
   const Torque& torque = std::get<Torque>(scene.forces[0]);
-  EXPECT_EQ(torque.name, "torque1");
   EXPECT_EQ(torque.frame, Frame::body);
   EXPECT_EQ(torque.torque[2].at(3.0).f, 18);
 }
@@ -167,10 +169,10 @@ TEST(SceneReader, projects_only_what_is_off) {
       rows += fmt::format("{}[{:.{}f},{:.{}f},{:.{}f}]", r ? "," : "", exact(r, 0), digits, exact(r, 1), digits,
                           exact(r, 2), digits);
     }
-    return parse_scene(fmt::format(R"({{"scene": 1, "bodies": [{{"name": "a", "mass": 1, "inertia": [1,1,1],
-                                   "position": [0,0,0], "orientation": {{"matrix": [{}]}}}}]}})",
-                                   rows),
-                       "case.json")
+    return compile(parse_scene(fmt::format(R"({{"scene": 1, "bodies": [{{"name": "a", "mass": 1, "inertia": [1,1,1],
+                                           "position": [0,0,0], "orientation": {{"matrix": [{}]}}}}]}})",
+                                           rows),
+                               "case.json"))
         .bodies[0]
         .orientation;
   };

@@ -1,0 +1,351 @@
+#include "core/scene_validation.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "core/input_error.h"
+#include "core/json_value.h"
+#include "core/nearest_rotation.h"
+#include "core/scene_names.h"
+#include "core/scene_types.h"
+
+namespace poinsot {
+namespace {
+
+// An item of a section, or the scene itself; its path is put together only where an error needs it.
+struct Place {
+  const char* section;
+  std::size_t index = 0;
+
+  std::string path() const { return fmt::format("/{}/{}", section, index); }
+  [[noreturn]] void fail(std::string_view key, std::string_view message) const {
+    throw InputError(fmt::format("{}{}{}: {}", path(), key.empty() ? "" : "/", key, message));
+  }
+};
+
+void finite(const Place& at, std::string_view key, double x) {
+  if (!std::isfinite(x)) at.fail(key, fmt::format("found {}, expected a finite number", x));
+}
+
+template <class Matrix>
+void finite_entries(const Place& at, std::string_view key, const Matrix& x) {
+  if (x.allFinite()) return;
+  for (Eigen::Index r = 0; r < x.rows(); ++r) {
+    for (Eigen::Index c = 0; c < x.cols(); ++c) {
+      finite(at, x.cols() == 1 ? fmt::format("{}/{}", key, r) : fmt::format("{}/{}/{}", key, r, c), x(r, c));
+    }
+  }
+}
+
+void finite(const Place& at, std::string_view key, const Vector3& x) {
+  finite_entries(at, key, x);
+}
+
+// Of functions of time, those that are constant: others may have poles, and a run that comes to one says so.
+void finite(const Place& at, std::string_view key, const Expression& f) {
+  if (f.is_constant()) finite(at, key, f.at(0.0).f);
+}
+
+void direction(const Place& at, std::string_view key, const Vector3& x) {
+  finite(at, key, x);
+  if (x.isZero(0)) at.fail(key, "found the zero vector, expected a direction");
+}
+
+// Enumerations come from casts as well.
+template <class Type>
+void known(const Place& at, std::string_view key, Type type) {
+  const auto& table = type_names(type);
+  if (static_cast<std::size_t>(type) >= std::size(table)) {
+    at.fail(key, fmt::format("found {}, expected {}", static_cast<int>(type), one_of(table)));
+  }
+}
+
+bool is_utf8(const std::string& text) {
+  if (std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; })) return true;
+  try {
+    (void)nlohmann::json(text).dump();
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+  return true;
+}
+
+void name(const Place& at, const std::string& text) {
+  const auto fail = [&](std::string_view expected) {
+    using Json = nlohmann::json;
+    const Json shown = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
+    at.fail("name", fmt::format("found {}, expected {}", describe(shown), expected));
+  };
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (std::ranges::any_of(text, control)) fail("a name without control characters");
+  if (!is_utf8(text)) fail("a name in UTF-8");
+}
+
+void inertia(const Place& at, const Matrix3& J) {
+  finite_entries(at, "inertia", J);
+  const double rounding = 1e-12 * J.cwiseAbs().maxCoeff();
+  if (!((J - J.transpose()).cwiseAbs().maxCoeff() <= rounding)) {
+    at.fail("inertia", "found a matrix that is not symmetric, expected 3 principal moments or a symmetric 3x3 matrix");
+  }
+  const Matrix3 symmetric = 0.5 * J + 0.5 * J.transpose();
+  const double least =
+      J.isDiagonal(0)
+          ? J.diagonal().minCoeff()
+          : Eigen::SelfAdjointEigenSolver<Matrix3>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
+  if (!(least >= -rounding)) {
+    at.fail("inertia", fmt::format("found a principal moment of {:.6g}, expected none below zero", least));
+  }
+}
+
+void orientation(const Place& at, const Matrix3& A) {
+  constexpr std::string_view kKey = "orientation/matrix";
+  finite_entries(at, kKey, A);
+  constexpr double kFar = 10 * kOrientationTolerance;  // a defect that the tolerance, moving each entry, cannot reach
+  const double defect = orthogonality_defect(A);
+  if (!(defect <= kFar)) {
+    at.fail(kKey, fmt::format("found a matrix A with AᵀA off the identity by {:.2g}, expected a rotation to within {}",
+                              defect, kOrientationTolerance));
+  }
+  if (A.determinant() < 0) at.fail(kKey, "found a reflection (its determinant is -1), expected a rotation");
+  if (const double moved = (nearest_rotation(A) - A).cwiseAbs().maxCoeff(); moved > kOrientationTolerance) {
+    at.fail(kKey, fmt::format("found entries up to {:.2g} off the nearest rotation, expected at most {}", moved,
+                              kOrientationTolerance));
+  }
+}
+
+[[noreturn]] void already(const Place& at, std::string_view key, std::string_view name, std::string_view why,
+                          const Place& first) {
+  at.fail(key,
+          fmt::format("found \"{}\"{}, the name of {} already, expected a name of its own", name, why, first.path()));
+}
+
+struct Names {
+  ItemNames by_type;
+  std::unordered_map<std::string, Place> taken;
+};
+
+template <class Item>
+const std::string& given_name(const Item& item) {
+  return item.name;
+}
+const std::string& given_name(const Force& force) {
+  return std::visit([](const auto& f) -> const std::string& { return f.name; }, force);
+}
+template <class Item>
+const char* type_of(const Item& item) {
+  return type_name(item.type);
+}
+const char* type_of(const Force& force) {
+  return type_name(force);
+}
+
+class Validation {
+ public:
+  explicit Validation(const Scene& scene) : scene_(scene) {}
+
+  void run() const {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      if (const double g = scene_.gravity[k]; !std::isfinite(g)) {
+        throw InputError(fmt::format("/gravity/{}: found {}, expected a finite number", k, g));
+      }
+    }
+    validate_bodies(scene_.bodies);
+    Names rows, forces;  // reactions are told apart by the names of constraints, joints and drivers
+    every("constraints", scene_.constraints, rows, [this](const Place& at, const Constraint& c) { constraint(at, c); });
+    every("joints", scene_.joints, rows, [this](const Place& at, const Joint& j) { joint(at, j); });
+    every("drivers", scene_.drivers, rows, [this](const Place& at, const Driver& d) { driver(at, d); });
+    every("forces", scene_.forces, forces, [this](const Place& at, const Force& f) {
+      std::visit([&](const auto& concrete) { force(at, concrete); }, f);
+    });
+  }
+
+ private:
+  // Checks every item of a section, then its name among those of its kind.
+  template <class Item, class Check>
+  static void every(const char* section, const std::vector<Item>& items, Names& names, Check check) {
+    for (std::size_t k = 0; k < items.size(); ++k) {
+      const Place at{section, k};
+      check(at, items[k]);
+      const std::string& given = given_name(items[k]);
+      name(at, given);
+      const std::string called = names.by_type.next(given, type_of(items[k]));
+      if (const auto [entry, is_new] = names.taken.emplace(called, at); !is_new) {
+        const bool is_given = !given.empty();
+        already(at, is_given ? "name" : "", called, is_given ? "" : " (its name by type and number)", entry->second);
+      }
+    }
+  }
+
+  void constraint(const Place& at, const Constraint& c) const {
+    known(at, "type", c.type);
+    pair(at, c);
+    finite(at, "a_i", c.a_i);
+    finite(at, "a_j", c.a_j);
+    finite(at, "s_i", c.s_i);
+    finite(at, "s_j", c.s_j);
+    finite(at, "c", c.c);
+    finite(at, "f", c.f);
+    switch (c.type) {
+      case ConstraintType::DP1:
+        direction(at, "a_i", c.a_i);
+        direction(at, "a_j", c.a_j);
+        break;
+      case ConstraintType::DP2:
+        direction(at, "a_i", c.a_i);
+        break;
+      case ConstraintType::D:
+        break;
+      case ConstraintType::CD:
+        direction(at, "c", c.c);
+        break;
+      case ConstraintType::pfaffian:
+        direction(at, "a_j", c.a_j);
+        break;
+    }
+    if (!c.alternate) return;
+    if (c.type != ConstraintType::DP1) {
+      at.fail("alternate", fmt::format("found one of a {}, expected it of a DP1 only", type_name(c.type)));
+    }
+    direction(at, "alternate/a_i", c.alternate->a_i);
+    direction(at, "alternate/a_j", c.alternate->a_j);
+    finite(at, "alternate/f", c.alternate->f);
+  }
+
+  void joint(const Place& at, const Joint& j) const {
+    known(at, "type", j.type);
+    pair(at, j);
+    finite(at, "point", j.point);
+    switch (j.type) {
+      case JointType::spherical:
+      case JointType::fixed:
+        break;
+      case JointType::universal: {
+        direction(at, "axis_i", j.axis_i);
+        direction(at, "axis_j", j.axis_j);
+        constexpr double kSquare = 1e-2;  // what is given to a few digits is left to the assembly of the initial pose
+        const double cosine = j.axis_i.stableNormalized().dot(j.axis_j.stableNormalized());
+        if (std::abs(cosine) > kSquare) {
+          at.fail("axis_j", fmt::format("found an axis at {:.4g} rad to axis_i, expected one perpendicular to it",
+                                        std::acos(std::clamp(cosine, -1.0, 1.0))));
+        }
+        break;
+      }
+      case JointType::revolute:
+      case JointType::cylindrical:
+      case JointType::translational:
+        direction(at, "axis", j.axis);
+        break;
+    }
+  }
+
+  void driver(const Place& at, const Driver& d) const {
+    known(at, "type", d.type);
+    pair(at, d);
+    if (d.type == DriverType::angle) {
+      direction(at, "axis", d.axis);
+      finite(at, "angle", d.value);
+    } else {
+      finite(at, "s_i", d.s_i);
+      finite(at, "s_j", d.s_j);
+      finite(at, "length", d.value);
+    }
+  }
+
+  void force(const Place& at, const PointForce& f) const {
+    moving(at, f.body);
+    finite(at, "point", f.point);
+    constexpr const char* kKeys[] = {"force/0", "force/1", "force/2"};
+    for (std::size_t k = 0; k < 3; ++k) finite(at, kKeys[k], f.force[k]);
+    known(at, "frame", f.frame);
+  }
+  void force(const Place& at, const Torque& f) const {
+    moving(at, f.body);
+    constexpr const char* kKeys[] = {"torque/0", "torque/1", "torque/2"};
+    for (std::size_t k = 0; k < 3; ++k) finite(at, kKeys[k], f.torque[k]);
+    known(at, "frame", f.frame);
+  }
+  void force(const Place& at, const Spring& f) const {
+    pair(at, f);
+    finite(at, "s_i", f.s_i);
+    finite(at, "s_j", f.s_j);
+    finite(at, "stiffness", f.stiffness);
+    finite(at, "damping", f.damping);
+    finite(at, "length", f.length);
+    if (f.length < 0) at.fail("length", fmt::format("found {}, expected a number that is not negative", f.length));
+  }
+  void force(const Place& at, const TorsionSpring& f) const {
+    pair(at, f);
+    direction(at, "axis", f.axis);
+    finite(at, "stiffness", f.stiffness);
+    finite(at, "damping", f.damping);
+    finite(at, "angle", f.angle);
+  }
+  void force(const Place& at, const LinearDrag& f) const {
+    moving(at, f.body);
+    finite(at, "translational", f.translational);
+    finite(at, "rotational", f.rotational);
+  }
+
+  template <class Item>
+  void pair(const Place& at, const Item& item) const {
+    if (!is_body(item.i) && item.i != kGround) unknown(at, "bodies/0", item.i, ", or -1 for the ground");
+    if (!is_body(item.j) && item.j != kGround) unknown(at, "bodies/1", item.j, ", or -1 for the ground");
+    if (item.i != item.j) return;
+    const std::string twice = item.i == kGround ? "ground" : scene_.bodies[static_cast<std::size_t>(item.i)].name;
+    at.fail("bodies", fmt::format("found \"{}\" twice, expected two different bodies", twice));
+  }
+  void moving(const Place& at, int body) const {
+    if (body == kGround) {
+      at.fail("body", fmt::format("found \"ground\", expected the name of a body that can move{}",
+                                  after_colon("", scene_.bodies)));
+    }
+    if (!is_body(body)) unknown(at, "body", body, "");
+  }
+  bool is_body(int body) const { return body >= 0 && static_cast<std::size_t>(body) < scene_.bodies.size(); }
+  [[noreturn]] void unknown(const Place& at, std::string_view key, int body, std::string_view or_ground) const {
+    at.fail(key, fmt::format("found {}, expected the number of a body, less than {}{}", body, scene_.bodies.size(),
+                             or_ground));
+  }
+
+  const Scene& scene_;
+};
+
+}  // namespace
+
+void validate_bodies(const std::vector<Body>& bodies) {
+  if (bodies.empty()) throw InputError("/bodies: found an array of 0 values, expected at least one body");
+  std::unordered_map<std::string_view, std::size_t> taken;
+  taken.reserve(bodies.size());
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const Place at{"bodies", k};
+    const Body& b = bodies[k];
+    if (b.name.empty()) at.fail("name", "found \"\", expected a name without control characters");
+    name(at, b.name);
+    if (b.name == "ground") {
+      at.fail("name", "found \"ground\", which is body 0 and never listed, expected another name");
+    }
+    if (const auto [entry, is_new] = taken.emplace(b.name, k); !is_new) {
+      already(at, "name", b.name, "", Place{"bodies", entry->second});
+    }
+    finite(at, "mass", b.mass);
+    if (!(b.mass > 0)) at.fail("mass", fmt::format("found {}, expected a positive number", b.mass));
+    inertia(at, b.inertia);
+    finite(at, "position", b.position);
+    orientation(at, b.orientation);
+    finite(at, "velocity", b.velocity);
+    finite(at, "angular_velocity", b.angular_velocity);
+  }
+}
+
+void validate(const Scene& scene) {
+  Validation(scene).run();
+}
+
+}  // namespace poinsot

@@ -1,0 +1,75 @@
+// Runs that cannot succeed, of every model in every formulation by every integrator: each ends with a status, keeps
+// finite samples, and touches no memory that is gone (the sanitizers look on in the debug build).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "core/input_error.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+std::vector<std::filesystem::path> models() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(POINSOT_SOURCE_DIR "/models")) {
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with(".json") && !name.ends_with(".schema.json")) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+struct Hopeless {
+  const char* what;
+  void (*set)(Settings&);
+};
+constexpr Hopeless kHopeless[] = {
+    {"one iteration, more asked for than rounding allows",
+     [](Settings& s) { s.max_iterations = 1, s.tolerance = 1e-300, s.step = 0.02, s.end = 0.1; }},
+    {"steps so long that nothing converges",
+     [](Settings& s) { s.max_iterations = 3, s.step = 1e6, s.end = 3e6, s.rtol = 1e-8; }},
+    {"steps too short for their squares", [](Settings& s) { s.step = 1e-200, s.end = 1e-199; }},
+};
+
+class FailingRuns : public testing::TestWithParam<const char*> {};
+
+TEST_P(FailingRuns, end_with_a_status_that_says_why) {
+  int failed = 0;
+  for (const std::filesystem::path& file : models()) {
+    const Scene scene = read_scene(file);
+    for (const IntegratorEntry& integrator : integrators()) {
+      for (const Hopeless& hopeless : kHopeless) {
+        Settings settings;
+        settings.formulation = GetParam();
+        settings.integrator = integrator.name;
+        settings.analysis = integrator.analysis;
+        hopeless.set(settings);
+        if (integrator.controls_error && settings.end > 1)
+          continue;  // they choose steps that work, a million seconds long
+        const std::string where =
+            fmt::format("{} {} {}: {}", scene.name, settings.formulation, integrator.name, hopeless.what);
+        try {
+          double sum = 0;
+          const Outcome outcome = simulate(scene, settings, [&](const Sample& sample) {
+            std::vector<BodyState> bodies(scene.bodies.size());
+            sample.problem.to_bodies(sample.a, bodies);
+            for (const BodyState& body : bodies) sum += 0 * (body.r.sum() + body.rd.sum() + body.w.sum());
+          });
+          EXPECT_EQ(sum, 0) << where;
+          EXPECT_EQ(outcome.status.ok(), outcome.status.message.empty()) << where;
+          if (!outcome.status.ok()) ++failed;
+        } catch (
+            const InputError&) {  // an integrator and a formulation, or kinematics and free motion, do not go together
+        }
+      }
+    }
+  }
+  EXPECT_GT(failed, 50) << "or these runs test nothing";
+}
+
+INSTANTIATE_TEST_SUITE_P(Formulations, FailingRuns, testing::Values("rA", "rp", "reps"));
+
+}  // namespace
+}  // namespace poinsot::test

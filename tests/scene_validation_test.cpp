@@ -1,0 +1,290 @@
+// Every rule of core/scene_validation.h, broken one at a time in a scene built in C++ and, where a file can say it, in
+// the file: the same sentence, with the file's name before it.
+#include "core/scene_validation.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/input_error.h"
+#include "core/model.h"
+#include "core/scene_reader.h"
+#include "integrators/simulate.h"
+
+namespace poinsot {
+namespace {
+
+using Json = nlohmann::json;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
+
+// Two bodies with every type of everything once.
+const Json& everything() {
+  static const Json base = [] {
+    std::ifstream in(POINSOT_SOURCE_DIR "/tests/scene_schema_test.json");
+    return Json(Json::parse(in)["base"]);
+  }();
+  return base;
+}
+
+template <class Do>
+std::string refusal(Do act) {
+  try {
+    act();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct Case {
+  std::function<void(Scene&)> breaks;
+  std::string message;
+  const char* pointer = nullptr;  // the same in a file: what is set there
+  Json value = nullptr;
+};
+
+template <class F>
+F& force(Scene& scene, std::size_t k) {
+  return std::get<F>(scene.forces[k]);
+}
+
+const std::vector<Case>& cases() {
+  static const std::vector<Case> cases = {
+      {[](Scene& s) { s.gravity[1] = kNan; }, "/gravity/1: found nan, expected a finite number"},
+      {[](Scene& s) { s.bodies.clear(); }, "/bodies: found an array of 0 values, expected at least one body", "/bodies",
+       Json::array()},
+
+      {[](Scene& s) { s.bodies[1].name = ""; },
+       "/bodies/1/name: found \"\", expected a name without control characters", "/bodies/1/name", ""},
+      {[](Scene& s) { s.bodies[1].name = "a\nb"; },
+       "/bodies/1/name: found \"a\\nb\", expected a name without control characters", "/bodies/1/name", "a\nb"},
+      {[](Scene& s) { s.bodies[1].name = "\xff"; }, "/bodies/1/name: found \"\xef\xbf\xbd\", expected a name in UTF-8"},
+      {[](Scene& s) { s.bodies[1].name = "ground"; },
+       "/bodies/1/name: found \"ground\", which is body 0 and never listed, expected another name", "/bodies/1/name",
+       "ground"},
+      {[](Scene& s) { s.bodies[1].name = "a"; },
+       "/bodies/1/name: found \"a\", the name of /bodies/0 already, expected a name of its own", "/bodies/1/name", "a"},
+      {[](Scene& s) { s.bodies[1].mass = -1; }, "/bodies/1/mass: found -1, expected a positive number",
+       "/bodies/1/mass", "1 - 2"},
+      {[](Scene& s) { s.bodies[1].mass = 0; }, "/bodies/1/mass: found 0, expected a positive number", "/bodies/1/mass",
+       0},
+      {[](Scene& s) { s.bodies[1].mass = kInf; }, "/bodies/1/mass: found inf, expected a finite number"},
+      {[](Scene& s) { s.bodies[1].mass = kNan; }, "/bodies/1/mass: found nan, expected a finite number"},
+      {[](Scene& s) { s.bodies[0].inertia(1, 1) = -2; },
+       "/bodies/0/inertia: found a principal moment of -2, expected none below zero",
+       "/bodies/0/inertia",
+       {4, -2, 0}},
+      {[](Scene& s) { s.bodies[0].inertia << 1, 2, 0, 2, 1, 0, 0, 0, 1; },
+       "/bodies/0/inertia: found a principal moment of -1, expected none below zero",
+       "/bodies/0/inertia",
+       {{1, 2, 0}, {2, 1, 0}, {0, 0, 1}}},
+      {[](Scene& s) { s.bodies[0].inertia(0, 1) = 0.1; },
+       "/bodies/0/inertia: found a matrix that is not symmetric, expected 3 principal moments or a symmetric 3x3 "
+       "matrix",
+       "/bodies/0/inertia",
+       {{4, 0.1, 0}, {0, 2, 0}, {0, 0, 0}}},
+      {[](Scene& s) { s.bodies[0].inertia(2, 1) = kNan; },
+       "/bodies/0/inertia/2/1: found nan, expected a finite number"},
+      {[](Scene& s) { s.bodies[0].position[2] = -kInf; }, "/bodies/0/position/2: found -inf, expected a finite number"},
+      {[](Scene& s) { s.bodies[0].velocity[0] = kNan; }, "/bodies/0/velocity/0: found nan, expected a finite number"},
+      {[](Scene& s) { s.bodies[0].angular_velocity[0] = kNan; },
+       "/bodies/0/angular_velocity/0: found nan, expected a finite number"},
+      {[](Scene& s) { s.bodies[0].orientation(0, 2) = kNan; },
+       "/bodies/0/orientation/matrix/0/2: found nan, expected a finite number"},
+      {[](Scene& s) { s.bodies[0].orientation(0, 1) = 0.1; },
+       "/bodies/0/orientation/matrix: found a matrix A with AᵀA off the identity by 0.1, expected a rotation to within "
+       "0.0001",
+       "/bodies/0/orientation/matrix",
+       {{1, 0.1, 0}, {0, 1, 0}, {0, 0, 1}}},
+      {[](Scene& s) { s.bodies[0].orientation(0, 0) = 1.0002; },
+       "/bodies/0/orientation/matrix: found entries up to 0.0002 off the nearest rotation, expected at most 0.0001",
+       "/bodies/0/orientation/matrix",
+       {{1.0002, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+      {[](Scene& s) { s.bodies[0].orientation(2, 2) = -1; },
+       "/bodies/0/orientation/matrix: found a reflection (its determinant is -1), expected a rotation",
+       "/bodies/0/orientation/matrix",
+       {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}}},
+
+      {[](Scene& s) { s.constraints[1].type = static_cast<ConstraintType>(9); },
+       "/constraints/1/type: found 9, expected one of DP1, DP2, D, CD, pfaffian"},
+      {[](Scene& s) { s.joints[0].type = static_cast<JointType>(-1); },
+       "/joints/0/type: found -1, expected one of revolute, spherical, universal, cylindrical, translational, fixed"},
+      {[](Scene& s) { s.drivers[0].type = static_cast<DriverType>(2); },
+       "/drivers/0/type: found 2, expected one of angle, distance"},
+      {[](Scene& s) { force<PointForce>(s, 0).frame = static_cast<Frame>(2); },
+       "/forces/0/frame: found 2, expected one of global, body"},
+      {[](Scene& s) { force<Torque>(s, 1).frame = static_cast<Frame>(2); },
+       "/forces/1/frame: found 2, expected one of global, body"},
+
+      {[](Scene& s) { s.constraints[1].j = 2; },
+       "/constraints/1/bodies/1: found 2, expected the number of a body, less than 2, or -1 for the ground"},
+      {[](Scene& s) { s.joints[1].i = -2; },
+       "/joints/1/bodies/0: found -2, expected the number of a body, less than 2, or -1 for the ground"},
+      {[](Scene& s) { s.drivers[0].j = 1000000; },
+       "/drivers/0/bodies/1: found 1000000, expected the number of a body, less than 2, or -1 for the ground"},
+      {[](Scene& s) { force<Spring>(s, 2).i = 2; },
+       "/forces/2/bodies/0: found 2, expected the number of a body, less than 2, or -1 for the ground"},
+      {[](Scene& s) { force<TorsionSpring>(s, 3).i = 2; },
+       "/forces/3/bodies/0: found 2, expected the number of a body, less than 2, or -1 for the ground"},
+      {[](Scene& s) { force<PointForce>(s, 0).body = 2; },
+       "/forces/0/body: found 2, expected the number of a body, less than 2"},
+      {[](Scene& s) { force<Torque>(s, 1).body = kGround; },
+       "/forces/1/body: found \"ground\", expected the name of a body that can move: a, b", "/forces/1/body", "ground"},
+      {[](Scene& s) { force<LinearDrag>(s, 4).body = -7; },
+       "/forces/4/body: found -7, expected the number of a body, less than 2"},
+      {[](Scene& s) { s.constraints[1].j = 0; },
+       "/constraints/1/bodies: found \"a\" twice, expected two different bodies",
+       "/constraints/1/bodies",
+       {"a", "a"}},
+      {[](Scene& s) { s.joints[0].j = kGround; },
+       "/joints/0/bodies: found \"ground\" twice, expected two different bodies",
+       "/joints/0/bodies",
+       {"ground", "ground"}},
+      {[](Scene& s) { force<Spring>(s, 2).i = 1; },
+       "/forces/2/bodies: found \"b\" twice, expected two different bodies",
+       "/forces/2/bodies",
+       {"b", "b"}},
+
+      {[](Scene& s) { s.constraints[0].a_j.setZero(); },
+       "/constraints/0/a_j: found the zero vector, expected a direction",
+       "/constraints/0/a_j",
+       {0, 0, 0}},
+      {[](Scene& s) { s.constraints[1].a_i.setZero(); },
+       "/constraints/1/a_i: found the zero vector, expected a direction",
+       "/constraints/1/a_i",
+       {0, 0, 0}},
+      {[](Scene& s) { s.constraints[3].c.setZero(); },
+       "/constraints/3/c: found the zero vector, expected a direction",
+       "/constraints/3/c",
+       {0, 0, 0}},
+      {[](Scene& s) { s.constraints[4].a_j.setZero(); },
+       "/constraints/4/a_j: found the zero vector, expected a direction",
+       "/constraints/4/a_j",
+       {0, 0, 0}},
+      {[](Scene& s) { s.constraints[0].alternate->a_i.setZero(); },
+       "/constraints/0/alternate/a_i: found the zero vector, expected a direction",
+       "/constraints/0/alternate/a_i",
+       {0, 0, 0}},
+      {[](Scene& s) { s.constraints[0].alternate->f = Expression(kNan); },
+       "/constraints/0/alternate/f: found nan, expected a finite number"},
+      {[](Scene& s) { s.constraints[2].alternate = s.constraints[0].alternate; },
+       "/constraints/2/alternate: found one of a D, expected it of a DP1 only"},
+      {[](Scene& s) { s.constraints[2].s_j[1] = kNan; }, "/constraints/2/s_j/1: found nan, expected a finite number"},
+      {[](Scene& s) { s.constraints[2].f = Expression(kInf); },
+       "/constraints/2/f: found inf, expected a finite number"},
+
+      {[](Scene& s) { s.joints[0].axis.setZero(); },
+       "/joints/0/axis: found the zero vector, expected a direction",
+       "/joints/0/axis",
+       {0, 0, 0}},
+      {[](Scene& s) { s.joints[2].axis_i.setZero(); },
+       "/joints/2/axis_i: found the zero vector, expected a direction",
+       "/joints/2/axis_i",
+       {0, 0, 0}},
+      {[](Scene& s) { s.joints[2].axis_j = Vector3(1, 1, 0); },
+       "/joints/2/axis_j: found an axis at 0.7854 rad to axis_i, expected one perpendicular to it",
+       "/joints/2/axis_j",
+       {1, 1, 0}},
+      {[](Scene& s) { s.joints[1].point[0] = kNan; }, "/joints/1/point/0: found nan, expected a finite number"},
+
+      {[](Scene& s) { s.drivers[0].axis.setZero(); },
+       "/drivers/0/axis: found the zero vector, expected a direction",
+       "/drivers/0/axis",
+       {0, 0, 0}},
+      {[](Scene& s) { s.drivers[0].value = Expression(kNan); },
+       "/drivers/0/angle: found nan, expected a finite number"},
+      {[](Scene& s) { s.drivers[1].value = Expression(kNan); },
+       "/drivers/1/length: found nan, expected a finite number"},
+      {[](Scene& s) { s.drivers[1].s_i[2] = kInf; }, "/drivers/1/s_i/2: found inf, expected a finite number"},
+
+      {[](Scene& s) { force<PointForce>(s, 0).force[2] = Expression(kNan); },
+       "/forces/0/force/2: found nan, expected a finite number"},
+      {[](Scene& s) { force<Torque>(s, 1).torque[0] = Expression(kNan); },
+       "/forces/1/torque/0: found nan, expected a finite number"},
+      {[](Scene& s) { force<Spring>(s, 2).length = -1; },
+       "/forces/2/length: found -1, expected a number that is not negative", "/forces/2/length", -1},
+      {[](Scene& s) { force<Spring>(s, 2).stiffness = kInf; },
+       "/forces/2/stiffness: found inf, expected a finite number"},
+      {[](Scene& s) { force<TorsionSpring>(s, 3).axis.setZero(); },
+       "/forces/3/axis: found the zero vector, expected a direction",
+       "/forces/3/axis",
+       {0, 0, 0}},
+      {[](Scene& s) { force<TorsionSpring>(s, 3).angle = kNan; },
+       "/forces/3/angle: found nan, expected a finite number"},
+      {[](Scene& s) { force<LinearDrag>(s, 4).rotational = kNan; },
+       "/forces/4/rotational: found nan, expected a finite number"},
+
+      {[](Scene& s) { s.joints[0].name = "weld"; },
+       "/joints/5/name: found \"weld\", the name of /joints/0 already, expected a name of its own", "/joints/0/name",
+       "weld"},
+      {[](Scene& s) { s.joints[0].name = "turn"; },
+       "/joints/0/name: found \"turn\", the name of /constraints/0 already, expected a name of its own",
+       "/joints/0/name", "turn"},
+      {[](Scene& s) { s.joints[0].name = "spherical1"; },
+       "/joints/1: found \"spherical1\" (its name by type and number), the name of /joints/0 already, expected a name "
+       "of its own",
+       "/joints/0/name", "spherical1"},
+      {[](Scene& s) { force<PointForce>(s, 0).name = "motor"; },
+       "/forces/1/name: found \"motor\", the name of /forces/0 already, expected a name of its own", "/forces/0/name",
+       "motor"},
+      {[](Scene& s) { s.joints[0].name = "\x7f"; },
+       "/joints/0/name: found \"\x7f\", expected a name without control characters", "/joints/0/name", "\x7f"},
+  };
+  return cases;
+}
+
+TEST(SceneValidation, answers_to_scenes_built_in_cpp) {
+  const Scene sound = parse_scene(everything().dump(), "case.json");
+  EXPECT_EQ(refusal([&] { validate(sound); }), "");
+  for (const Case& c : cases()) {
+    Scene scene = sound;
+    c.breaks(scene);
+    EXPECT_EQ(refusal([&] { validate(scene); }), c.message);
+    EXPECT_EQ(refusal([&] { (void)compile(scene); }), c.message);
+    EXPECT_EQ(refusal([&] { (void)simulate(scene, {}, [](const Sample&) { FAIL() << "a sample"; }); }), c.message);
+  }
+}
+
+TEST(SceneValidation, answers_the_same_to_files) {
+  int in_files = 0;
+  for (const Case& c : cases()) {
+    if (c.pointer == nullptr) continue;
+    ++in_files;
+    Json document = everything();
+    document[Json::json_pointer(c.pointer)] = c.value;
+    EXPECT_EQ(refusal([&] { (void)parse_scene(document.dump(), "case.json"); }), "case.json: " + c.message);
+  }
+  EXPECT_GT(in_files, 25);
+}
+
+// What is allowed in a file is allowed here, and means the same.
+TEST(SceneValidation, takes_what_files_may_hold) {
+  Scene scene = parse_scene(everything().dump(), "case.json");
+  scene.joints[0].axis = Vector3(0, 0, 1e200);
+  scene.bodies[0].orientation << 0.7071, -0.7071, 0, 0.7071, 0.7071, 0, 0, 0, 1;
+  force<Spring>(scene, 2).stiffness = -5;
+  scene.bodies[1].name = "Körper";
+  const Model model = compile(scene);
+  const Matrix3& A = model.bodies[0].orientation;
+  EXPECT_LT((A.transpose() * A - Matrix3::Identity()).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_NEAR(A(0, 0), std::sqrt(0.5), 1e-15);
+  for (const Row& row : model.rows) {
+    if (model.groups[static_cast<std::size_t>(row.group)].name == "revolute1" && row.type == RowType::DP1) {
+      EXPECT_NEAR(row.a_j.norm(), 1, 1e-15);
+    }
+  }
+}
+
+TEST(SceneValidation, leaves_a_function_behind_where_an_expression_was_moved_from) {
+  Scene scene = parse_scene(everything().dump(), "case.json");
+  scene.drivers[1].value = std::move(scene.drivers[0].value);
+  EXPECT_EQ(scene.drivers[0].value.at(1.0).f, scene.drivers[1].value.at(1.0).f);
+}
+
+}  // namespace
+}  // namespace poinsot
