@@ -2,6 +2,18 @@
 //
 // Checks the settings against the registries, compiles the model, sets dependent rows aside, projects the initial state
 // where it has to, finds the initial accelerations and multipliers, and runs the integrator.
+//
+// A program steps by observing: `observe` is called with a Sample at t = 0, at every output time (`every`, or each
+// step) and at the end, from within the run. It asks sample.problem, which stands there:
+//
+//   std::vector<BodyState> bodies(scene.bodies.size());
+//   const Outcome outcome = simulate(scene, settings, [&](const Sample& sample) {
+//     sample.problem.to_bodies(sample.a, bodies);  // positions, velocities, accelerations by body
+//     std::printf("%g %g\n", sample.t, bodies[0].r.z());
+//   });
+//   if (!outcome.status.ok()) std::puts(outcome.status.message.c_str());
+//
+// Reactions are in integrators/start/reactions.h; kinematics finds them where Settings::reactions asks.
 #pragma once
 
 #include <string>
@@ -19,8 +31,8 @@ struct Outcome {
   bool reactions_undetermined = false;  // dependent rows: the reactions given are the minimum-norm ones
 };
 
-// Throws InputError where settings and scene do not fit together (unknown name, kinematics with free motion, ...),
-// before anything is observed. Numerical failure is in the outcome's status.
+// Throws InputError where settings or scene break a rule, or do not fit together (unknown name, kinematics with free
+// motion, ...), before anything is observed. Numerical failure is in the outcome's status.
 Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe);
 
 }  // namespace poinsot

@@ -1,5 +1,10 @@
 // Multipliers and joint reactions of a sample, by the scene's names, also where dependent rows leave them undetermined.
 //
+//   std::optional<Reactions> reactions;               // outside the observer
+//   if (!reactions) reactions.emplace(sample.problem);
+//   reactions->update(sample);
+//   reactions->of_group(group, force, moment);        // of sample.problem.model().groups: constraints, joints, drivers
+//
 // Where rows were set aside, every λ with Gᵀλ equal to the computed generalized reaction is right; given is the one of
 // least norm over all rows, by a complete orthogonal decomposition of Gᵀ.
 #pragma once

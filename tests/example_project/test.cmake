@@ -23,6 +23,15 @@ run(${work}/build/example ${work}/moved/share/poinsot/models/single_pendulum.jso
 if(NOT output MATCHES " -?0\\.000000 -0\\.642106 -1\\.894123\n$")
   message(FATAL_ERROR "the rod ended elsewhere: ${output}")
 endif()
+run(${work}/build/double_pendulum)
+# Lagrange's equations for the two angles, by the classical Runge–Kutta method with steps of 0.1 ms; at rest the hinge
+# carries 2/7 of one rod's weight.
+if(NOT output MATCHES "^t 0\\.0 lower 1\\.500000 -?0\\.000000 hinge -?0\\.000000 2\\.802857\n")
+  message(FATAL_ERROR "the double pendulum started otherwise: ${output}")
+endif()
+if(NOT output MATCHES "\nt 2\\.0 lower 0\\.115430 -1\\.455662 hinge 13\\.366886 65\\.447720\n$")
+  message(FATAL_ERROR "the double pendulum ended elsewhere: ${output}")
+endif()
 file(STRINGS ${work}/moved/lib/cmake/poinsot/poinsotTargets.cmake leaks REGEX "${SOURCE}|${BUILD}")
 if(leaks)
   message(FATAL_ERROR "the installed package points back: ${leaks}")
