@@ -13,6 +13,9 @@ enum class Assembly { small, always, never };  // project an initial state that 
 // Below this relative tolerance error control would chase rounding (Hairer's codes set the same bound).
 inline constexpr double kLeastRtol = 10 * std::numeric_limits<double>::epsilon();
 
+// Below this end time, s, steps and their sixteenth digits would be too small to be told apart.
+inline constexpr double kLeastEnd = std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+
 // `jacobian` is "exact" although others are cheaper: with implicit Euler over all models and formulations "kept" takes
 // 0.65 (tolerance 1e-3) and 0.74 (1e-8) of its instructions, "simplified" 0.73 and 0.75 (commit 4309907). But
 // "simplified" stops on the double four-bar and on Andrews' mechanism before a second is over, where at 1e-3 "exact"

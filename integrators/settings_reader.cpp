@@ -42,7 +42,7 @@ const std::array kEntries{
     SettingEntry{"jacobian", "matrix of Newton's method", &Settings::jacobian, [] { return jacobians().names(); },
                  false},
     SettingEntry{"step", "step size h, s", &Settings::step, nullptr, false},
-    SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false},
+    SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false, kLeastEnd},
     SettingEntry{"tolerance", "Newton: 2-norm of the correction", &Settings::tolerance, nullptr, false},
     SettingEntry{"spectral_radius", "generalized_alpha: spectral radius at infinity, at most 1",
                  &Settings::spectral_radius, nullptr, true, 0, 1},
@@ -104,6 +104,11 @@ void set_name(const SettingEntry& entry, std::string_view name, const Source& so
     settings.*(*analysis) = static_cast<Analysis>(found - names.begin());
 }
 
+bool chooses_steps(const Settings& settings) {
+  const IntegratorEntry* integrator = integrators().find(settings.integrator);
+  return settings.analysis == Analysis::dynamics && integrator && integrator->controls_error;
+}
+
 // A type that holds the keys of all entries: the reader takes them as a list.
 template <std::size_t... k>
 void refuse_unknown_keys(const JsonValue& root, std::index_sequence<k...>) {
@@ -160,6 +165,20 @@ void check_numbers(const Settings& settings) {
     if (!in_range(entry, value))
       throw InputError(fmt::format("{}: found {}, expected {}", entry.key, value, allowed_number(entry)));
   }
+  check_counts(settings);
+}
+
+void check_counts(const Settings& settings) {
+  constexpr double kMost = 1e15;  // what a double counts without a gap, and more than any run comes to
+  const auto check = [&](std::string_view key, double length, std::string_view of) {
+    if (const double count = settings.end / length; !(count < kMost)) {
+      throw InputError(
+          fmt::format("{}: found {:g} s with end {:g} s, which are {:g} {}, expected at most 1e15; try a larger {}",
+                      key, length, settings.end, count, of, key == "step" ? key : "one"));
+    }
+  };
+  if (!chooses_steps(settings)) check("step", settings.step, "steps");
+  if (settings.every > 0) check("every", settings.every, "output times");
 }
 
 void set_setting(const SettingEntry& entry, std::string_view text, Settings& settings) {
@@ -219,16 +238,11 @@ std::string to_json(const Settings& settings) {
 }
 
 void fit_time_grid(Settings& settings, std::vector<std::string>& notices) {
-  const IntegratorEntry* integrator = integrators().find(settings.integrator);
-  if (settings.analysis == Analysis::dynamics && integrator && integrator->controls_error) return;
+  check_counts(settings);
+  if (chooses_steps(settings)) return;
   // of the ratio, relative: far above the error of decimal fractions, far below a step
   constexpr double rounding = 1e-9;
   const double ratio = settings.end / settings.step;
-  if (!(ratio < 1e15))
-    throw InputError(
-        fmt::format("step: found {:g} s with end {:g} s, which are {:g} steps, expected at most 1e15; "
-                    "try a larger step",
-                    settings.step, settings.end, ratio));
   double steps = std::max(1.0, std::round(ratio));
   if (std::abs(ratio - steps) > rounding * steps) {
     steps = std::ceil(ratio);

@@ -37,6 +37,8 @@ std::string value_text(const SettingEntry& entry, const Settings& settings);
 
 // Throws InputError that begins with the key of the first number that is not allowed.
 void check_numbers(const Settings& settings);
+// The part of it that is about step, end and every together: no more steps and output times than can be counted.
+void check_counts(const Settings& settings);
 
 // Sets one key from text, as after an option on the command line. Throws InputError that begins with the option's name.
 void set_setting(const SettingEntry& entry, std::string_view text, Settings& settings);

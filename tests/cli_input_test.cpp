@@ -139,6 +139,13 @@ TEST_F(WrongInput, TimeGrid) {
   expect_refused(
       {"run", "pendulum.json", "--step", "1e-300", "--out", "a.csv"},
       "poinsot: step: found 1e-300 s with end 1 s, which are 1e+300 steps, expected at most 1e15; try a larger step");
+  for (const char* integrator : {"implicit_euler", "dopri5"}) {
+    expect_refused({"run", "pendulum.json", "--integrator", integrator, "--every", "1e-300", "--out", "a.csv"},
+                   "poinsot: every: found 1e-300 s with end 1 s, which are 1e+300 output times, expected at most 1e15; "
+                   "try a larger one");
+  }
+  expect_refused({"run", "pendulum.json", "--integrator", "dopri5", "--end", "1e-320", "--rtol", "1e300"},
+                 "poinsot: --end: found \"1e-320\", expected a number, at least 1e-292");
 }
 
 TEST_F(WrongInput, OutputPaths) {

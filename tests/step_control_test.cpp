@@ -5,7 +5,9 @@
 
 #include <cmath>
 
+#include "core/input_error.h"
 #include "integrators/stepping/sample_times.h"
+#include "tests/support/simulation.h"
 
 namespace poinsot::test {
 namespace {
@@ -15,6 +17,51 @@ TEST(SampleTimes, AreThoseOfFixedSteps) {
   for (int k = 1; k <= 12; ++k, times.pass()) EXPECT_EQ(times.next(), k >= 10 ? 1 : k / 10.0);
   SampleTimes none(0, 3);
   EXPECT_EQ(none.next(), 3);
+}
+
+// Steps and output times are counted: what is too many is refused, and an `every` beyond the end is the end.
+TEST(TimeRanges, AreLookedAtBeforeTheyAreCounted) {
+  const Scene scene = scene_of("double_pendulum");
+  const auto rows = [&](Settings settings) {
+    int count = 0;
+    EXPECT_TRUE(simulate(scene, settings, [&](const Sample&) { ++count; }).status.ok());
+    return count;
+  };
+  const auto refusal = [&](const Settings& settings) -> std::string {
+    try {
+      (void)simulate(scene, settings, [](const Sample&) { ADD_FAILURE() << "a sample"; });
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.analysis != Analysis::dynamics) continue;
+    Settings settings;
+    settings.formulation = "rp";
+    settings.integrator = integrator.name;
+    settings.step = 1e-3;
+    settings.end = 0.01;
+    for (const double every : {0.01, 0.02, 1e17, 1e300}) {
+      settings.every = every;
+      EXPECT_EQ(rows(settings), 2) << integrator.name << ' ' << every;
+    }
+    settings.every = 1e-300;
+    EXPECT_EQ(refusal(settings),
+              "every: found 1e-300 s with end 0.01 s, which are 1e+298 output times, expected at most 1e15; try a "
+              "larger one");
+    settings.every = 0;
+    settings.end = 1e-320;
+    settings.rtol = 1e300;
+    EXPECT_EQ(refusal(settings), "end: found 1e-320, expected a number, at least 1e-292");
+    settings.end = 1;
+    settings.rtol = 1e-6;
+    settings.step = 1e-300;
+    if (!integrator.controls_error) {
+      EXPECT_EQ(refusal(settings),
+                "step: found 1e-300 s with end 1 s, which are 1e+300 steps, expected at most 1e15; try a larger step");
+    }
+  }
 }
 
 TEST(Creeping, TellsStepsThatDoNotGetOn) {

@@ -8,7 +8,8 @@ namespace poinsot {
 
 class SampleTimes {
  public:
-  // every = 0: no times of their own.
+  // every = 0: no times of their own. check_counts() (integrators/settings_reader.h) saw to it that they can be
+  // counted.
   SampleTimes(double every, double end) : every_(every), end_(end) {
     if (every <= 0) return;
     count_ = static_cast<std::int64_t>(std::floor(end / every + kSame));
