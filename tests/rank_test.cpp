@@ -35,7 +35,6 @@ Scene free_bodies(int count) {
 
 Joint joint(JointType type, int i, int j, const Vector3& point, const Vector3& axis = Vector3::UnitZ()) {
   Joint x;
-  x.name = "joint";
   x.type = type;
   x.i = i, x.j = j;
   x.point = point;
@@ -101,7 +100,6 @@ TEST(Rank, WithoutRows) {
 TEST(Rank, VelocityRowsCount) {
   Scene scene = free_bodies(1);
   Constraint blade;
-  blade.name = "blade";
   blade.type = ConstraintType::pfaffian;
   blade.j = 0;
   blade.a_j = Vector3::UnitX();
@@ -113,7 +111,6 @@ TEST(Rank, VelocityRowsCount) {
 
 Constraint coordinate(const Vector3& c) {
   Constraint row;
-  row.name = "row";
   row.type = ConstraintType::CD;
   row.j = 0;
   row.c = c;
