@@ -5,21 +5,22 @@
 #include <cmath>
 #include <memory>
 
-#include "app/calibration.h"
 #include "app/commands.h"
-#include "app/measure.h"
 #include "app/name_list.h"
-#include "app/natural_end.h"
 #include "app/options.h"
-#include "app/scene_waste.h"
-#include "app/startable_scene.h"
 #include "app/terminal.h"
+#include "bench/study/calibration.h"
+#include "bench/study/measure.h"
+#include "bench/study/natural_end.h"
+#include "bench/study/scene_waste.h"
+#include "bench/study/startable_scene.h"
 #include "core/expression.h"
 #include "core/input_error.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/rank.h"
 
 namespace poinsot::app {
+using namespace study;
 namespace {
 
 constexpr std::size_t kListed = 6;  // further methods that reach the accuracy, and that do not

@@ -6,21 +6,22 @@
 #include <memory>
 #include <set>
 
-#include "app/chart_file.h"
 #include "app/commands.h"
-#include "app/fronts.h"
-#include "app/measure.h"
 #include "app/models_directory.h"
-#include "app/natural_end.h"
 #include "app/options.h"
-#include "app/plot.h"
-#include "app/progress.h"
-#include "app/report.h"
-#include "app/startable_scene.h"
+#include "app/progress_line.h"
 #include "app/terminal.h"
+#include "bench/study/chart_file.h"
+#include "bench/study/fronts.h"
+#include "bench/study/measure.h"
+#include "bench/study/natural_end.h"
+#include "bench/study/plot.h"
+#include "bench/study/report.h"
+#include "bench/study/startable_scene.h"
 #include "core/input_error.h"
 
 namespace poinsot::app {
+using namespace study;
 namespace {
 namespace fs = std::filesystem;
 
@@ -141,8 +142,8 @@ std::string too_long(const Case& one, const std::vector<std::vector<Case>>& leve
 
 // The progress counts scenes; this one is the `number`th, from 0.
 void measure_scene(const Sweep& sweep, const std::vector<std::vector<Case>>& levels, ChartFile& file,
-                   const Extent& extent, std::size_t number, Progress& progress) {
-  double all = 0, done = 0;
+                   const Extent& extent, std::size_t number, std::size_t scenes, ProgressLine& progress) {
+  double all = 0, done = 0, skipped_here = 0;
   for (const auto& level : levels)
     for (const Case& one : level) all += weight(one, extent) * (1 + extent.repetitions);
   for (const std::vector<Case>& level : levels) {
@@ -157,11 +158,11 @@ void measure_scene(const Sweep& sweep, const std::vector<std::vector<Case>>& lev
       if (!measured) file.add(one, {why});
       const double skipped = weight(one, extent) * (1 + extent.repetitions);
       done += skipped;
-      progress.skip(skipped / all);
+      skipped_here += skipped / all;
     }
     const std::vector<Measured> measured = sweep.measure(batch, extent.repetitions, [&](const Case& one) {
       done += weight(one, extent);
-      progress.at(static_cast<double>(number) + done / all);
+      progress.at({static_cast<double>(number) + done / all, static_cast<double>(scenes), skipped_here});
     });
     for (std::size_t k = 0; k < batch.size(); ++k) file.add(batch[k], measured[k]);
   }
@@ -180,7 +181,7 @@ int chart(const Options& options) {
   int status = kDone;
   std::vector<Chart> charts;
   std::vector<Plot> plots;
-  Progress progress(static_cast<double>(scenes.size()), "scenes", !options.quiet);
+  ProgressLine progress("scenes", !options.quiet);
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const double end = end_time(options.end, scenes[k]);
     std::vector<std::string> said;
@@ -199,7 +200,7 @@ int chart(const Options& options) {
     const fs::path stem = fs::path(options.out) / files[k].stem();
     ChartFile file(fs::path(stem).concat(".csv"), notes(scenes[k], end, r, options, plan, core), options.fresh);
     const Sweep sweep(scenes[k], end, r);
-    measure_scene(sweep, sweep.cases(plan), file, options.extent(), k, progress);
+    measure_scene(sweep, sweep.cases(plan), file, options.extent(), k, scenes.size(), progress);
     file.finish(r);
     charts.push_back({stem.filename(), file.rows()});
     plots.push_back({file.path(), stem});

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "app/commands.h"
-#include "app/scene_check.h"
 #include "app/terminal.h"
+#include "bench/study/scene_check.h"
 #include "core/scene_reader.h"
 #include "formulations/derivative_check.h"
 #include "formulations/registry.h"
@@ -15,6 +15,7 @@
 #include "integrators/start/rank.h"
 
 namespace poinsot::app {
+using namespace study;
 namespace {
 
 std::string count(std::size_t n, std::string_view one) {

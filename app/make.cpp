@@ -4,13 +4,14 @@
 #include <string>
 
 #include "app/commands.h"
-#include "app/output_file.h"
 #include "app/terminal.h"
+#include "bench/study/output_file.h"
 #include "core/input_error.h"
 #include "core/scene_generator.h"
 #include "core/scene_writer.h"
 
 namespace poinsot::app {
+using namespace study;
 namespace {
 
 struct Options {

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "app/paper_figures.h"
-#include "app/program_data.h"
+#include "bench/paper/paper_figures.h"
+#include "bench/study/program_data.h"
 #include "core/input_error.h"
 
 namespace poinsot::app {
+using namespace study;
+using namespace paper;
 namespace fs = std::filesystem;
 namespace {
 

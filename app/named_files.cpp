@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "app/output_file.h"
+#include "bench/study/output_file.h"
 #include "core/input_error.h"
 
 namespace poinsot::app {
+using namespace study;
 namespace fs = std::filesystem;
 namespace {
 

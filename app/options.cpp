@@ -4,11 +4,12 @@
 #include <fmt/ranges.h>
 
 #include "app/name_list.h"
-#include "app/natural_end.h"
+#include "bench/study/natural_end.h"
 #include "core/input_error.h"
 #include "integrators/settings_reader.h"
 
 namespace poinsot::app {
+using namespace study;
 namespace {
 
 std::string option_of(std::string_view setting) {

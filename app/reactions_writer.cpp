@@ -1,6 +1,7 @@
 #include "app/reactions_writer.h"
 
 namespace poinsot::app {
+using namespace study;
 
 ReactionsWriter::ReactionsWriter(const std::filesystem::path& file, const Model& model) : file_(file) {
   file_.write("t");

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "app/output_file.h"
+#include "bench/study/output_file.h"
 #include "core/model.h"
 #include "integrators/start/reactions.h"
 
@@ -18,7 +18,7 @@ class ReactionsWriter {
   void commit() { file_.commit(); }
 
  private:
-  OutputFile file_;
+  study::OutputFile file_;
   std::optional<Reactions> reactions_;  // from the first sample on
 };
 

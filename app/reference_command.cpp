@@ -5,17 +5,18 @@
 
 #include "app/commands.h"
 #include "app/named_files.h"
-#include "app/natural_end.h"
 #include "app/options.h"
-#include "app/reference.h"
 #include "app/run_record.h"
-#include "app/startable_scene.h"
 #include "app/terminal.h"
 #include "app/trajectory_writer.h"
+#include "bench/study/natural_end.h"
+#include "bench/study/reference.h"
+#include "bench/study/startable_scene.h"
 #include "core/input_error.h"
 #include "integrators/settings_reader.h"
 
 namespace poinsot::app {
+using namespace study;
 namespace {
 namespace fs = std::filesystem;
 

@@ -6,17 +6,18 @@
 #include "app/commands.h"
 #include "app/named_files.h"
 #include "app/options.h"
-#include "app/output_file.h"
-#include "app/progress.h"
+#include "app/progress_line.h"
 #include "app/reactions_writer.h"
 #include "app/run_record.h"
 #include "app/settings_options.h"
 #include "app/terminal.h"
 #include "app/trajectory_writer.h"
+#include "bench/study/output_file.h"
 #include "core/scene_reader.h"
 #include "integrators/simulate.h"
 
 namespace poinsot::app {
+using namespace study;
 namespace {
 namespace fs = std::filesystem;
 
@@ -88,7 +89,7 @@ int run(const Options& options) {
   LastState last;
   Outcome outcome;
   {
-    Progress progress(settings.end, "s", !options.quiet);
+    ProgressLine progress("s", !options.quiet);
     outcome = simulate(scene, settings, [&](const Sample& sample) {
       if (trajectory) trajectory->write(sample);
       if (reactions) reactions->write(sample);
@@ -97,7 +98,7 @@ int run(const Options& options) {
         last.bodies.resize(std::min(kShown, scene.bodies.size()));
         sample.problem.to_bodies(sample.a, last.bodies);
       }
-      progress.at(sample.t);
+      progress.at({sample.t, settings.end});
     });
   }
   outcome.notices.insert(outcome.notices.begin(), notices.begin(), notices.end());

@@ -4,13 +4,14 @@
 #include <memory>
 
 #include "app/commands.h"
-#include "app/measure.h"
 #include "app/options.h"
-#include "app/progress.h"
-#include "app/scale_series.h"
+#include "app/progress_line.h"
 #include "app/terminal.h"
+#include "bench/study/measure.h"
+#include "bench/study/scale_series.h"
 
 namespace poinsot::app {
+using namespace study;
 namespace {
 
 struct Options {
@@ -57,12 +58,13 @@ int scale(const Options& options) {
     }
   }
   const int core = pin_to_one_core();
-  Progress progress(static_cast<double>(all.size() * all_sizes.size()) * options.repetitions, "runs", !options.quiet);
-  double done = 0;
+  ProgressLine progress("runs", !options.quiet);
+  const ProgressCallback told = progress.callback();
+  RunCounter counter(all.size() * all_sizes.size() * static_cast<std::size_t>(options.repetitions), told);
   for (int repetition = 0; repetition < options.repetitions; ++repetition) {
     for (std::size_t n = 0; n < all_sizes.size(); ++n) {
       for (Series& series : all) {
-        progress.at(done++);
+        counter.next();
         auto& runs = series.runs[n];
         if (repetition > 0 && !good(runs)) continue;
         if (n > 0 && too_long(series.runs[n - 1])) {

@@ -2,14 +2,15 @@
 
 #include <memory>
 
-#include "app/cell_rows.h"
 #include "app/commands.h"
 #include "app/models_directory.h"
 #include "app/options.h"
-#include "app/output_file.h"
-#include "app/paper_tables.h"
-#include "app/phase_tables.h"
+#include "app/progress_line.h"
 #include "app/terminal.h"
+#include "bench/paper/cell_rows.h"
+#include "bench/paper/paper_tables.h"
+#include "bench/paper/phase_tables.h"
+#include "bench/study/output_file.h"
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
@@ -17,6 +18,8 @@
 #include "linsolve/registry.h"
 
 namespace poinsot::app {
+using namespace study;
+using namespace paper;
 namespace {
 namespace fs = std::filesystem;
 
@@ -49,7 +52,7 @@ std::vector<Cell> make_cells(std::span<const Scene> scenes, Analysis analysis, c
           settings.step = kStep;
           settings.end = options.end();
           settings.tolerance = analysis == Analysis::kinematics ? kKinematicsTolerance : kDynamicsTolerance;
-          cells.push_back({&kMechanisms[m], &scenes[m], settings, {}, {}, false});
+          cells.push_back({kMechanisms[m].file, &scenes[m], settings, {}, {}, false});
         }
   }
   return cells;
@@ -81,7 +84,7 @@ int report_failures(std::span<const Cell> cells, std::string& text) {
   for (const Cell& cell : cells) {
     if (cell.failure.empty() || cell.refused) continue;
     const std::string sentence =
-        fmt::format("no figure for {}, {}, {}, {}, {}: {}", cell.mechanism->file, analysis_name(cell.settings.analysis),
+        fmt::format("no figure for {}, {}, {}, {}, {}: {}", cell.name, analysis_name(cell.settings.analysis),
                     cell.settings.formulation, cell.settings.jacobian, cell.settings.linear_solver, cell.failure);
     print_error(sentence);
     text += fmt::format("\n\n{}", sentence);
@@ -108,15 +111,17 @@ int tables(const Options& options) {
   for (const LinearSolverEntry& entry : linear_solvers()) solvers.emplace_back(entry.name);
 
   std::vector<Cell> all;
+  ProgressLine progress("runs", !options.quiet);
   for (const Analysis analysis : {Analysis::kinematics, Analysis::dynamics}) {
     std::vector<Cell> cells = make_cells(scenes, analysis, options, chosen);
-    measure(cells, options.runs(), !options.quiet);
+    measure(cells, options.runs(), progress.callback());
     for (const auto make : {speed_up_table, iterations_table, phases_table, advantage_table, against_original_table})
       report.tables.push_back(make(cells, analysis));
     all.insert(all.end(), cells.begin(), cells.end());
   }
   std::vector<Cell> cells = make_cells(scenes, Analysis::dynamics, options, solvers);
-  measure(cells, options.runs(), !options.quiet);
+  measure(cells, options.runs(), progress.callback());
+  progress.clear();
   report.tables.push_back(linear_solvers_table(cells));
   all.insert(all.end(), cells.begin(), cells.end());
 

@@ -7,6 +7,7 @@
 #include "core/so3.h"
 
 namespace poinsot::app {
+using namespace study;
 namespace {
 
 constexpr std::array kColumns{"x",  "y",  "z",  "e0", "e1", "e2", "e3",  "vx",  "vy", "vz",

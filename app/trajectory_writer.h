@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "app/output_file.h"
+#include "bench/study/output_file.h"
 #include "core/scene.h"
 #include "integrators/integrator.h"
 
@@ -24,7 +24,7 @@ class TrajectoryWriter {
  private:
   void write(const Vector3& x);
 
-  OutputFile file_;
+  study::OutputFile file_;
   std::vector<BodyState> states_;
 };
 

@@ -17,6 +17,22 @@ target_link_options(poinsot INTERFACE "$<INSTALL_INTERFACE:${poinsot_interface_l
 install(TARGETS poinsot EXPORT poinsot)
 install(DIRECTORY core linsolve formulations integrators DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/poinsot
         FILES_MATCHING PATTERN "*.h")
+
+# A further library of the package, poinsot::NAME, of the sources given: its headers are those of the folder.
+function(poinsot_add_library name)
+  set(library poinsot_${name})
+  add_library(${library} ${ARGN})
+  add_library(poinsot::${name} ALIAS ${library})
+  target_link_libraries(${library} PRIVATE fmt::fmt $<BUILD_INTERFACE:poinsot_warnings>)
+  # GCC 12 sees overlapping copies in string concatenation where there are none (its bug 105651).
+  target_compile_options(${library} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+  set_target_properties(${library} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
+                                              SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  install(TARGETS ${library} EXPORT poinsot)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  install(DIRECTORY ./ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/poinsot/${folder} FILES_MATCHING PATTERN "*.h")
+endfunction()
+
 install(EXPORT poinsot NAMESPACE poinsot:: FILE poinsotTargets.cmake DESTINATION ${poinsot_package})
 configure_package_config_file(cmake/poinsotConfig.cmake.in ${PROJECT_BINARY_DIR}/poinsotConfig.cmake
                               INSTALL_DESTINATION ${poinsot_package})
@@ -24,5 +40,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/poinsotConfigVersion.cmak
 install(FILES ${PROJECT_BINARY_DIR}/poinsotConfig.cmake ${PROJECT_BINARY_DIR}/poinsotConfigVersion.cmake
               cmake/suitesparse.cmake cmake/sundials.cmake
         DESTINATION ${poinsot_package})
-install(DIRECTORY models app/plots DESTINATION ${CMAKE_INSTALL_DATADIR}/poinsot PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/poinsot)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

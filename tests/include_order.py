@@ -1,21 +1,44 @@
-"""Includes point one way: core <- linsolve <- formulations <- integrators <- app, bench. Prints every breach."""
+"""Includes point one way: core <- linsolve <- formulations <- integrators <- bench/study <- bench/paper <- app. The
+benchmark binaries, bench/*, may include everything up to bench/study. Only the program knows CLI11. Prints every breach."""
 
 import pathlib
+import posixpath
 import re
 import sys
 
-LAYERS = ["core", "linsolve", "formulations", "integrators"]
-TOPS = ["app", "bench"]  # tests may include anything
+LAYERS = ["core", "linsolve", "formulations", "integrators", "bench/study", "bench/paper", "app"]
+BENCHMARKS = "bench"  # tests may include anything
+
+
+def layer_of(file):
+    """The layer of a file or of what is included, the path from the root; nothing for what is not the project's."""
+    for layer in LAYERS:
+        if file.startswith(layer + "/"):
+            return layer
+    return BENCHMARKS if file.startswith(BENCHMARKS + "/") else None
+
+
+def allowed(layer):
+    if layer == BENCHMARKS:
+        return LAYERS[: LAYERS.index("bench/study") + 1] + [BENCHMARKS]
+    return LAYERS[: LAYERS.index(layer) + 1]
 
 
 def breaches(root):
-    for layer in LAYERS + TOPS:
-        allowed = LAYERS[: LAYERS.index(layer) + 1] if layer in LAYERS else LAYERS + TOPS
-        for file in sorted(path for path in (root / layer).rglob("*") if path.suffix in {".h", ".cpp"}):
-            for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
-                included = re.match(r'\s*#\s*include\s*["<](?:\.\.?/)*(\w+)/', line)
-                if included and included[1] in LAYERS + TOPS and included[1] not in allowed:
-                    yield f"{file.relative_to(root)}:{number}: {layer} must not include {included[1]}: {line.strip()}"
+    for folder in sorted({layer.split("/")[0] for layer in LAYERS}):
+        for path in sorted(path for path in (root / folder).rglob("*") if path.suffix in {".h", ".cpp"}):
+            file = path.relative_to(root).as_posix()
+            layer = layer_of(file)
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                included = re.match(r'\s*#\s*include\s*["<]([^">]+)[">]', line)
+                if not included:
+                    continue
+                target = layer_of(posixpath.normpath(posixpath.join(posixpath.dirname(file), included[1]))
+                                  if included[1].startswith(".") else included[1])
+                if target and target not in allowed(layer):
+                    yield f"{file}:{number}: {layer} must not include {target}: {line.strip()}"
+                if included[1].startswith("CLI/") and layer != "app":
+                    yield f"{file}:{number}: {layer} must not know the command line: {line.strip()}"
 
 
 found = list(breaches(pathlib.Path(sys.argv[1])))

@@ -1,0 +1,92 @@
+#include "bench/study/cache.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "bench/study/output_file.h"
+#include "core/input_error.h"
+#include "core/provenance.h"
+
+namespace poinsot::study {
+namespace fs = std::filesystem;
+namespace {
+
+// Empty where nothing can be read.
+std::string content(const fs::path& file) {
+  if (fs::is_directory(file)) return {};
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// The file's first line; it vouches for the key and the data that follow.
+std::string head(std::string_view key, std::string_view data) {
+  return fmt::format("poinsot cache 1: checksum {:016x}, key of {} bytes, then the data\n",
+                     content_hash(fmt::format("{}{}", key, data)), key.size());
+}
+
+}  // namespace
+
+std::uint64_t content_hash(std::string_view text) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return hash;
+}
+
+fs::path user_cache() {
+  const auto named = [](const char* variable) -> fs::path {
+    const char* value = std::getenv(variable);
+    return value && *value ? value : "";
+  };
+  if (const fs::path base = named("XDG_CACHE_HOME"); base.is_absolute()) return base / "poinsot";
+  const fs::path home = named("HOME");
+  return home.empty() ? fs::path() : home / ".cache" / "poinsot";
+}
+
+std::string program_identity() {
+  const Provenance& origin = provenance();
+  // Of a program that holds the library, dladdr tells how it was called, which is no path.
+  Dl_info library{};
+  const bool shared = dladdr(reinterpret_cast<const void*>(&provenance), &library) != 0 && library.dli_fname &&
+                      std::string_view(library.dli_fname).find(".so") != std::string_view::npos;
+  return fmt::format("poinsot {} {} {} {}, code {:016x}", origin.version, origin.commit, origin.compiler, origin.flags,
+                     content_hash(content(shared ? library.dli_fname : "/proc/self/exe")));
+}
+
+fs::path Cache::file(std::string_view key) const {
+  return folder_ / fmt::format("{:016x}", content_hash(key));
+}
+
+std::optional<std::string> Cache::find(std::string_view key, std::vector<std::string>& notices) const {
+  if (folder_.empty() || !fs::exists(file(key))) return {};
+  std::string text = content(file(key));
+  const std::size_t line = text.find('\n') + 1;
+  const std::string_view rest = std::string_view(text).substr(line);
+  if (rest.starts_with(key)) {
+    std::string data(rest.substr(key.size()));
+    if (text.substr(0, line) == head(key, data)) return data;
+  }
+  notices.push_back(fmt::format("{} is damaged or belongs to something else; what it should hold is computed again",
+                                file(key).string()));
+  return {};
+}
+
+void Cache::keep(std::string_view key, std::string_view data, std::vector<std::string>& notices) const {
+  if (folder_.empty()) return;
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  try {
+    OutputFile out(file(key));
+    out.write(head(key, data));
+    out.write(key);
+    out.write(data);
+    out.commit();
+  } catch (const InputError& refused) {
+    notices.push_back(fmt::format("the result is not kept for the next time: {}", refused.what()));
+  }
+}
+
+}  // namespace poinsot::study

@@ -1,0 +1,26 @@
+// On which fronts of several charts each method stands: what earns its place, and what does not.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/study/chart_file.h"
+#include "bench/study/report.h"
+
+namespace poinsot::study {
+
+struct Chart {
+  std::string scene;
+  std::vector<ChartRow> rows;  // with their fronts
+};
+
+// Tables by integrator and by method (integrator, formulation and linear solver): of each quantity, the number of
+// charts on whose front it stands, and the scenes of those it stands on with any. `integrators`: every one that was
+// asked for.
+Report fronts_report(const std::vector<std::string>& integrators, const std::vector<Chart>& charts,
+                     const std::vector<std::string>& foot);
+
+// The same in a few lines: a line for each method on a front, and the integrators that are on none.
+std::string fronts_summary(const std::vector<std::string>& integrators, const std::vector<Chart>& charts);
+
+}  // namespace poinsot::study

@@ -1,0 +1,27 @@
+// A run in a process of its own, so that the memory it needs can be told from everything before it.
+//
+// The first step is not like the others: the linear solver chooses its pivots and examines what it may rely on, once.
+// In a large scene, of which only a few steps are timed, that would weigh as much as the steps. So the first step is
+// run alone, too, and counts as start-up; costs per iteration are those of the steps after it.
+#pragma once
+
+#include <string>
+
+#include "core/scene_generator.h"
+#include "integrators/settings.h"
+
+namespace poinsot::study {
+
+struct IsolatedRun {
+  std::string failure;                                   // why there are no figures
+  double us_per_body = 0;                                // and Newton iteration, after the first step
+  double assembly = 0, factor = 0, solve = 0, rest = 0;  // the same by phase
+  double start = 0;                                      // s from the scene's structs to the end of the first step
+  double kilobytes_per_body = 0;                         // resident, beyond an idle process
+  double seconds = 0;                                    // of the whole run
+  int bodies = 0;
+};
+
+IsolatedRun run_isolated(const SceneGenerator& generator, int bodies, const Settings& settings);
+
+}  // namespace poinsot::study

@@ -1,0 +1,87 @@
+#include "bench/study/measure.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/input_error.h"
+
+namespace poinsot::study {
+namespace {
+
+// Linear between the two neighbours in rank.
+double quantile(const std::vector<double>& sorted, double share) {
+  const double rank = share * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(rank);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return std::lerp(sorted[below], sorted[above], rank - static_cast<double>(below));
+}
+
+}  // namespace
+
+double total(const Statistics& s) {
+  return s.seconds.total;
+}
+double assembly(const Statistics& s) {
+  return s.seconds.assembly;
+}
+double factor(const Statistics& s) {
+  return s.seconds.factor;
+}
+double solve(const Statistics& s) {
+  return s.seconds.solve;
+}
+double rest(const Statistics& s) {
+  return s.seconds.other;
+}
+
+Timing timing(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const double median = quantile(values, 0.5);
+  return {median, median > 0 ? (quantile(values, 0.75) - quantile(values, 0.25)) / median : 0};
+}
+
+Timing us_per_step(const Cell& cell, Phase phase) {
+  if (cell.runs.empty()) return {};
+  std::vector<double> us;
+  for (const Statistics& run : cell.runs) us.push_back(1e6 * phase(run) / static_cast<double>(run.steps));
+  return timing(us);
+}
+
+double iterations_per_step(const Cell& cell) {
+  if (cell.runs.empty()) return 0;
+  return static_cast<double>(cell.runs[0].newton_iterations) / static_cast<double>(cell.runs[0].steps);
+}
+
+int pin_to_one_core() {
+  const int core = sched_getcpu();
+  if (core < 0) return -1;
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(static_cast<std::size_t>(core), &set);
+  return sched_setaffinity(0, sizeof set, &set) == 0 ? core : -1;
+}
+
+void measure(std::vector<Cell>& cells, int repetitions, const ProgressCallback& progress) {
+  RunCounter counter(cells.size() * static_cast<std::size_t>(repetitions + 1), progress);
+  for (int repetition = -1; repetition < repetitions; ++repetition) {  // −1: the warm-up
+    for (Cell& cell : cells) {
+      counter.next();
+      if (!cell.failure.empty()) continue;
+      try {
+        const Outcome outcome = simulate(*cell.scene, cell.settings, [](const Sample&) {});
+        cell.refused = outcome.status.failure == Failure::refused;
+        if (!outcome.status.ok())
+          cell.failure = outcome.status.message;
+        else if (repetition >= 0)
+          cell.runs.push_back(outcome.statistics);
+      } catch (const InputError& refused) {
+        cell.failure = refused.what();
+      }
+      if (!cell.failure.empty()) cell.runs.clear();
+    }
+  }
+}
+
+}  // namespace poinsot::study

@@ -1,0 +1,131 @@
+#include "bench/study/scale_series.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "bench/study/fit.h"
+#include "bench/study/measure.h"
+
+namespace poinsot::study {
+namespace {
+
+struct Quantity {
+  const char* column;  // of the cost table
+  const char* panel;   // of the plot
+  double IsolatedRun::*figure;
+  bool per_body;
+  int from = 100;  // bodies from which a power is fitted; below, what a run costs at any size weighs in
+};
+constexpr Quantity kQuantities[] = {
+    {"us/body", "step, µs per body and iteration", &IsolatedRun::us_per_body, true},
+    {"assembly", "assembly, µs per body and iteration", &IsolatedRun::assembly, true},
+    {"factor", "factorization, µs per body and iteration", &IsolatedRun::factor, true},
+    {"solve", "solves, µs per body and iteration", &IsolatedRun::solve, true},
+    {"rest", "the rest, µs per body and iteration", &IsolatedRun::rest, true},
+    {"kB/body", "memory, kB per body", &IsolatedRun::kilobytes_per_body, true, 1000},  // that is megabytes
+    {"start s", "start-up, s", &IsolatedRun::start, false},
+};
+
+double median(const std::vector<IsolatedRun>& runs, double IsolatedRun::*figure) {
+  std::vector<double> values;
+  for (const IsolatedRun& run : runs) values.push_back(run.*figure);
+  return timing(values).median;
+}
+
+// Over the number of bodies; 0 cannot be drawn or fitted and is left out.
+std::vector<Point> points(const Series& series, const Quantity& quantity) {
+  std::vector<Point> all;
+  for (const auto& runs : series.runs) {
+    if (!good(runs)) continue;
+    const int bodies = runs.front().bodies;
+    if (const double value = median(runs, quantity.figure); value > 0)
+      all.push_back({static_cast<double>(bodies), value, bodies >= quantity.from});
+  }
+  return all;
+}
+
+// Of the whole (per body times bodies) over the number of bodies.
+std::optional<double> exponent(const Series& series, const Quantity& quantity) {
+  std::vector<double> x, y;
+  for (const Point& point : points(series, quantity)) {
+    if (!point.in_fit) continue;
+    x.push_back(point.x);
+    y.push_back(quantity.per_body ? point.x * point.y : point.y);
+  }
+  if (x.size() < 2) return std::nullopt;
+  return fit_power(x, y).exponent;
+}
+
+std::vector<std::string> names(const Series& series) {
+  return {std::string(series.structure->name), series.settings.formulation, series.settings.linear_solver};
+}
+
+}  // namespace
+
+bool good(const std::vector<IsolatedRun>& runs) {
+  return !runs.empty() && runs.front().failure.empty();
+}
+
+Table cost_table(const std::vector<Series>& all) {
+  Table table{"scaling",
+              "Cost per body and Newton iteration",
+              "Implicit Euler, exact Newton matrix; microseconds per body and iteration, the whole step and by phase, "
+              "from the second step on; kilobytes resident per body; seconds from the scene to the end of the first "
+              "step, in which the linear solver chooses its pivots.",
+              {"structure", "formulation", "linear solver", "bodies"},
+              {}};
+  for (const Quantity& quantity : kQuantities) table.header.emplace_back(quantity.column);
+  for (const Series& series : all) {
+    for (const auto& runs : series.runs) {
+      if (!good(runs)) continue;
+      std::vector<std::string> row = names(series);
+      row.push_back(std::to_string(runs.front().bodies));
+      for (const Quantity& quantity : kQuantities) row.push_back(fmt::format("{:.3f}", median(runs, quantity.figure)));
+      table.rows.push_back(row);
+    }
+  }
+  return table;
+}
+
+Table growth_table(const std::vector<Series>& all) {
+  Table table{
+      "growth",
+      "Growth",
+      "Exponents of the number of bodies, fitted by least squares in logarithms, of the time of an iteration, the "
+      "whole and by phase, and of the start-up time, from 100 bodies on, and of the resident memory, from 1000 "
+      "on: 1 is linear. Last, the cost per body of the largest scene over that of the smallest one fitted.",
+      {"structure", "formulation", "linear solver", "step", "assembly", "factor", "solve", "rest", "memory", "start-up",
+       "from bodies", "to bodies", "largest / smallest"},
+      {}};
+  for (const Series& series : all) {
+    if (!exponent(series, kQuantities[0])) continue;
+    std::vector<std::string> row = names(series);
+    for (const Quantity& quantity : kQuantities) {
+      const std::optional<double> fitted = exponent(series, quantity);
+      row.push_back(fitted ? fmt::format("{:.3f}", *fitted) : "-");
+    }
+    std::vector<Point> fitted = points(series, kQuantities[0]);
+    std::erase_if(fitted, [](const Point& point) { return !point.in_fit; });
+    row.push_back(fmt::format("{:g}", fitted.front().x));
+    row.push_back(fmt::format("{:g}", fitted.back().x));
+    row.push_back(fmt::format("{:.2f}", fitted.back().y / fitted.front().y));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+PanelPlot scaling_plot(const std::vector<Series>& all) {
+  PanelPlot plot{"scaling_plot", "Cost over the number of bodies: implicit Euler, exact Newton matrix", "bodies", ""};
+  plot.columns = 4;
+  plot.shared = false;  // their units differ
+  for (const Quantity& quantity : kQuantities) {
+    for (const Series& series : all)
+      plot.curves.push_back({quantity.panel, std::string(series.structure->name),
+                             fmt::format("{}, {}", series.settings.formulation, series.settings.linear_solver),
+                             points(series, quantity)});
+  }
+  return plot;
+}
+
+}  // namespace poinsot::study
