@@ -9,15 +9,11 @@
 #include "app/name_list.h"
 #include "app/options.h"
 #include "app/terminal.h"
-#include "bench/study/calibration.h"
+#include "bench/study/advice.h"
 #include "bench/study/measure.h"
-#include "bench/study/natural_end.h"
-#include "bench/study/scene_waste.h"
 #include "bench/study/startable_scene.h"
 #include "core/expression.h"
 #include "core/input_error.h"
-#include "integrators/start/initial_state.h"
-#include "integrators/start/rank.h"
 
 namespace poinsot::app {
 using namespace study;
@@ -47,16 +43,10 @@ Asked asked(const Options& options) {
   return result;
 }
 
-void require_multipliers(const Asked& asked, const Model& model) {
+void require_multipliers(const Asked& asked, const Scene& scene) {
   for (const std::size_t quantity : asked.quantities)
-    if (kQuantities[quantity] == "multiplier" && model.rows.empty())
+    if (kQuantities[quantity] == "multiplier" && compile(scene).rows.empty())
       throw InputError("--of: found \"multiplier\", but the scene has no constraints");
-}
-
-bool without_freedom(const std::shared_ptr<const Model>& model) {
-  const auto pfaffian = [](const Row& row) { return row.type == RowType::pfaffian; };
-  return std::none_of(model->rows.begin(), model->rows.end(), pfaffian) &&
-         analyze_rank(model, given_state(*model)).degrees_of_freedom() == 0;
 }
 
 // As a shell takes it for one word.
@@ -101,8 +91,9 @@ void print_table(const std::string& title, std::span<const Candidate> candidates
   for (const Candidate& c : candidates.first(std::min(kListed, candidates.size()))) fmt::print("{}", row(c));
 }
 
-void print_advice(const Options& options, const Scene& scene, const Asked& asked, const Reference& r,
-                  const Calibration& found) {
+void print_advice(const Options& options, const Scene& scene, const Asked& asked, const Advice& advice) {
+  const Reference& r = advice.reference;
+  const Calibration& found = advice.calibration;
   std::vector<std::string_view> of;
   for (const std::size_t quantity : asked.quantities) of.push_back(kQuantities[quantity]);
   const Candidate& best = found.reaching.empty() ? found.others.front() : found.reaching.front();
@@ -125,31 +116,27 @@ void print_advice(const Options& options, const Scene& scene, const Asked& asked
       "\n\nerrors: largest over {} times, relative to the motion; reference: {} in {}, rtol {:g}; time: of the "
       "steps, {}\n",
       kOutputs, r.of().integrator, r.of().formulation, r.of().tight, "on this machine");
-  for (const std::string& sentence : scene_waste(scene, r.motion))
-    fmt::print("costs without mattering: {}\n", sentence);
+  for (const std::string& sentence : advice.waste) fmt::print("costs without mattering: {}\n", sentence);
 }
 
-int advise(const Options& options) {
+int run_advise(const Options& options) {
   const Asked what = asked(options);
   const Scene scene = read_startable_scene(options.scene);
-  const auto model = std::make_shared<const Model>(compile(scene));
-  require_multipliers(what, *model);
+  require_multipliers(what, scene);
   const double end = end_time(options.end, scene);
   pin_to_one_core();
   std::vector<std::string> notices;
-  const Reference r = reference(scene, {end, end / kOutputs}, Cache(options.cache), notices);
+  const Advice advice = advise(scene, end, what, Cache(options.cache), notices);
   for (const std::string& notice : notices) print_notice(notice);
-  if (r.given < 0) {
-    print_error(fmt::format("nothing can be checked: {}", why_none(r)));
+  if (advice.reference.given < 0) {
+    print_error(fmt::format("nothing can be checked: {}", why_none(advice.reference)));
     return kNumericsFailed;
   }
-  for (const std::size_t quantity : what.quantities)
-    if (r.agreement[quantity] > what.accuracy)
-      print_notice(fmt::format("{:g} cannot be checked: in {} the reference resolves {:.2g}", what.accuracy,
-                               kQuantities[quantity], r.agreement[quantity]));
-  const Calibration found = calibrate(Sweep(scene, end, r), r, what, without_freedom(model));
-  print_advice(options, scene, what, r, found);
-  return found.reaching.empty() ? kNumericsFailed : kDone;
+  for (const std::size_t quantity : advice.unresolved)
+    print_notice(fmt::format("{:g} cannot be checked: in {} the reference resolves {:.2g}", what.accuracy,
+                             kQuantities[quantity], advice.reference.agreement[quantity]));
+  print_advice(options, scene, what, advice);
+  return advice.calibration.reaching.empty() ? kNumericsFailed : kDone;
 }
 
 }  // namespace
@@ -170,7 +157,7 @@ void add_advise(CLI::App& app, int& status) {
   add_end(*command, options->end);
   add_cache(*command, options->cache);
   command->footer("Everything named has been run on this scene and compared with a reference (`poinsot reference`).");
-  command->callback([options, &status] { status = advise(*options); });
+  command->callback([options, &status] { status = run_advise(*options); });
 }
 
 }  // namespace poinsot::app

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include "bench/study/chart.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <iterator>
 #include <memory>
 #include <set>
@@ -11,12 +11,9 @@
 #include "app/options.h"
 #include "app/progress_line.h"
 #include "app/terminal.h"
-#include "bench/study/chart_file.h"
 #include "bench/study/fronts.h"
 #include "bench/study/measure.h"
-#include "bench/study/natural_end.h"
 #include "bench/study/plot.h"
-#include "bench/study/report.h"
 #include "bench/study/startable_scene.h"
 #include "core/input_error.h"
 
@@ -25,31 +22,12 @@ using namespace study;
 namespace {
 namespace fs = std::filesystem;
 
-// What a sweep goes through. Runs beyond `longest` s, as the run before lets expect them, are left out; integrators
-// with error control may take kPatience times as long: what they are for is the accuracy that takes time.
-struct Extent {
-  std::vector<int> steps;
-  std::vector<double> tolerances;
-  double longest;
-  int repetitions;
-  int digits;  // of the reference
-};
-constexpr double kPatience = 5;
-const Extent kFull{{100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000},
-                   {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12},
-                   1,
-                   5,
-                   12};
-const Extent kQuick{{100, 300, 1000, 3000, 10000}, {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}, 0.02, 3, 10};
-
 struct Options {
   std::vector<std::string> scenes;
   std::string out = "results", end, models, cache = user_cache().string();
   std::string formulations = all_names("formulation"), integrators = all_names("integrator"),
               linear_solvers = kUsualSolver;
   bool all = false, quick = false, fresh = false, quiet = false;
-
-  const Extent& extent() const { return quick ? kQuick : kFull; }
 };
 
 std::vector<fs::path> scene_files(const Options& options) {
@@ -69,109 +47,21 @@ std::vector<fs::path> scene_files(const Options& options) {
 }
 
 SweepPlan plan_of(const Options& options) {
-  return {names_given("formulation", options.formulations), names_given("integrator", options.integrators),
-          names_given("linear_solver", options.linear_solvers), options.extent().steps, options.extent().tolerances};
-}
-
-// Names that fit each other nowhere: there would be nothing to measure.
-void require_cases(const SweepPlan& plan) {
-  std::string why;
-  for (const std::string& integrator : plan.integrators)
-    for (const std::string& formulation : plan.formulations) {
-      const Refusal* refusal = refusal_of(integrators().require(integrator), formulation);
-      if (!refusal) return;
-      if (why.empty())
-        why = fmt::format("integrator '{}' refuses formulation '{}': {}", integrator, formulation, refusal->why);
-    }
-  throw InputError(fmt::format("--integrators, --formulations: {}", why));
-}
-
-std::vector<std::string> notes(const Scene& scene, double end, const Reference& r, const Options& options,
-                               const SweepPlan& plan, int core) {
-  std::vector<std::string> lines{fmt::format("scene: {}, content {:016x}", scene.name, content_hash(scene.source))};
-  for (const std::string& line : origin_lines(core)) lines.push_back(line);
-  lines.push_back(fmt::format("settings: to t = {:g} s; {}; {}; linear solver {}; steps {}; rtol {}, atol rtol/100",
-                              end, fmt::join(plan.formulations, " "), fmt::join(plan.integrators, " "),
-                              fmt::join(plan.linear_solvers, " "), fmt::join(plan.steps, " "),
-                              fmt::join(plan.tolerances, " ")));
-  lines.push_back(fmt::format(
-      "errors: largest over {} output times and all bodies or constraints, relative to the largest value of the motion "
-      "(rotations: rad)",
-      kOutputs));
-  lines.push_back(
-      fmt::format("reference: {} in {}, rtol {:g}, {}; it resolves {:.1g} in positions, {:.1g} in "
-                  "velocities, {:.1g} in accelerations, {:.1g} in multipliers",
-                  r.of().integrator, r.of().formulation, r.of().tight,
-                  r.nearest < 0 ? "not confirmed by another method" : "confirmed by another method", r.agreement[0],
-                  r.agreement[1], r.agreement[2], r.agreement[3]));
-  lines.push_back(fmt::format(
-      "time: of the time-stepping loop, median of {} interleaved repetitions after a first run; runs expected to take "
-      "over {:g} s (error control: {:g} s) are left out",
-      options.extent().repetitions, options.extent().longest, kPatience * options.extent().longest));
-  lines.push_back(fmt::format(
-      "front: no other case is as accurate and as fast; errors below {:g} times what the reference resolves count as "
-      "equal, errors over {:g} not at all",
-      kResolved, kUseless));
-  return lines;
-}
-
-// What a run takes, in steps, roughly: for the progress only.
-double weight(const Case& one, const Extent& extent) {
-  constexpr double of_error_control = 3000, per_step = 1e-5;  // s
-  if (one.parameter() != "step") return of_error_control;
-  const double steps = one.settings.end / one.settings.step;
-  return steps * per_step < extent.longest ? steps : 0;
-}
-
-// A sentence where the case would take too long, by the run of its method before it.
-std::string too_long(const Case& one, const std::vector<std::vector<Case>>& levels, const ChartFile& file,
-                     double longest) {
-  if (one.level == 0) return {};
-  for (const Case& before : levels[static_cast<std::size_t>(one.level) - 1]) {
-    if (before.method() != one.method()) continue;
-    const ChartRow* row = file.find(before);
-    if (!row || row->measured.status.starts_with("left out")) return "left out, as the one before";
-    const double expected =
-        one.parameter() == "step" ? row->measured.seconds * before.value() / one.value() : row->measured.seconds * 2;
-    const double patience = one.parameter() == "step" ? 1 : kPatience;
-    if (row->measured.ok() && expected > patience * longest)
-      return fmt::format("left out, some {:.2g} s are expected", expected);
+  SweepPlan plan = options.quick ? SweepPlan::quick() : SweepPlan::full();
+  plan.formulations = names_given("formulation", options.formulations);
+  plan.integrators = names_given("integrator", options.integrators);
+  plan.linear_solvers = names_given("linear_solver", options.linear_solvers);
+  try {
+    require_cases(plan);
+  } catch (const InputError& refused) {
+    throw InputError(fmt::format("--integrators, --formulations: {}", refused.what()));
   }
-  return {};
-}
-
-// The progress counts scenes; this one is the `number`th, from 0.
-void measure_scene(const Sweep& sweep, const std::vector<std::vector<Case>>& levels, ChartFile& file,
-                   const Extent& extent, std::size_t number, std::size_t scenes, ProgressLine& progress) {
-  double all = 0, done = 0, skipped_here = 0;
-  for (const auto& level : levels)
-    for (const Case& one : level) all += weight(one, extent) * (1 + extent.repetitions);
-  for (const std::vector<Case>& level : levels) {
-    std::vector<Case> batch;
-    for (const Case& one : level) {
-      const bool measured = file.find(one);
-      const std::string why = measured ? "" : too_long(one, levels, file, extent.longest);
-      if (!measured && why.empty()) {
-        batch.push_back(one);
-        continue;
-      }
-      if (!measured) file.add(one, {why});
-      const double skipped = weight(one, extent) * (1 + extent.repetitions);
-      done += skipped;
-      skipped_here += skipped / all;
-    }
-    const std::vector<Measured> measured = sweep.measure(batch, extent.repetitions, [&](const Case& one) {
-      done += weight(one, extent);
-      progress.at({static_cast<double>(number) + done / all, static_cast<double>(scenes), skipped_here});
-    });
-    for (std::size_t k = 0; k < batch.size(); ++k) file.add(batch[k], measured[k]);
-  }
+  return plan;
 }
 
 int chart(const Options& options) {
   const std::vector<fs::path> files = scene_files(options);
   const SweepPlan plan = plan_of(options);
-  require_cases(plan);
   std::vector<Scene> scenes;
   for (const fs::path& file : files) scenes.push_back(read_startable_scene(file));
   if (!options.end.empty()) (void)end_time(options.end, scenes.front());  // a wrong one, before anything is written
@@ -182,11 +72,11 @@ int chart(const Options& options) {
   std::vector<Chart> charts;
   std::vector<Plot> plots;
   ProgressLine progress("scenes", !options.quiet);
+  study::Progress told{0, static_cast<double>(scenes.size())};
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const double end = end_time(options.end, scenes[k]);
     std::vector<std::string> said;
-    const Reference r =
-        reference(scenes[k], {end, end / kOutputs, options.extent().digits}, Cache(options.cache), said);
+    const Reference r = reference(scenes[k], {end, end / kOutputs, plan.digits}, Cache(options.cache), said);
     for (const std::string& notice : said) {
       progress.clear();
       if (!options.quiet) print_notice(notice);
@@ -198,10 +88,13 @@ int chart(const Options& options) {
       continue;
     }
     const fs::path stem = fs::path(options.out) / files[k].stem();
-    ChartFile file(fs::path(stem).concat(".csv"), notes(scenes[k], end, r, options, plan, core), options.fresh);
-    const Sweep sweep(scenes[k], end, r);
-    measure_scene(sweep, sweep.cases(plan), file, options.extent(), k, scenes.size(), progress);
-    file.finish(r);
+    ChartFile file(fs::path(stem).concat(".csv"), chart_notes(scenes[k], end, r, plan, core), options.fresh);
+    const double before = told.skipped;
+    measure_chart(scenes[k], end, r, plan, file, [&](const study::Progress& here) {
+      told.done = static_cast<double>(k) + here.done / here.all;
+      told.skipped = before + here.skipped / here.all;
+      progress.at(told);
+    });
     charts.push_back({stem.filename(), file.rows()});
     plots.push_back({file.path(), stem});
   }

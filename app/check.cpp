@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -9,10 +8,7 @@
 #include "app/terminal.h"
 #include "bench/study/scene_check.h"
 #include "core/scene_reader.h"
-#include "formulations/derivative_check.h"
 #include "formulations/registry.h"
-#include "integrators/start/initial_state.h"
-#include "integrators/start/rank.h"
 
 namespace poinsot::app {
 using namespace study;
@@ -44,8 +40,10 @@ void print_header(const Model& model) {
              count(model.rows.size(), "constraint row"), count(forces, "force"));
 }
 
-// Returns whether no constraints conflict.
-bool print_constraints(const Model& model, const RankAnalysis& analysis, std::span<const Conflict> conflicts) {
+void print_constraints(const SceneCheck& found) {
+  const Model& model = *found.model;
+  const RankAnalysis& analysis = found.rank;
+  const std::vector<Conflict>& conflicts = found.conflicts;
   fmt::print("degrees of freedom: {}\n", analysis.degrees_of_freedom());
   if (analysis.singular_position())
     fmt::print("  the initial pose is a singular position: {} independent rows here, {} beside it\n",
@@ -75,66 +73,50 @@ bool print_constraints(const Model& model, const RankAnalysis& analysis, std::sp
                conflict->by, conflict->position ? "position" : "velocity");
     ++conflict;
   }
-  return conflicts.empty();
 }
 
-// Returns whether the state is off the constraints.
-bool print_state(const Model& model, const Violation& v) {
+void print_state(const SceneCheck& found) {
   const auto line = [&](const char* what, double largest, int row) {
     if (largest <= kSatisfied)
       fmt::print("{}: consistent, largest violation {:.2g}\n", what, largest);
     else
-      fmt::print("{}: violates {} by {:.3g}, the most of all\n", what, describe_row(model, row), largest);
+      fmt::print("{}: violates {} by {:.3g}, the most of all\n", what, describe_row(*found.model, row), largest);
   };
+  const Violation& v = found.violation;
   line("initial pose", v.position, v.position_row);
   line("initial velocities", v.velocity, v.velocity_row);
-  return v.position > kSatisfied || v.velocity > kSatisfied;
 }
 
-// Returns whether every derivative is right.
-bool print_derivatives(const Model& model, std::span<const BodyState> states) {
-  double largest = 0;
-  std::size_t checked = 0;
-  std::vector<std::string> wrong, names;
-  for (const FormulationEntry& formulation : formulations()) {
-    names.emplace_back(formulation.name);
-    for (const DerivativeCheck& derivative : formulation.check_derivatives(model, states)) {
-      ++checked;
-      if (derivative.ok)
-        largest = std::max(largest, derivative.error);
-      else
-        wrong.push_back(fmt::format("  {}: {}: {} is off by {:.3g}", formulation.name, derivative.name, derivative.what,
-                                    derivative.error));
-    }
-  }
-  fmt::print("derivatives: {} compared ({}), {}\n", checked, fmt::join(names, ", "),
-             wrong.empty() ? fmt::format("all right, largest relative difference {:.2g}", largest)
-                           : fmt::format("{} wrong", wrong.size()));
-  for (const std::string& line : wrong) fmt::print("{}\n", line);
-  return wrong.empty();
+void print_derivatives(const SceneCheck& found) {
+  std::vector<std::string_view> names;
+  for (const FormulationEntry& formulation : formulations()) names.push_back(formulation.name);
+  fmt::print("derivatives: {} compared ({}), {}\n", found.derivatives, fmt::join(names, ", "),
+             found.wrong.empty() ? fmt::format("all right, largest relative difference {:.2g}", found.derivative_error)
+                                 : fmt::format("{} wrong", found.wrong.size()));
+  for (const auto& [formulation, derivative] : found.wrong)
+    fmt::print("  {}: {}: {} is off by {:.3g}\n", formulation, derivative.name, derivative.what, derivative.error);
 }
 
-int check_scene(const std::string& file) {
-  const Scene scene = read_scene(file);
-  const auto model = std::make_shared<const Model>(compile(scene));
-  print_header(*model);
-  const std::vector<BodyState> given = given_state(*model);
-  const RankAnalysis analysis = analyze_rank(model, given);
-  const std::vector<Conflict> conflicts = find_conflicts(model, given, analysis);
-  const bool no_conflict = print_constraints(*model, analysis, conflicts);
-  const bool off = print_state(*model, violation(model, given));
-  if (!no_conflict) {
+int run_check(const std::string& file) {
+  const SceneCheck found = check_scene(read_scene(file));
+  print_header(*found.model);
+  print_constraints(found);
+  print_state(found);
+  if (!found.conflicts.empty()) {
     print_error(fmt::format("{}: the constraints conflict; remove or correct one of those named", file));
     return kWrongInput;
   }
-  const InitialState start = find_initial_state(model, Settings{});
-  if (off)
-    for (const std::string& notice : start.notices) fmt::print("  {}\n", notice);
+  if (!found.refusal.empty()) {
+    print_error(found.refusal);
+    return kWrongInput;
+  }
+  if (!found.consistent())
+    for (const std::string& notice : found.start.notices) fmt::print("  {}\n", notice);
+  print_derivatives(found);
+  if (found.sound()) return kDone;
   // Derivatives that are not finite are why the start fails where they are: they are named first.
-  const bool right = print_derivatives(*model, start.status.ok() ? start.bodies : given);
-  if (right && start.status.ok()) return kDone;
-  print_error(right
-                  ? start.status.message
+  print_error(found.wrong.empty()
+                  ? found.start.status.message
                   : fmt::format("{}: derivatives are wrong or not finite at t = 0; try functions of time that have two "
                                 "derivatives there",
                                 file));
@@ -148,7 +130,7 @@ void add_check(CLI::App& app, int& status) {
       "check", "degrees of freedom, redundant and conflicting constraints, initial state, derivatives");
   const auto file = std::make_shared<std::string>();
   command->add_option("scene", *file, "scene file")->required()->type_name("SCENE");
-  command->callback([file, &status] { status = check_scene(*file); });
+  command->callback([file, &status] { status = run_check(*file); });
 }
 
 }  // namespace poinsot::app

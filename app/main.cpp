@@ -10,6 +10,7 @@
 
 #include "app/commands.h"
 #include "app/terminal.h"
+#include "bench/study/output_file.h"
 #include "core/blas.h"
 #include "core/input_error.h"
 #include "core/provenance.h"
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
     for (CLI::Option* option : command->get_options())
       if (option->get_items_expected_max() == 0) option->disable_flag_override();
 
+  study::remove_unfinished_when_interrupted();
   try {
     hold_blas_to_one_thread();
     app.parse(argc, argv);

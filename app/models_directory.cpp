@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/paper/paper_figures.h"
+#include "bench/paper/mechanisms.h"
 #include "bench/study/program_data.h"
 #include "core/input_error.h"
 

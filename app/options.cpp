@@ -9,7 +9,6 @@
 #include "integrators/settings_reader.h"
 
 namespace poinsot::app {
-using namespace study;
 namespace {
 
 std::string option_of(std::string_view setting) {
@@ -23,7 +22,15 @@ void add_scene(CLI::App& command, std::string& file) {
 }
 
 void add_end(CLI::App& command, std::string& end) {
-  command.add_option("--end", end, fmt::format("end time, s (default: {})", kNaturalEnd))->type_name("X");
+  command.add_option("--end", end, "end time, s (default: until the quickest body has turned through some 15 rad)")
+      ->type_name("X");
+}
+
+double end_time(const std::string& given, const Scene& scene) {
+  if (given.empty()) return study::natural_end(scene);
+  Settings settings;
+  set_setting(*find_setting("end"), given, settings);
+  return settings.end;
 }
 
 void add_cache(CLI::App& command, std::string& folder) {

@@ -6,10 +6,14 @@
 #include <string_view>
 #include <vector>
 
+#include "core/scene.h"
+
 namespace poinsot::app {
 
 void add_scene(CLI::App& command, std::string& file);
-void add_end(CLI::App& command, std::string& end);        // its value: end_time()
+void add_end(CLI::App& command, std::string& end);
+// The value of --end: natural_end() of bench/study where it is not given. Throws InputError.
+double end_time(const std::string& given, const Scene& scene);
 void add_cache(CLI::App& command, std::string& folder);   // of references
 void add_models(CLI::App& command, std::string& folder);  // its value: models_directory()
 void add_out_folder(CLI::App& command, std::string& folder, std::string_view what);

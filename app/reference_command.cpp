@@ -9,7 +9,6 @@
 #include "app/run_record.h"
 #include "app/terminal.h"
 #include "app/trajectory_writer.h"
-#include "bench/study/natural_end.h"
 #include "bench/study/reference.h"
 #include "bench/study/startable_scene.h"
 #include "core/input_error.h"

@@ -30,7 +30,8 @@ function(poinsot_add_library name)
                                               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   install(TARGETS ${library} EXPORT poinsot)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
-  install(DIRECTORY ./ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/poinsot/${folder} FILES_MATCHING PATTERN "*.h")
+  install(DIRECTORY ./ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/poinsot/${folder} FILES_MATCHING PATTERN "*.h"
+          PATTERN plots EXCLUDE)
 endfunction()
 
 install(EXPORT poinsot NAMESPACE poinsot:: FILE poinsotTargets.cmake DESTINATION ${poinsot_package})

@@ -19,8 +19,7 @@ environment = dict(os.environ, PATH=os.path.abspath(sys.argv[2]) + os.pathsep + 
 text = (source / "README.md").read_text(encoding="utf-8")
 blocks = re.findall(r"^```(\w+)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 presets = {preset["name"] for preset in json.loads((source / "CMakePresets.json").read_text())["configurePresets"]}
-project = ("CMakeLists.txt", "main.cpp", "double_pendulum.cpp")
-example = "".join((source / "tests/example_project" / name).read_text() for name in project)
+example = "".join(file.read_text() for file in sorted((source / "tests/example_project").iterdir()))
 problems = []
 
 with tempfile.TemporaryDirectory() as directory:

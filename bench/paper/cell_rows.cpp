@@ -38,7 +38,7 @@ std::vector<std::string> jacobians_of(std::span<const Cell> cells) {
   return names;
 }
 
-std::string figure(double value, int decimals) {
+std::string number(double value, int decimals) {
   return value > 0 ? fmt::format("{:.{}f}", value, decimals) : kNone;
 }
 

@@ -7,7 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/paper/paper_figures.h"
+#include "bench/paper/mechanisms.h"
+#include "bench/paper/published.h"
 #include "bench/study/measure.h"
 #include "bench/study/report.h"
 #include "formulations/registry.h"
@@ -28,8 +29,8 @@ const study::Cell* find(std::span<const study::Cell> cells, Analysis analysis, c
                         std::string_view formulation, std::string_view jacobian);
 std::vector<std::string> jacobians_of(std::span<const study::Cell> cells);
 
-// What is not positive was not measured.
-std::string figure(double value, int decimals);
+// As text; what is not positive was not measured.
+std::string number(double value, int decimals);
 
 // One row for every mechanism and formulation that has cells; `fill` adds the columns after the first two.
 template <class Fill>
@@ -43,7 +44,7 @@ void for_rows(study::Table& table, std::span<const study::Cell> cells, Analysis 
       for (const std::string& jacobian : jacobians)
         own.push_back(find(cells, analysis, mechanism, formulation.name, jacobian));
       if (std::count(own.begin(), own.end(), nullptr) > 0) continue;
-      fill(row, own, find_paper_figures(analysis, mechanism.file, formulation.name));
+      fill(row, own, find_published(analysis, mechanism.file, formulation.name));
       table.rows.push_back(std::move(row));
     }
   }

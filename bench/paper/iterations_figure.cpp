@@ -5,7 +5,7 @@
 
 #include "bench/paper/cell_rows.h"
 #include "bench/paper/figure.h"
-#include "bench/paper/paper_figures.h"
+#include "bench/paper/published.h"
 #include "bench/study/progress.h"
 #include "bench/study/range.h"
 #include "formulations/registry.h"

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "bench/paper/cell_rows.h"
+#include "bench/paper/original_codes.h"
 #include "bench/study/range.h"
 #include "core/model.h"
 
@@ -15,8 +16,8 @@ namespace {
 
 constexpr std::string_view kBaseline = "rp";  // of the paper's speed-ups
 
-std::string printed(const PaperFigures* figures, double PaperFigures::*member, int decimals) {
-  return figures ? figure(figures->*member, decimals) : kNone;
+std::string printed(const Published* published, double Published::*member, int decimals) {
+  return published ? number(published->*member, decimals) : kNone;
 }
 
 double speed_up(std::span<const Cell> cells, const Cell& cell) {
@@ -41,7 +42,7 @@ Table constraint_counts(std::span<const Scene> scenes) {
     for (const RowType type : {RowType::CD, RowType::DP1, RowType::DP2, RowType::D})
       row.push_back(std::to_string(
           std::count_if(model.rows.begin(), model.rows.end(), [&](const Row& r) { return r.type == type; })));
-    const PaperCounts& paper = paper_counts()[m];
+    const PublishedCounts& paper = published_counts()[m];
     for (const int count : {paper.cd, paper.dp1, paper.dp2, paper.d}) row.push_back(std::to_string(count));
     table.rows.push_back(std::move(row));
   }
@@ -61,18 +62,18 @@ Table speed_up_table(std::span<const Cell> cells, Analysis analysis) {
   std::vector<Range> ours(jacobians.size());
   Range paper;
   for_rows(table, cells, analysis, jacobians,
-           [&](std::vector<std::string>& row, const std::vector<const Cell*>& own, const PaperFigures* figures) {
+           [&](std::vector<std::string>& row, const std::vector<const Cell*>& own, const Published* published) {
              for (std::size_t j = 0; j < own.size(); ++j) {
                const double ratio = speed_up(cells, *own[j]);
-               row.push_back(figure(ratio, 2));
+               row.push_back(number(ratio, 2));
                if (ratio > 0 && own[j]->settings.formulation == kSubject) ours[j].add(ratio);
              }
-             if (figures && figures->formulation == kSubject) {
-               paper.add(figures->speedup_c1);
-               paper.add(figures->speedup_c2);
+             if (published && published->formulation == kSubject) {
+               paper.add(published->speedup_c1);
+               paper.add(published->speedup_c2);
              }
-             row.push_back(printed(figures, &PaperFigures::speedup_c1, 2));
-             row.push_back(printed(figures, &PaperFigures::speedup_c2, 2));
+             row.push_back(printed(published, &Published::speedup_c1, 2));
+             row.push_back(printed(published, &Published::speedup_c2, 2));
            });
   std::vector<std::string> said;
   for (std::size_t j = 0; j < jacobians.size(); ++j)
@@ -97,19 +98,20 @@ Table iterations_table(std::span<const Cell> cells, Analysis analysis) {
   for (const std::string& jacobian : jacobians) table.header.push_back("ours, " + jacobian);
   table.header.insert(table.header.end(), {kinematics ? "paper C1" : "C1", kinematics ? "paper C2" : "C2"});
   for_rows(table, cells, analysis, jacobians,
-           [&](std::vector<std::string>& row, const std::vector<const Cell*>& own, const PaperFigures* figures) {
-             for (const Cell* cell : own) row.push_back(figure(iterations_per_step(*cell), 2));
-             row.push_back(printed(figures, &PaperFigures::iterations_c1, 2));
-             row.push_back(printed(figures, &PaperFigures::iterations_c2, 2));
+           [&](std::vector<std::string>& row, const std::vector<const Cell*>& own, const Published* published) {
+             for (const Cell* cell : own) row.push_back(number(iterations_per_step(*cell), 2));
+             row.push_back(printed(published, &Published::iterations_c1, 2));
+             row.push_back(printed(published, &Published::iterations_c2, 2));
            });
   return table;
 }
 
-Table against_original_table(std::span<const Cell> cells, Analysis analysis) {
+Table against_original_table(std::span<const Cell> cells, Analysis analysis, std::string_view processor) {
+  const OriginalMachine* machine = original_machine(processor);
   const std::vector<std::string> jacobians = jacobians_of(cells);
   Table table{file_name(analysis, "against_original"),
               title(analysis, "speed-up over the faster of the original Python codes"),
-              "",
+              "The Python codes use the simplified matrix, factored once a step. ",
               {"mechanism", "formulation", "Python, us a step"},
               {}};
   for (const std::string& jacobian : jacobians) {
@@ -118,24 +120,34 @@ Table against_original_table(std::span<const Cell> cells, Analysis analysis) {
   }
   std::vector<Range> ranges(jacobians.size());
   for_rows(table, cells, analysis, jacobians,
-           [&](std::vector<std::string>& row, const std::vector<const Cell*>& own, const PaperFigures* figures) {
-             const double python = figures ? figures->fastest_us() : 0;
-             row.push_back(figure(python, 0));
+           [&](std::vector<std::string>& row, const std::vector<const Cell*>& own, const Published*) {
+             const Cell& first = *own.front();
+             const OriginalTime* theirs =
+                 machine ? machine->find(analysis, first.name, first.settings.formulation) : nullptr;
+             const double python = theirs ? theirs->fastest() : 0;
+             row.push_back(number(python, 0));
              for (std::size_t j = 0; j < own.size(); ++j) {
                const double us = us_per_step(*own[j], total).median;
-               row.push_back(figure(us, 3));
-               row.push_back(us > 0 ? figure(python / us, 0) : kNone);
+               row.push_back(number(us, 3));
+               row.push_back(us > 0 ? number(python / us, 0) : kNone);
                if (us > 0 && python > 0) ranges[j].add(python / us);
              }
            });
+  if (!machine) {
+    std::vector<std::string_view> known;
+    for (const OriginalMachine& one : original_machines()) known.push_back(one.processor);
+    table.text += fmt::format(
+        "Of the processor at hand, {}, there are no times of them, only of {}: times of two processors are not "
+        "divided, so there are no ratios.",
+        processor, fmt::join(known, " and "));
+    return table;
+  }
   std::vector<std::string> said;
   for (std::size_t j = 0; j < jacobians.size(); ++j)
     if (!ranges[j].empty()) said.push_back(fmt::format("{} times with the {} matrix", ranges[j].text(0), jacobians[j]));
-  table.text = fmt::format(
-      "{}. The Python codes use the simplified matrix, factored once a step; they were measured elsewhere: {}. "
-      "Machines "
-      "differ, so these ratios say an order of magnitude.",
-      said.empty() ? "No figures" : fmt::format("Faster {}", fmt::join(said, ", ")), kOriginalMachine);
+  if (!said.empty()) table.text += fmt::format("Faster {}. ", fmt::join(said, ", "));
+  table.text += fmt::format("Their times were measured on a processor of the same name, {}: {}.", machine->processor,
+                            machine->about);
   return table;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "bench/study/measure.h"
 #include "bench/study/report.h"
@@ -13,6 +14,7 @@ study::Table constraint_counts(std::span<const Scene> scenes);  // one per mecha
 // Of cells that differ in mechanism, formulation and jacobian only.
 study::Table speed_up_table(std::span<const study::Cell> cells, Analysis analysis);
 study::Table iterations_table(std::span<const study::Cell> cells, Analysis analysis);
-study::Table against_original_table(std::span<const study::Cell> cells, Analysis analysis);
+// Ratios only where there are times of the codes on the processor, named as processor() of core/provenance.h names it.
+study::Table against_original_table(std::span<const study::Cell> cells, Analysis analysis, std::string_view processor);
 
 }  // namespace poinsot::paper

@@ -41,18 +41,18 @@ Table phases_table(std::span<const Cell> cells, Analysis analysis) {
   for (const std::string& jacobian : jacobians_of(cells))
     for_rows(
         table, cells, analysis, {jacobian},
-        [&](std::vector<std::string>& row, const std::vector<const Cell*>& own, const PaperFigures*) {
+        [&](std::vector<std::string>& row, const std::vector<const Cell*>& own, const Published*) {
           const Cell& cell = *own[0];
           const Timing whole = us_per_step(cell, total);
           row.push_back(jacobian);
-          row.push_back(figure(whole.median, 3));
-          row.push_back(figure(100 * whole.spread, 1));
+          row.push_back(number(whole.median, 3));
+          row.push_back(number(100 * whole.spread, 1));
           for (const Phase phase : {assembly, factor, solve, rest})
-            row.push_back(figure(us_per_step(cell, phase).median, 3));
-          row.push_back(figure(iterations_per_step(cell), 2));
+            row.push_back(number(us_per_step(cell, phase).median, 3));
+          row.push_back(number(iterations_per_step(cell), 2));
           if (cell.runs.empty()) return row.push_back(kNone);
           const Statistics& s = cell.runs[0];
-          row.push_back(figure(static_cast<double>(s.factorizations) / static_cast<double>(s.steps), 2));
+          row.push_back(number(static_cast<double>(s.factorizations) / static_cast<double>(s.steps), 2));
           linear_algebra.add(100 * (us_per_step(cell, factor).median + us_per_step(cell, solve).median) / whole.median);
         });
   table.text = "Medians; the spread is the distance of the quartiles of the total.";
@@ -77,7 +77,7 @@ Table advantage_table(std::span<const Cell> cells, Analysis analysis) {
   for (const std::string& jacobian : jacobians_of(cells)) {
     Table part;
     for_rows(part, cells, analysis, {jacobian},
-             [&](std::vector<std::string>& row, const std::vector<const Cell*>& own, const PaperFigures*) {
+             [&](std::vector<std::string>& row, const std::vector<const Cell*>& own, const Published*) {
                const Cell& cell = *own[0];
                const Cell* subject = find(cells, analysis, mechanism_of(cell), kSubject, jacobian);
                const bool missing = !subject || subject->runs.empty() || cell.runs.empty();
@@ -129,8 +129,8 @@ Table linear_solvers_table(std::span<const Cell> cells) {
       continue;
     }
     const Timing whole = us_per_step(cell, total);
-    row.insert(row.end(), {figure(whole.median, 3), figure(100 * whole.spread, 1)});
-    for (const Phase phase : {assembly, factor, solve, rest}) row.push_back(figure(us_per_step(cell, phase).median, 3));
+    row.insert(row.end(), {number(whole.median, 3), number(100 * whole.spread, 1)});
+    for (const Phase phase : {assembly, factor, solve, rest}) row.push_back(number(us_per_step(cell, phase).median, 3));
     table.rows.push_back(std::move(row));
   }
   std::map<std::string, int> wins;

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "bench/study/output_file.h"
 #include "core/input_error.h"
@@ -28,6 +29,15 @@ std::string head(std::string_view key, std::string_view data) {
                      content_hash(fmt::format("{}{}", key, data)), key.size());
 }
 
+// The file a function stands in: a shared library, or the program itself.
+fs::path code_file(const void* function) {
+  // Of a program that holds the library, dladdr tells how it was called, which is no path.
+  Dl_info library{};
+  const bool shared = dladdr(function, &library) != 0 && library.dli_fname &&
+                      std::string_view(library.dli_fname).find(".so") != std::string_view::npos;
+  return shared ? library.dli_fname : "/proc/self/exe";
+}
+
 }  // namespace
 
 std::uint64_t content_hash(std::string_view text) {
@@ -48,12 +58,12 @@ fs::path user_cache() {
 
 std::string program_identity() {
   const Provenance& origin = provenance();
-  // Of a program that holds the library, dladdr tells how it was called, which is no path.
-  Dl_info library{};
-  const bool shared = dladdr(reinterpret_cast<const void*>(&provenance), &library) != 0 && library.dli_fname &&
-                      std::string_view(library.dli_fname).find(".so") != std::string_view::npos;
+  const std::set<fs::path> files{code_file(reinterpret_cast<const void*>(&provenance)),
+                                 code_file(reinterpret_cast<const void*>(&program_identity))};
+  std::string code;
+  for (const fs::path& file : files) code += content(file);
   return fmt::format("poinsot {} {} {} {}, code {:016x}", origin.version, origin.commit, origin.compiler, origin.flags,
-                     content_hash(content(shared ? library.dli_fname : "/proc/self/exe")));
+                     content_hash(code));
 }
 
 fs::path Cache::file(std::string_view key) const {

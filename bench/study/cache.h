@@ -32,7 +32,7 @@ std::filesystem::path user_cache();
 
 std::uint64_t content_hash(std::string_view text);  // FNV-1a
 
-// The program that computes, by content: version, commit, flags and a hash of the file the library's code stands in.
+// The program that computes, by content: version, commit, flags and a hash of the files the libraries' code stands in.
 std::string program_identity();
 
 }  // namespace poinsot::study

@@ -165,12 +165,10 @@ void ChartFile::add(const Case& one, const Measured& measured) {
 }
 
 void ChartFile::finish(const Reference& reference) {
-  std::vector<double> seconds;
-  for (const ChartRow& row : rows_) seconds.push_back(row.measured.ok() ? row.measured.seconds : kNone);
+  std::vector<Measured> measured;
+  for (const ChartRow& row : rows_) measured.push_back(row.measured);
   for (std::size_t quantity = 0; quantity < kQuantities.size(); ++quantity) {
-    std::vector<double> errors;
-    for (const ChartRow& row : rows_) errors.push_back(row.measured.ok() ? row.measured.error[quantity] : kNone);
-    const std::vector<bool> on = front(errors, seconds, reference.agreement[quantity]);
+    const std::vector<bool> on = front(measured, quantity, reference);
     for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k].front[quantity] = on[k];
   }
   out_.close();

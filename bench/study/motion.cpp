@@ -16,6 +16,7 @@ namespace {
 constexpr double kNone = 1e-6;       // of the other kind of motion
 constexpr double kRest = 1e-10;      // of what takes its place then: rounding
 constexpr double kNoLength = 1e-12;  // m: rounding
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Sizes of linear and angular motion; where one is rounding, the other stands in, and where both are, `usual`, a linear
 // one.
@@ -39,6 +40,11 @@ double as_force(const Row& row, double lambda, double length) {
       break;
   }
   return lambda;
+}
+
+// What is no number stays.
+void raise(double& largest, double x) {
+  if (x > largest || std::isnan(x)) largest = x;
 }
 
 bool is_zero(const Expression& f) {
@@ -82,7 +88,7 @@ MotionRun run_motion(const Scene& scene, const Settings& settings, double longes
   return run;
 }
 
-Sizes sizes(const Motion& motion, const Model& model) {
+Sizes body_sizes(const Motion& motion) {
   Sizes s{0, 0, 0, 0, 0, 0};
   for (const auto& bodies : motion.bodies) {
     for (const BodyState& body : bodies) {
@@ -94,9 +100,14 @@ Sizes sizes(const Motion& motion, const Model& model) {
     }
   }
   if (s.length < kNoLength) s.length = 1;
-  const double time = motion.t.back();
+  const double time = motion.t.back() > 0 ? motion.t.back() : 1;
   settle(s.velocity, s.angular_velocity, s.length, s.length / time);
   settle(s.acceleration, s.angular_acceleration, s.length, s.velocity / time);
+  return s;
+}
+
+Sizes sizes(const Motion& motion, const Model& model) {
+  Sizes s = body_sizes(motion);
   for (const auto& lambda : motion.lambda)
     for (std::size_t row = 0; row < lambda.size(); ++row)
       s.force = std::max(s.force, std::abs(as_force(model.rows[row], lambda[row], s.length)));
@@ -106,27 +117,34 @@ Sizes sizes(const Motion& motion, const Model& model) {
   return s;
 }
 
-PerQuantity difference(const Motion& motion, const Motion& from, const Sizes& sizes, const Model& model) {
-  PerQuantity d{};
-  if (motion.t.size() != from.t.size()) {
-    d.fill(std::numeric_limits<double>::infinity());
-    return d;
-  }
-  const auto raise = [](double& largest, double x) { largest = x > largest || std::isnan(x) ? x : largest; };
+BodyDifference body_difference(const Motion& motion, const Motion& from, const Sizes& sizes) {
+  if (motion.t.size() != from.t.size()) return {kInfinity, kInfinity, kInfinity, kInfinity, kInfinity, kInfinity};
+  BodyDifference d;
   for (std::size_t k = 0; k < from.t.size(); ++k) {
     for (std::size_t b = 0; b < from.bodies[k].size(); ++b) {
       const BodyState &x = motion.bodies[k][b], &y = from.bodies[k][b];
-      raise(d[0], (x.r - y.r).norm() / sizes.length);
-      raise(d[0], 2 * std::asin(std::min(1.0, (x.A - y.A).norm() / (2 * std::numbers::sqrt2))));
-      raise(d[1], (x.rd - y.rd).norm() / sizes.velocity);
-      raise(d[1], (x.w - y.w).norm() / sizes.angular_velocity);
-      raise(d[2], (x.rdd - y.rdd).norm() / sizes.acceleration);
-      raise(d[2], (x.wd - y.wd).norm() / sizes.angular_acceleration);
+      raise(d.r, (x.r - y.r).norm() / sizes.length);
+      raise(d.A, 2 * std::asin(std::min(1.0, (x.A - y.A).norm() / (2 * std::numbers::sqrt2))));
+      raise(d.rd, (x.rd - y.rd).norm() / sizes.velocity);
+      raise(d.w, (x.w - y.w).norm() / sizes.angular_velocity);
+      raise(d.rdd, (x.rdd - y.rdd).norm() / sizes.acceleration);
+      raise(d.wd, (x.wd - y.wd).norm() / sizes.angular_acceleration);
     }
+  }
+  return d;
+}
+
+PerQuantity difference(const Motion& motion, const Motion& from, const Sizes& sizes, const Model& model) {
+  const BodyDifference bodies = body_difference(motion, from, sizes);
+  PerQuantity d{bodies.r, bodies.rd, bodies.rdd, motion.t.size() == from.t.size() ? 0 : kInfinity};
+  raise(d[0], bodies.A);
+  raise(d[1], bodies.w);
+  raise(d[2], bodies.wd);
+  if (d[3] > 0) return d;
+  for (std::size_t k = 0; k < from.t.size(); ++k)
     for (std::size_t row = 0; row < from.lambda[k].size(); ++row)
       raise(d[3], std::abs(as_force(model.rows[row], motion.lambda[k][row] - from.lambda[k][row], sizes.length)) /
                       sizes.force);
-  }
   return d;
 }
 

@@ -63,9 +63,16 @@ struct Sizes {
   double force = 1;                                                                       // N
 };
 Sizes sizes(const Motion& motion, const Model& model);
+Sizes body_sizes(const Motion& motion);  // all but the force; of an instant at 0 alone, 1 s is its time
 
 // Of motions at the same times. Infinite where one ends early.
 PerQuantity difference(const Motion& motion, const Motion& from, const Sizes& sizes, const Model& model);
+
+// The same of the bodies, by kind: positions, angles, velocities, angular velocities and so on.
+struct BodyDifference {
+  double r = 0, A = 0, rd = 0, w = 0, rdd = 0, wd = 0;
+};
+BodyDifference body_difference(const Motion& motion, const Motion& from, const Sizes& sizes);
 
 // Whether the scene's energy is constant: nothing moves it from outside and nothing dissipates.
 bool conserves_energy(const Model& model);

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/input_error.h"
-#include "integrators/settings_reader.h"
 #include "integrators/simulate.h"
 
 namespace poinsot::study {
@@ -66,13 +65,6 @@ double natural_end(const Scene& scene) {
   } catch (const InputError&) {  // told when the scene is run in earnest
     return 1;
   }
-}
-
-double end_time(const std::string& given, const Scene& scene) {
-  if (given.empty()) return natural_end(scene);
-  Settings settings;
-  set_setting(*find_setting("end"), given, settings);
-  return settings.end;
 }
 
 }  // namespace poinsot::study

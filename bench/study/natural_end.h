@@ -3,17 +3,10 @@
 // ten. That is 0.03 s of Andrews' mechanism and some seconds of the pendulums. A scene that hardly moves: 1 s.
 #pragma once
 
-#include <string>
-#include <string_view>
-
 #include "core/scene.h"
 
 namespace poinsot::study {
 
 double natural_end(const Scene& scene);  // s
-
-// The value of --end: natural_end() where it is not given. Throws InputError.
-double end_time(const std::string& given, const Scene& scene);
-inline constexpr std::string_view kNaturalEnd = "until the quickest body has turned through some 15 rad";
 
 }  // namespace poinsot::study

@@ -20,8 +20,7 @@ namespace {
 
 constexpr std::size_t kBuffer = 1 << 20;
 
-// Temporary files that are being written. A run that is interrupted (Ctrl-C) removes them; a signal handler may neither
-// allocate nor lock, so their paths lie here.
+// Temporary files that are being written. A signal handler may neither allocate nor lock, so their paths lie here.
 struct Unfinished {
   std::atomic<bool> active = false;
   char path[PATH_MAX] = {};
@@ -36,8 +35,6 @@ extern "C" void remove_unfinished(int signal) {
 }
 
 void remember(const fs::path& file) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-    if (std::signal(signal, remove_unfinished) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup stays in force
   for (Unfinished& free : unfinished) {
     if (free.active || file.native().size() >= sizeof free.path) continue;
     std::strcpy(free.path, file.c_str());
@@ -56,6 +53,11 @@ void forget(const fs::path& file) {
 }
 
 }  // namespace
+
+void remove_unfinished_when_interrupted() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (std::signal(signal, remove_unfinished) == SIG_IGN) std::signal(signal, SIG_IGN);  // nohup stays in force
+}
 
 bool is_device(const fs::path& file) {
   std::error_code error;

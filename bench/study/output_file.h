@@ -32,6 +32,10 @@ class OutputFile {
   std::string buffer_;
 };
 
+// From now on a run that is interrupted (Ctrl-C, a hangup) removes the temporary files it was writing. For programs: it
+// takes SIGINT, SIGTERM and SIGHUP where they are not ignored.
+void remove_unfinished_when_interrupted();
+
 bool is_device(const std::filesystem::path& file);
 // A field of a CSV header, quoted where it has to be.
 std::string csv_field(std::string_view text);

@@ -174,11 +174,15 @@ Reference compute(const Scene& scene, const ReferenceSettings& asked) {
 
 }  // namespace
 
+std::string reference_key(const Scene& scene, const ReferenceSettings& settings, std::string_view program) {
+  return fmt::format("{}\nreference: end {:.17g}, every {:.17g}, {} digits\n{}", program, settings.end, settings.every,
+                     settings.digits, scene.source);
+}
+
 Reference reference(const Scene& scene, const ReferenceSettings& settings, const Cache& cache,
                     std::vector<std::string>& notices) {
-  std::string key = fmt::format("{}\nreference: end {:.17g}, every {:.17g}, {} digits\n", program_identity(),
-                                settings.end, settings.every, settings.digits);
-  key += scene.source;
+  if (scene.source.empty()) return compute(scene, settings);
+  const std::string key = reference_key(scene, settings, program_identity());
   if (const auto kept = cache.find(key, notices)) return unpacked(*kept, scene.bodies.size());
   const Reference computed = compute(scene, settings);
   cache.keep(key, packed(computed), notices);

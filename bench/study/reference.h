@@ -7,6 +7,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/study/cache.h"
@@ -39,7 +40,10 @@ struct Reference {
   const Method& of() const { return methods[static_cast<std::size_t>(given)]; }
 };
 
-// From the cache where it is there. Notices are for the user.
+// What a reference is kept by: the program (program_identity()), what was asked for and the text of the scene.
+std::string reference_key(const Scene& scene, const ReferenceSettings& settings, std::string_view program);
+
+// From the cache where it is there; a scene that was read from no text is not kept. Notices are for the user.
 Reference reference(const Scene& scene, const ReferenceSettings& settings, const Cache& cache,
                     std::vector<std::string>& notices);
 

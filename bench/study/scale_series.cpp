@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "bench/study/fit.h"
@@ -60,6 +61,26 @@ std::optional<double> exponent(const Series& series, const Quantity& quantity) {
 std::vector<std::string> names(const Series& series) {
   return {std::string(series.structure->name), series.settings.formulation, series.settings.linear_solver};
 }
+
+// A series ends where ten times the bodies would take longer than this at the same cost per body.
+constexpr double kLongestRun = 60;  // s
+
+bool too_long(const std::vector<IsolatedRun>& runs) {
+  return good(runs) && 10 * runs.front().seconds > kLongestRun;
+}
+
+std::vector<int> sizes(int most) {
+  std::vector<int> all;
+  for (int n = 1; n <= most; n *= 10) all.push_back(n);
+  return all;
+}
+
+// Few steps where a step is long: about as much work for every size, 5 to 200 steps after the first.
+double end_of(int bodies, double step) {
+  return step * (1 + std::clamp(20000 / bodies, 5, 200));
+}
+
+constexpr std::string_view kLeftOut = "left out";
 
 }  // namespace
 
@@ -126,6 +147,61 @@ PanelPlot scaling_plot(const std::vector<Series>& all) {
                              points(series, quantity)});
   }
   return plot;
+}
+
+std::vector<Series> measure_scale(const ScaleRequest& request, const ProgressCallback& progress) {
+  const std::vector<int> all_sizes = sizes(request.most);
+  std::vector<Series> all;
+  for (const SceneGenerator& structure : scene_generators())
+    for (const std::string& formulation : request.formulations)
+      for (const std::string& solver : request.linear_solvers) {
+        Series series{&structure, {}, all_sizes, std::vector<std::vector<IsolatedRun>>(all_sizes.size())};
+        series.settings.formulation = formulation;
+        series.settings.linear_solver = solver;
+        all.push_back(series);
+      }
+  RunCounter counter(all.size() * all_sizes.size() * static_cast<std::size_t>(request.repetitions), progress);
+  for (int repetition = 0; repetition < request.repetitions; ++repetition)
+    for (std::size_t n = 0; n < all_sizes.size(); ++n)
+      for (Series& series : all) {
+        counter.next();
+        auto& runs = series.runs[n];
+        if (repetition > 0 && !good(runs)) continue;
+        if (n > 0 && too_long(series.runs[n - 1])) {
+          const IsolatedRun& before = series.runs[n - 1].front();
+          runs.push_back({fmt::format("{}, {} bodies took {:.0f} s", kLeftOut, before.bodies, before.seconds)});
+          continue;
+        }
+        series.settings.end = series.settings.every = end_of(all_sizes[n], series.settings.step);
+        runs.push_back(run_isolated(*series.structure, all_sizes[n], series.settings));
+      }
+  return all;
+}
+
+std::vector<Missing> missing(const std::vector<Series>& all) {
+  std::vector<Missing> sentences;
+  for (const Series& series : all)
+    for (std::size_t n = 0; n < series.sizes.size(); ++n) {
+      if (good(series.runs[n])) continue;
+      const std::string& why = series.runs[n].front().failure;
+      sentences.push_back(
+          {fmt::format("no figure for {} of {} bodies, {}, {}: {}", series.structure->name, series.sizes[n],
+                       series.settings.formulation, series.settings.linear_solver, why),
+           !why.starts_with(kLeftOut)});
+    }
+  return sentences;
+}
+
+Report scale_report(const std::vector<Series>& all, int repetitions, int core) {
+  Report report{"Scaling",
+                "Chains, trees, ladders of closed loops and the N-four-bar, each run in its own process.",
+                {cost_table(all), growth_table(all)},
+                origin_lines(core)};
+  report.foot.push_back(
+      fmt::format("settings: implicit_euler, h = {:g} s, tolerance {:g}, jacobian {}; {} interleaved "
+                  "repetitions, median",
+                  Settings{}.step, Settings{}.tolerance, Settings{}.jacobian, repetitions));
+  return report;
 }
 
 }  // namespace poinsot::study

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bench/study/measure.h"
+#include "core/input_error.h"
 #include "formulations/registry.h"
 
 namespace poinsot::study {
@@ -27,6 +28,40 @@ std::string Case::method() const {
 const Refusal* refusal_of(const IntegratorEntry& integrator, std::string_view formulation) {
   const auto found = std::ranges::find(integrator.refuses, formulation, &Refusal::formulation);
   return found == integrator.refuses.end() ? nullptr : &*found;
+}
+
+SweepPlan SweepPlan::full() {
+  SweepPlan plan;
+  plan.formulations = poinsot::formulations().names();
+  plan.integrators = poinsot::integrators().names();
+  plan.steps = {100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000};
+  plan.tolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
+  plan.longest = 1;
+  plan.repetitions = 5;
+  plan.digits = 12;
+  return plan;
+}
+
+SweepPlan SweepPlan::quick() {
+  SweepPlan plan = full();
+  plan.steps = {100, 300, 1000, 3000, 10000};
+  plan.tolerances = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
+  plan.longest = 0.02;
+  plan.repetitions = 3;
+  plan.digits = 10;
+  return plan;
+}
+
+void require_cases(const SweepPlan& plan) {
+  std::string why;
+  for (const std::string& integrator : plan.integrators)
+    for (const std::string& formulation : plan.formulations) {
+      const Refusal* refusal = refusal_of(integrators().require(integrator), formulation);
+      if (!refusal) return;
+      if (why.empty())
+        why = fmt::format("integrator '{}' refuses formulation '{}': {}", integrator, formulation, refusal->why);
+    }
+  throw InputError(why);
 }
 
 Sweep::Sweep(const Scene& scene, double end, const Reference& reference)
@@ -109,13 +144,13 @@ std::vector<Measured> Sweep::measure(const std::vector<Case>& batch, int repetit
   std::vector<Measured> all;
   for (const Case& one : batch) {
     all.push_back(compare(one));
-    after(one);
+    if (after) after(one);
   }
   std::vector<std::vector<double>> seconds(batch.size());
   for (int repetition = 0; repetition < repetitions; ++repetition) {
     for (std::size_t k = 0; k < batch.size(); ++k) {
       if (all[k].ok()) seconds[k].push_back(time(batch[k]));
-      after(batch[k]);
+      if (after) after(batch[k]);
     }
   }
   for (std::size_t k = 0; k < batch.size(); ++k) {
@@ -141,6 +176,16 @@ std::vector<bool> front(const std::vector<double>& errors, const std::vector<dou
     }
   }
   return on;
+}
+
+std::vector<bool> front(const std::vector<Measured>& measured, std::size_t quantity, const Reference& reference) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> errors, seconds;
+  for (const Measured& m : measured) {
+    errors.push_back(m.ok() ? m.error[quantity] : none);
+    seconds.push_back(m.ok() ? m.seconds : none);
+  }
+  return front(errors, seconds, reference.agreement[quantity]);
 }
 
 }  // namespace poinsot::study

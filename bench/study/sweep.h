@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,14 +34,26 @@ struct Measured {
   bool ok() const { return status == "ok"; }
 };
 
-// What is varied. Steps are numbers of steps over the whole time, multiples of kOutputs.
-struct SweepPlan {
-  std::vector<std::string> formulations, integrators, linear_solvers;
-  std::vector<int> steps;
-  std::vector<double> tolerances;  // rtol
-};
 inline constexpr int kOutputs = 20;  // output times after 0
 inline const std::string kUsualSolver = Settings{}.linear_solver;
+
+// What is varied and how long that may take: every formulation and integrator where nothing else is said.
+struct SweepPlan {
+  std::vector<std::string> formulations, integrators, linear_solvers{kUsualSolver};
+  std::vector<int> steps;          // over the whole time, multiples of kOutputs
+  std::vector<double> tolerances;  // rtol
+  // Runs expected to take longer than this, by the run before, are left out; integrators with error control may take
+  // kPatience times as long: what they are for is the accuracy that takes time.
+  double longest = 0;  // s
+  int repetitions = 0;
+  int digits = 0;  // of the reference
+
+  static SweepPlan full();
+  static SweepPlan quick();
+};
+inline constexpr double kPatience = 5;
+// Throws InputError where no integrator of the plan takes any of its formulations.
+void require_cases(const SweepPlan& plan);
 
 const Refusal* refusal_of(const IntegratorEntry& integrator, std::string_view formulation);
 
@@ -56,9 +69,9 @@ class Sweep {
   Measured compare(const Case& one) const;
   // One more run; its time, s.
   double time(const Case& one) const;
-  // Compares all, then times those that are well, `repetitions` times in turn. `after` is told of every run.
+  // Compares all, then times those that are well, `repetitions` times in turn. `after`, if any, is told of every run.
   std::vector<Measured> measure(const std::vector<Case>& batch, int repetitions,
-                                const std::function<void(const Case&)>& after) const;
+                                const std::function<void(const Case&)>& after = {}) const;
 
  private:
   const Scene& scene_;
@@ -70,10 +83,12 @@ class Sweep {
   bool conservative_ = false;
 };
 
-// Whether each point (error, seconds) is on the front of a chart: none is better in one and at least as good in the
-// other. Errors below kResolved times `agreement`, how far the reference can be trusted, are equal; errors above
-// kUseless do not count.
+// Whether each point (error, seconds) is on the front: none is better in one and at least as good in the other. Errors
+// below kResolved times `agreement`, how far the reference can be trusted, are equal; errors above kUseless and what is
+// not a number do not count.
 std::vector<bool> front(const std::vector<double>& errors, const std::vector<double>& seconds, double agreement);
+// The same of measured cases in one quantity, by its number in kQuantities; failures are on no front.
+std::vector<bool> front(const std::vector<Measured>& measured, std::size_t quantity, const Reference& reference);
 inline constexpr double kResolved = 10, kUseless = 0.01;
 
 }  // namespace poinsot::study

@@ -1,0 +1,117 @@
+#include "bench/paper/measured_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/paper/cell_rows.h"
+#include "bench/paper/mechanisms.h"
+#include "bench/paper/paper_tables.h"
+#include "bench/paper/phase_tables.h"
+#include "core/provenance.h"
+#include "core/scene_reader.h"
+#include "formulations/registry.h"
+#include "integrators/jacobian_policy.h"
+#include "linsolve/registry.h"
+
+namespace poinsot::paper {
+using namespace study;
+namespace {
+
+// The paper's settings.
+constexpr double kStep = 1e-3, kEnd = 3;
+constexpr double kKinematicsTolerance = 1e-10, kDynamicsTolerance = 1e-3;
+
+std::vector<Cell> make_cells(std::span<const Scene> scenes, Analysis analysis, const TablesRequest& request,
+                             std::span<const std::string> solvers) {
+  std::vector<Cell> cells;
+  for (std::size_t m = 0; m < kMechanisms.size(); ++m) {
+    if (analysis == Analysis::kinematics && !kMechanisms[m].driven) continue;
+    for (const std::string& solver : solvers)
+      for (const auto& policy : jacobians())
+        for (const FormulationEntry& formulation : formulations()) {
+          Settings settings;
+          settings.analysis = analysis;
+          settings.formulation = formulation.name;
+          settings.jacobian = policy.name;
+          settings.linear_solver = solver;
+          settings.step = kStep;
+          settings.end = request.end();
+          settings.tolerance = analysis == Analysis::kinematics ? kKinematicsTolerance : kDynamicsTolerance;
+          cells.push_back({kMechanisms[m].file, &scenes[m], settings, {}, {}, false});
+        }
+  }
+  return cells;
+}
+
+std::vector<std::string> foot(const TablesRequest& request, int core) {
+  std::vector<std::string> lines = origin_lines(core);
+  lines.push_back(fmt::format(
+      "settings: h = {:g} s, {:g} s simulated, tolerance {:g} (kinematics) and {:g} (dynamics), integrator {}, "
+      "linear solver {} where no other is named",
+      kStep, request.end(), kKinematicsTolerance, kDynamicsTolerance, Settings{}.integrator, request.linear_solver));
+  lines.push_back(fmt::format(
+      "timing: the time-stepping loop without reading and writing; a warm-up, then {} interleaved repetitions, median",
+      request.runs()));
+  return lines;
+}
+
+std::string introduction() {
+  std::string text =
+      "Like for like is the `simplified` matrix: that is what the original codes use, factored once a step. A step is "
+      "one time step with all its Newton iterations. Newton matrices:\n";
+  for (const auto& policy : jacobians()) text += fmt::format("\n- `{}`: {}", policy.name, policy.about);
+  return text;
+}
+
+std::vector<std::string> failures_of(std::span<const Cell> cells) {
+  std::vector<std::string> failures;
+  for (const Cell& cell : cells)
+    if (!cell.failure.empty() && !cell.refused)
+      failures.push_back(fmt::format("no figure for {}, {}, {}, {}, {}: {}", cell.name,
+                                     analysis_name(cell.settings.analysis), cell.settings.formulation,
+                                     cell.settings.jacobian, cell.settings.linear_solver, cell.failure));
+  return failures;
+}
+
+}  // namespace
+
+double TablesRequest::end() const {
+  return quick ? kEnd / 10 : kEnd;
+}
+int TablesRequest::runs() const {
+  return quick ? std::min(repetitions, 5) : repetitions;
+}
+
+MeasuredTables measure_tables(const TablesRequest& request, int core, const ProgressCallback& progress) {
+  std::vector<Scene> scenes;
+  for (const Mechanism& mechanism : kMechanisms)
+    scenes.push_back(read_scene(request.models / fmt::format("{}.json", mechanism.file)));
+  MeasuredTables result;
+  Report& report = result.report;
+  report = {"The paper's tables, regenerated", introduction(), {constraint_counts(scenes)}, foot(request, core)};
+  const std::vector<std::string> chosen{request.linear_solver};
+  std::vector<std::string> solvers;
+  for (const LinearSolverEntry& entry : linear_solvers()) solvers.emplace_back(entry.name);
+
+  std::vector<Cell> all;
+  for (const Analysis analysis : {Analysis::kinematics, Analysis::dynamics}) {
+    std::vector<Cell> cells = make_cells(scenes, analysis, request, chosen);
+    measure(cells, request.runs(), progress);
+    for (const auto make : {speed_up_table, iterations_table, phases_table, advantage_table})
+      report.tables.push_back(make(cells, analysis));
+    report.tables.push_back(against_original_table(cells, analysis, processor()));
+    all.insert(all.end(), cells.begin(), cells.end());
+  }
+  std::vector<Cell> cells = make_cells(scenes, Analysis::dynamics, request, solvers);
+  measure(cells, request.runs(), progress);
+  report.tables.push_back(linear_solvers_table(cells));
+  all.insert(all.end(), cells.begin(), cells.end());
+
+  result.raw = raw_table(all);
+  result.failures = failures_of(all);
+  for (const std::string& failure : result.failures) report.text += fmt::format("\n\n{}", failure);
+  return result;
+}
+
+}  // namespace poinsot::paper

@@ -1,0 +1,19 @@
+// The mechanisms of the paper.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace poinsot::paper {
+
+struct Mechanism {
+  std::string_view title;
+  std::string_view file;  // in the models directory, without .json
+  bool driven;            // no free degrees of freedom: kinematics can be computed
+};
+
+inline constexpr std::array kMechanisms{
+    Mechanism{"Single pendulum", "single_pendulum", true}, Mechanism{"Double pendulum", "double_pendulum", false},
+    Mechanism{"Four link", "four_link", true}, Mechanism{"Slider crank", "slider_crank", true}};
+
+}  // namespace poinsot::paper
