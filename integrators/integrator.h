@@ -45,13 +45,22 @@ struct Sample {
 };
 using Observer = std::function<void(const Sample&)>;
 
+// What an integrator is given: the problem, how to solve it, and where what it finds goes.
+struct Run {
+  Problem& problem;
+  LinearSolver& solver;
+  const Settings& settings;
+  State& state;  // consistent at 0
+  const Observer& observe;
+  Statistics& statistics;
+};
+
 class Integrator {
  public:
   virtual ~Integrator() = default;
-  // Advances `state`, consistent at 0, to settings.end. After a failure its q and v are those of the last good step, as
-  // the samples given out are.
-  virtual Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state,
-                     const Observer& observe, Statistics& statistics) = 0;
+  // Advances the run's state to settings.end. After a failure its q and v are those of the last good step, as the
+  // samples given out are.
+  virtual Status run(const Run& run) = 0;
 };
 
 // A formulation an integrator cannot be used with, and why.

@@ -75,7 +75,7 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   if (!outcome.status.ok()) return outcome;
   const Eigen::VectorXd q_start = state.q;
   const std::unique_ptr<LinearSolver> solver = linear_solver.make();
-  outcome.status = integrator.make()->run(*problem, *solver, settings, state, observe, outcome.statistics);
+  outcome.status = integrator.make()->run({*problem, *solver, settings, state, observe, outcome.statistics});
   const Failure failure = outcome.status.failure;
   if (settings.analysis == Analysis::dynamics &&
       (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {

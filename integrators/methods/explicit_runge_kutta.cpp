@@ -34,13 +34,13 @@ class ExplicitRungeKutta final : public Integrator {
  public:
   explicit ExplicitRungeKutta(const RungeKuttaPair& pair) : pair_(pair) {}
 
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
-             Statistics& statistics) override {
+  Status run(const Run& run) override {
     PhaseClock clock;
-    Method method(pair_, problem, solver, settings.rtol, settings.absolute_tolerance(), statistics, clock);
+    Method method(pair_, run.problem, run.solver, run.settings.rtol, run.settings.absolute_tolerance(), run.statistics,
+                  clock);
     if (Status status = method.prepare(); !status.ok()) return status;
-    method.start(state);
-    return controlled_run(method, pair_.rule, problem, settings, state, observe, statistics, clock);
+    method.start(run.state);
+    return controlled_run(method, pair_.rule, run, clock);
   }
 
  private:

@@ -1,80 +1,72 @@
 #include "integrators/methods/half_implicit.h"
 
-#include <utility>
-
 #include "integrators/stepping/broyden.h"
 #include "integrators/stepping/fixed_steps.h"
 #include "integrators/stepping/newton_loop.h"
+#include "integrators/stepping/step_ends.h"
 #include "integrators/stepping/velocity_rows.h"
 
 namespace poinsot {
 namespace {
 
-using Vector = Eigen::VectorXd;
-
-class HalfImplicit final : public Integrator {
+class HalfImplicit final : public FixedSteps {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
-             Statistics& statistics) override {
-    const TimeGrid grid(settings);
-    const double h = grid.step();
-    PhaseClock clock;
-    const std::unique_ptr<Problem> second = problem.clone();
-    struct End {  // of a step; where one step ends the next begins, and the problem stands there already
-      Problem& problem;
-      StepSystem system;
-    } ends[] = {{problem, {problem, solver, MatrixKind::consistent, statistics, clock}},
-                {*second, {*second, solver, MatrixKind::consistent, statistics, clock}}};
-    End *here = &ends[0], *there = &ends[1];
-    if (Status status = here->system.prepare(); !status.ok()) return status;
-    NewtonLoop newton(problem, here->system, settings, Refresh::every_step, statistics);
-    Broyden broyden(problem.nv() + problem.nc(), problem.nv());
-    const std::vector<int> free_rows = velocity_rows(problem);
+  explicit HalfImplicit(const Run& run)
+      : FixedSteps(run),
+        ends_(problem_, run.solver, run.statistics, clock_),
+        newton_(problem_, ends_.begin().system, settings_, Refresh::every_step, run.statistics),
+        broyden_(problem_.nv() + problem_.nc(), problem_.nv()),
+        velocity_rows_(velocity_rows(problem_)),
+        dq_(nv_),
+        rows_(nc_) {}
 
-    SteppedState x(state);
-    Vector dq(x.nv), rows(x.nc);
-    double t_n = 0;
-    x.stand(problem, 0);
-    const auto stand = [&](double) -> Problem& { return here->problem; };  // it does after every step
-    const auto step = [&](double t) -> Status {
-      const auto advance = [&] {
-        x.v.noalias() = x.v_n + h * x.z.head(x.nv);
-        dq.noalias() = h * x.v;
-        problem.retract(span(x.q_n), span(dq), span(x.q));
-        there->problem.set_position(t, span(x.q));
-      };
-      const auto residual = [&](Vector& r) {
-        advance();
-        here->problem.equations_of_motion(x.a(), x.lambda(), span(r, 0, x.nv));
-        there->problem.position_residual(span(r, x.nv, x.nc));
-        r.tail(x.nc) /= h * h;
-        if (free_rows.empty()) return;
-        there->problem.set_velocity(span(x.v));
-        there->problem.velocity_residual(span(rows));
-        for (int row : free_rows) r[x.nv + row] = rows[row] / h;
-      };
-      const auto matrix = [&] { return here->system.refresh(t_n, {}, {}, x.a(), x.lambda()); };
-      const auto correct = [&](Vector& delta) -> Status {
-        broyden.improve(delta);
-        x.z += delta;
-        return {};
-      };
-      broyden.restart();
-      if (Status status = newton.solve(t, h * h, x.q, residual, matrix, correct); !status.ok()) return status;
+  Status prepare() override { return ends_.prepare(); }
+  Problem& stand() override { return ends_.begin().problem; }  // it does after every step
+
+  Status step(double t) override {
+    StepEnds::End &begin = ends_.begin(), &end = ends_.end();
+    const auto advance = [&] {
+      x_.v.noalias() = v_n_ + h_ * x_.z.head(nv_);
+      dq_.noalias() = h_ * x_.v;
+      problem_.retract(span(q_n_), span(dq_), span(x_.q));
+      end.problem.set_position(t, span(x_.q));
+    };
+    const auto residual = [&](Vector& r) {
       advance();
-      std::swap(here, there);
-      here->problem.set_velocity(span(x.v));
-      t_n = t;
+      begin.problem.equations_of_motion(x_.a(), x_.lambda(), span(r, 0, nv_));
+      end.problem.position_residual(span(r, nv_, nc_));
+      r.tail(nc_) /= h_ * h_;
+      if (velocity_rows_.empty()) return;
+      end.problem.set_velocity(span(x_.v));
+      end.problem.velocity_residual(span(rows_));
+      for (int row : velocity_rows_) r[nv_ + row] = rows_[row] / h_;
+    };
+    const auto matrix = [&] { return begin.system.refresh(x_.t, {}, {}, x_.a(), x_.lambda()); };
+    const auto correct = [&](Vector& delta) -> Status {
+      broyden_.improve(delta);
+      x_.z += delta;
       return {};
     };
-    return fixed_steps(x, grid, state, observe, statistics, clock, step, stand);
+    broyden_.restart();
+    if (Status status = newton_.solve(t, h_ * h_, x_.q, residual, matrix, correct); !status.ok()) return status;
+    advance();
+    end.problem.set_velocity(span(x_.v));
+    ends_.take_turns();
+    return {};
   }
+
+ private:
+  StepEnds ends_;
+  NewtonLoop newton_;
+  Broyden broyden_;
+  const std::vector<int> velocity_rows_;
+  Vector dq_, rows_;
 };
 
 }  // namespace
 
 std::unique_ptr<Integrator> make_half_implicit() {
-  return std::make_unique<HalfImplicit>();
+  return std::make_unique<FixedStepIntegrator<HalfImplicit>>();
 }
 
 }  // namespace poinsot

@@ -62,22 +62,22 @@ void free_ida(void* ida) {
   IDAFree(&ida);
 }
 
-class Run {
+// IDA's objects and the run they are part of, which their callbacks are given.
+class Session {
  public:
-  Run(Problem& problem, LinearSolver& solver, const Settings& settings, const State& state, const Observer& observe,
-      Statistics& statistics)
-      : problem_(problem),
-        settings_(settings),
-        observe_(observe),
-        statistics_(statistics),
-        form_(problem),
-        system_(problem, solver, statistics, clock_),
-        point_solver_(linear_solvers().require(settings.linear_solver).make()),
-        consistent_(problem, *point_solver_, statistics, clock_),
-        sizes_(2 * static_cast<std::size_t>(problem.nv())),
+  explicit Session(const Run& run)
+      : run_(run),
+        problem_(run.problem),
+        settings_(run.settings),
+        statistics_(run.statistics),
+        form_(problem_),
+        system_(problem_, run.solver, statistics_, clock_),
+        point_solver_(linear_solvers().require(settings_.linear_solver).make()),
+        consistent_(problem_, *point_solver_, statistics_, clock_),
+        sizes_(2 * static_cast<std::size_t>(problem_.nv())),
         sizes_now_(sizes_.size()),
-        at_(state),
-        next_(problem) {
+        at_(run.state),
+        next_(problem_) {
     SUNContext context = nullptr;
     check(SUNContext_Create(nullptr, &context) == 0, "SUNDIALS gives a context");
     context_.reset(context);
@@ -98,10 +98,10 @@ class Run {
     linear_->ops->solve = solve;
   }
 
-  Status prepare(const State& state) {
+  Status prepare() {
     if (Status status = system_.prepare(form_.pattern(), form_.unknowns()); !status.ok()) return status;
     if (Status status = consistent_.prepare(); !status.ok()) return status;
-    form_.start(state, values(y_.get()), values(y_dot_.get()));
+    form_.start(at_, values(y_.get()), values(y_dot_.get()));
     void* ida = ida_.get();
     const auto done = [](int flag) { check(flag == IDA_SUCCESS, "IDA accepts what it is given"); };
     done(IDAInit(ida, residual, 0, y_.get(), y_dot_.get()));
@@ -122,10 +122,9 @@ class Run {
     const Status status = advance();
     count();
     finish(clock_, statistics_);
+    run_.state = at_;
     return status;
   }
-
-  const State& state() const { return at_; }
 
  private:
   using Vector = Owned<N_Vector, N_VDestroy>;
@@ -207,12 +206,12 @@ class Run {
 
   void give_out() {
     clock_.lap(Phase::other);
-    sample(observe_, problem_, at_, statistics_);
+    sample(run_.observe, problem_, at_, statistics_);
     clock_.skip();
   }
 
   // IDA's callbacks: 0 done, 1 not possible here, try a smaller step.
-  static Run& of(void* user) { return *static_cast<Run*>(user); }
+  static Session& of(void* user) { return *static_cast<Session*>(user); }
   static std::span<double> values(N_Vector x) {
     return {N_VGetArrayPointer(x), static_cast<std::size_t>(N_VGetLength(x))};
   }
@@ -223,39 +222,40 @@ class Run {
   }
   static int jacobian(double t, double alpha, N_Vector y, N_Vector y_dot, N_Vector, SUNMatrix, void* user, N_Vector,
                       N_Vector, N_Vector) {
-    Run& run = of(user);
-    run.linear_status_ = run.system_.refresh(t, [&](std::span<const int> slots, std::span<double> matrix) {
-      run.form_.assemble(t, alpha, values(y), values(y_dot), slots, matrix);
+    Session& session = of(user);
+    session.linear_status_ = session.system_.refresh(t, [&](std::span<const int> slots, std::span<double> matrix) {
+      session.form_.assemble(t, alpha, values(y), values(y_dot), slots, matrix);
     });
-    return run.linear_status_.ok() ? 0 : 1;
+    return session.linear_status_.ok() ? 0 : 1;
   }
   static int solve(SUNLinearSolver shell, SUNMatrix, N_Vector x, N_Vector b, double) {
-    Run& run = of(shell->content);
+    Session& session = of(shell->content);
     std::ranges::copy(values(b), values(x).begin());
     double t = 0;
-    IDAGetCurrentTime(run.ida_.get(), &t);
-    run.linear_status_ = run.system_.solve(t, values(x));
-    return run.linear_status_.ok() ? 0 : 1;
+    IDAGetCurrentTime(session.ida_.get(), &t);
+    session.linear_status_ = session.system_.solve(t, values(x));
+    return session.linear_status_.ok() ? 0 : 1;
   }
   // IDA's norm is sqrt(Σ (w y)²/n) over all unknowns; ours is over positions and velocities. Sizes are the largest so
   // far: a tolerance that shrinks wherever a body pauses throws a multistep method back to small steps of order 1.
   static int weights(N_Vector y, N_Vector w, void* user) {
-    Run& run = of(user);
+    Session& session = of(user);
     const std::span<double> out = values(w);
-    component_sizes(run.problem_, run.form_.q(values(y)), run.form_.v(values(y)), run.sizes_now_);
-    const double mean = std::sqrt(static_cast<double>(out.size()) / static_cast<double>(run.sizes_.size()));
+    component_sizes(session.problem_, session.form_.q(values(y)), session.form_.v(values(y)), session.sizes_now_);
+    const double mean = std::sqrt(static_cast<double>(out.size()) / static_cast<double>(session.sizes_.size()));
     std::ranges::fill(out, 0.0);
-    for (std::size_t k = 0; k < run.sizes_.size(); ++k) {
-      run.sizes_[k] = std::max(run.sizes_[k], run.sizes_now_[k]);
-      out[k] = mean / (run.share_ * (run.settings_.absolute_tolerance() + run.settings_.rtol * run.sizes_[k]));
+    for (std::size_t k = 0; k < session.sizes_.size(); ++k) {
+      session.sizes_[k] = std::max(session.sizes_[k], session.sizes_now_[k]);
+      out[k] = mean /
+               (session.share_ * (session.settings_.absolute_tolerance() + session.settings_.rtol * session.sizes_[k]));
     }
     return 0;
   }
   static void keep_silent(int, const char*, const char*, char*, void*) {}
 
+  const Run& run_;
   Problem& problem_;
   const Settings& settings_;
-  const Observer& observe_;
   Statistics& statistics_;
   PhaseClock clock_;
   StabilizedIndex2 form_;
@@ -276,13 +276,10 @@ class Run {
 
 class Ida final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
-             Statistics& statistics) override {
-    Run run(problem, solver, settings, state, observe, statistics);
-    if (Status status = run.prepare(state); !status.ok()) return status;
-    const Status status = run.integrate();
-    state = run.state();
-    return status;
+  Status run(const Run& run) override {
+    Session session(run);
+    if (Status status = session.prepare(); !status.ok()) return status;
+    return session.integrate();
   }
 };
 

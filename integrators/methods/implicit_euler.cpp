@@ -6,60 +6,68 @@
 namespace poinsot {
 namespace {
 
-using Vector = Eigen::VectorXd;
-
-class ImplicitEuler final : public Integrator {
+class ImplicitEuler final : public FixedSteps {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
-             Statistics& statistics) override {
-    const JacobianEntry& policy = jacobians().require(settings.jacobian);
-    const TimeGrid grid(settings);
-    const double h = grid.step();
-    const StepScale scale{1, h, h * h};
-    PhaseClock clock;
-    StepSystem system(problem, solver, policy.matrix, statistics, clock);
-    if (Status status = system.prepare(); !status.ok()) return status;
-    NewtonLoop newton(problem, system, settings, policy.refresh, statistics);
+  explicit ImplicitEuler(const Run& run)
+      : FixedSteps(run),
+        policy_(jacobians().require(settings_.jacobian)),
+        scale_{1, h_, h_ * h_},
+        system_(problem_, run.solver, policy_.matrix, run.statistics, clock_),
+        newton_(problem_, system_, settings_, policy_.refresh, run.statistics),
+        dq_(nv_) {}
 
-    SteppedState x(state);
-    Vector dq(x.nv);
-    const auto stand = [&](double t) -> Problem& {
-      x.stand(problem, t);
-      return problem;
+  Status prepare() override { return system_.prepare(); }
+
+  // The unknowns are a = (r̈, ω̄̇) and λ at t_{n+1}, in x_.z. Numbers are those of the paper's equations for rA; rp has
+  // (40) and (41) in the place of (32) and (34b), reps has (44).
+  Status step(double t) override {
+    const auto advance = [&] {
+      x_.v.noalias() = v_n_ + h_ * x_.z.head(nv_);  // (32a, b)  ṙ = ṙ_n + h r̈,  ω̄ = ω̄_n + h ω̄̇
+      dq_.noalias() = h_ * x_.v;
+      problem_.retract(span(q_n_), span(dq_), span(x_.q));  // (32c, d)  r = r_n + h ṙ,  A = A_n exp(h ω̃̄)
     };
-    const auto step = [&](double t) -> Status {
-      const auto advance = [&] {  // v and q that belong to the acceleration in z
-        x.v.noalias() = x.v_n + h * x.z.head(x.nv);
-        dq.noalias() = h * x.v;
-        problem.retract(span(x.q_n), span(dq), span(x.q));
-      };
-      const auto residual = [&](Vector& r) {
-        advance();
-        stand(t).step_residual(scale, x.a(), x.lambda(), span(r));
-      };
-      const auto matrix = [&]() -> Status {
-        if (policy.refresh != Refresh::before_step) return system.refresh(t, scale, span(dq), x.a(), x.lambda());
-        problem.set_position(t, span(x.q_n));
-        problem.set_velocity(span(x.v_n));
-        return system.refresh(t, scale, {}, x.a(), x.lambda());
-      };
-      const auto correct = [&](Vector& delta) -> Status {
-        problem.lower(span(dq), span(delta, 0, x.nv));
-        x.z += delta;
-        return {};
-      };
-      Status status = newton.solve(t, scale.position, x.q, residual, matrix, correct);
-      if (status.ok()) advance();
-      return status;
+    const auto residual = [&](Vector& g) {
+      advance();
+      stand_at(t);
+      problem_.step_residual(scale_, x_.a(), x_.lambda(), span(g));  // (34b)  g = (M a + Gᵀλ − Q, Φ/h²)
     };
-    return fixed_steps(x, grid, state, observe, statistics, clock, step, stand);
+    const auto matrix = [&]() -> Status {
+      if (policy_.refresh == Refresh::before_step) return matrix_before_step(t);
+      return system_.refresh(t, scale_, span(dq_), x_.a(), x_.lambda());  // (38b, c)  ∂g/∂(a, λ), made exact by T(hω̄)
+    };
+    const auto correct = [&](Vector& delta) -> Status {
+      problem_.lower(span(dq_), span(delta, 0, nv_));  // T(hω̄)⁻¹, which (37) approximates by 1
+      x_.z += delta;                                   // (35)  (a, λ) ← (a, λ) + δ
+      return {};
+    };
+    Status status = newton_.solve(t, scale_.position, x_.q, residual, matrix, correct);  // (38d) until (46)
+    if (status.ok()) advance();
+    return status;
   }
+
+ private:
+  void stand_at(double t) {
+    problem_.set_position(t, span(x_.q));
+    problem_.set_velocity(span(x_.v));
+  }
+  // The original study's: where the last step ended, with the rows of this one.
+  Status matrix_before_step(double t) {
+    problem_.set_position(t, span(q_n_));
+    problem_.set_velocity(span(v_n_));
+    return system_.refresh(t, scale_, {}, x_.a(), x_.lambda());
+  }
+
+  const JacobianEntry& policy_;
+  const StepScale scale_;
+  StepSystem system_;
+  NewtonLoop newton_;
+  Vector dq_;  // the variation that leads from q_n to q
 };
 
 }  // namespace
 
 std::unique_ptr<Integrator> make_implicit_euler() {
-  return std::make_unique<ImplicitEuler>();
+  return std::make_unique<FixedStepIntegrator<ImplicitEuler>>();
 }
 
 }  // namespace poinsot

@@ -22,14 +22,14 @@ class Method : public RadauStepper {
 
 class Radau5 final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
-             Statistics& statistics) override {
+  Status run(const Run& run) override {
     PhaseClock clock;
-    Method method(problem, solver, settings.linear_solver, settings.rtol, settings.absolute_tolerance(), statistics,
-                  clock);
+    const Settings& settings = run.settings;
+    Method method(run.problem, run.solver, settings.linear_solver, settings.rtol, settings.absolute_tolerance(),
+                  run.statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
-    method.start(state);
-    return controlled_run(method, kRule, problem, settings, state, observe, statistics, clock);
+    method.start(run.state);
+    return controlled_run(method, kRule, run, clock);
   }
 };
 

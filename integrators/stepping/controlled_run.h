@@ -63,20 +63,19 @@ Status controlled_steps(Method& method, const StepRule& rule, const Settings& se
   return {};
 }
 
-// The method stands at the consistent `state`.
+// The method stands at the run's state.
 template <class Method>
-Status controlled_run(Method& method, const StepRule& rule, Problem& problem, const Settings& settings, State& state,
-                      const Observer& observe, Statistics& statistics, PhaseClock& clock) {
+Status controlled_run(Method& method, const StepRule& rule, const Run& run, PhaseClock& clock) {
   const auto give_out = [&](const State& at) {
     clock.lap(Phase::other);
-    sample(observe, problem, at, statistics);
+    sample(run.observe, run.problem, at, run.statistics);
     clock.skip();
   };
   clock.start();
   give_out(method.state());
-  const Status status = controlled_steps(method, rule, settings, give_out, statistics);
-  finish(clock, statistics);
-  state = method.state();
+  const Status status = controlled_steps(method, rule, run.settings, give_out, run.statistics);
+  finish(clock, run.statistics);
+  run.state = method.state();
   return status;
 }
 

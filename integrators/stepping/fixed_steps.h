@@ -1,5 +1,8 @@
-// The frame of methods of fixed step whose state is (q, v) with the (a, λ) of the last step: steps on the time grid,
-// the discrete state brought up to date after each, samples, and what is left behind at the end or after a failure.
+// The frame of methods of fixed step: steps on the time grid, the discrete state brought up to date after each,
+// samples, and what is left behind at the end or after a failure.
+//
+// A method derives from FixedSteps, says what its step is, and overrides what else it does differently. March calls
+//   prepare, begin,   then for every t_n:   [resume] step [stand [accept] [complete, sample]]
 #pragma once
 
 #include <Eigen/Core>
@@ -10,55 +13,57 @@
 
 namespace poinsot {
 
-struct SteppedState : State {
+class FixedSteps {
+ public:
+  explicit FixedSteps(const Run& run);
+  virtual ~FixedSteps() = default;
+
+  Status march();
+
+ protected:
   using Vector = Eigen::VectorXd;
 
-  explicit SteppedState(const State& state) : State(state), q_n(q), v_n(v), nv(v.size()), nc(z.size() - nv) {}
+  // Analyses patterns; before the clock starts.
+  virtual Status prepare() = 0;
+  // The start, x_ at 0, is given out, and the clock starts.
+  virtual Status begin();
+  // From (q_n_, v_n_) at x_.t to x_ at t. Where it fails, q and v become what they were.
+  virtual Status step(double t) = 0;
+  // The problem that stands at x_.
+  virtual Problem& stand();
+  // Brings the discrete state up to date; `problem` stands at x_ before and after.
+  virtual Status accept(Problem& problem);
+  // Before the step that follows an accept() which has rewritten the coordinates.
+  virtual Status resume() { return {}; }
+  // Finds the (a, λ) of a sample, where steps do not.
+  virtual Status complete() { return {}; }
 
-  void stand(Problem& problem, double at) const {
-    problem.set_position(at, span(q));
-    problem.set_velocity(span(v));
+  void place(Problem& problem) const {
+    problem.set_position(x_.t, span(x_.q));
+    problem.set_velocity(span(x_.v));
   }
+  // Completes and gives out x_, where the problem stands; the time it takes outside is left out.
+  Status give_out(const Problem& problem);
 
-  Vector q_n, v_n;  // where the step began
-  Eigen::Index nv, nc;
+  const Run& run_;
+  Problem& problem_;
+  const Settings& settings_;
+  PhaseClock clock_;
+  const TimeGrid grid_;
+  const double h_;
+  const Eigen::Index nv_, nc_;
+  State x_;
+  Vector q_n_, v_n_;  // where the step began
+
+ private:
+  bool rewritten_ = false;
 };
 
-// `x` is consistent at 0 and ends in `state`.
-//   step(t)   from x.q_n and x.v_n to x.q, x.v and x.z at t: Status; after a failure the last state stays
-//   stand(t)  returns the problem, which stands at x at time t then
-template <class Step, class Stand>
-Status fixed_steps(SteppedState& x, const TimeGrid& grid, State& state, const Observer& observe, Statistics& statistics,
-                   PhaseClock& clock, Step&& step, Stand&& stand) {
-  const Problem& start = stand(0);
-  const bool discrete = start.has_discrete_state();
-  sample(observe, start, x, statistics);
-  clock.start();
-  Status status;
-  for (std::int64_t n = 1; n <= grid.steps; ++n) {
-    const double t = grid.time(n);
-    x.q_n.swap(x.q);
-    x.v_n.swap(x.v);
-    if (status = step(t); !status.ok()) {
-      x.q.swap(x.q_n);
-      x.v.swap(x.v_n);
-      break;
-    }
-    x.t = t;
-    ++statistics.steps;
-    if (!discrete && !grid.sampled(n)) continue;
-    Problem& problem = stand(t);
-    if (discrete && problem.accept(t, span(x.q), span(x.v), x.a())) x.stand(problem, t);
-    if (grid.sampled(n)) {
-      clock.lap(Phase::other);
-      sample(observe, problem, x, statistics);
-      clock.skip();
-    }
-  }
-  finish(clock, statistics);
-  if (!status.ok()) x.z = state.z;  // not what Newton's method left
-  state = x;
-  return status;
-}
+// An integrator each of whose runs is an object of type Method, made from the run.
+template <class Method>
+class FixedStepIntegrator final : public Integrator {
+ public:
+  Status run(const Run& run) override { return Method(run).march(); }
+};
 
 }  // namespace poinsot

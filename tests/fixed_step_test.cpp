@@ -2,19 +2,19 @@
 #include <gmock/gmock.h>
 
 #include "core/input_error.h"
-#include "tests/support/order_cases.h"
+#include "tests/support/fixed_step_cases.h"
 
 namespace poinsot::test {
 namespace {
 
 using ::testing::HasSubstr;
 
-class Geometric : public ::testing::TestWithParam<std::string> {};  // by formulation
+class FixedStep : public ::testing::TestWithParam<std::string> {};  // by formulation
 
-INSTANTIATE_TEST_SUITE_P(Formulations, Geometric, ::testing::ValuesIn(formulation_names()),
+INSTANTIATE_TEST_SUITE_P(Formulations, FixedStep, ::testing::ValuesIn(formulation_names()),
                          [](const auto& test) { return test.param; });
 
-TEST_P(Geometric, ConstraintsAreKept) {
+TEST_P(FixedStep, ConstraintsAreKept) {
   for (const Case& c : cases(GetParam())) {
     for (const Method& method : kSecondOrder) {
       const Recorded r = run(c.scene, settings_of(method.name, GetParam(), c.step, c.end, 0));
@@ -49,7 +49,7 @@ double way_back(const Scene& scene, const std::string& integrator, const std::st
   return std::max({d.r, d.A, d.rd, d.w});
 }
 
-TEST_P(Geometric, RattleIsSymmetric) {
+TEST_P(FixedStep, RattleIsSymmetric) {
   const Scene pendulum = turning("double_pendulum", {0, 0, 1}), top = scene_of("heavy_top");
   EXPECT_LT(way_back(pendulum, "rattle", GetParam(), 0.01, 1), 1e-11);
   if (GetParam() != "reps") {  // the way back starts in another chart
@@ -58,7 +58,7 @@ TEST_P(Geometric, RattleIsSymmetric) {
   EXPECT_GT(way_back(pendulum, "generalized_alpha_i2", GetParam(), 0.01, 1), 1e-6);  // the measure sees what is not
 }
 
-TEST_P(Geometric, StepsCostOneFactorization) {
+TEST_P(FixedStep, StepsCostOneFactorization) {
   const Scene scene = scene_of("double_pendulum");
   for (const auto& [integrator, more] : {std::pair{"rattle", 1}, std::pair{"half_implicit", 0}}) {
     const Recorded r = run(scene, settings_of(integrator, GetParam(), 0.01, 1, 1));
@@ -67,7 +67,7 @@ TEST_P(Geometric, StepsCostOneFactorization) {
   }
 }
 
-TEST_P(Geometric, FailureNamesTimeAndPlaceAndKeepsWhatWasComputed) {
+TEST_P(FixedStep, FailureNamesTimeAndPlaceAndKeepsWhatWasComputed) {
   Scene scene = scene_of("double_pendulum");
   for (const std::string integrator : {"generalized_alpha", "generalized_alpha_i2", "rattle", "half_implicit"}) {
     Settings settings = settings_of(integrator, GetParam(), 0.01, 1, 0);
@@ -81,7 +81,7 @@ TEST_P(Geometric, FailureNamesTimeAndPlaceAndKeepsWhatWasComputed) {
 }
 
 // What stabilized index 2 is for: rounding of Φ over h² reaches the multipliers of index 3, not its own.
-TEST_P(Geometric, SmallStepsSpareTheMultipliersOfStabilizedIndex2) {
+TEST_P(FixedStep, SmallStepsSpareTheMultipliersOfStabilizedIndex2) {
   const Scene scene = turning("double_pendulum", {0, 0, 1});
   const double h = 5e-6, end = 0.005;
   const std::vector<Snapshot> exact = reference(scene, h, end, end / 10);
@@ -93,7 +93,7 @@ TEST_P(Geometric, SmallStepsSpareTheMultipliersOfStabilizedIndex2) {
 }
 
 // A spring far too stiff for the step, out of rest: the start must not take its v̈ for the motion's.
-TEST(GeometricStart, UnresolvedSpringStaysBounded) {
+TEST(FixedStepStart, UnresolvedSpringStaysBounded) {
   Scene scene = parse_scene(R"json({"scene": 1, "name": "stiff",
     "bodies": [{"name": "ball", "mass": 1, "inertia": [1, 1, 1], "position": ["1 + 1e-7", 0, 0]}],
     "forces": [{"type": "spring", "bodies": ["ground", "ball"], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "stiffness": 1e10, "damping": 1, "length": 1}]})json",

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "core/input_error.h"
-#include "tests/support/order_cases.h"
+#include "tests/support/fixed_step_cases.h"
 
 namespace poinsot::test {
 namespace {
@@ -32,7 +32,7 @@ double trend(const std::vector<double>& e) {
   return sxy / sxx * (n - 1);
 }
 
-TEST(GeometricEnergy, RattleIsBoundedWithoutTrend) {
+TEST(FixedStepEnergy, RattleIsBoundedWithoutTrend) {
   const Scene scene = scene_of("double_pendulum");
   for (const char* formulation : {"rA", "rp"}) {
     const std::vector<double> coarse = energies(scene, settings_of("rattle", formulation, 0.01, 1000, 0.05));
@@ -48,7 +48,7 @@ TEST(GeometricEnergy, RattleIsBoundedWithoutTrend) {
 }
 
 // A body without forces: the angular momentum in space and, with the error of the method, the energy.
-TEST(GeometricEnergy, RattleKeepsAngularMomentum) {
+TEST(FixedStepEnergy, RattleKeepsAngularMomentum) {
   const Scene scene = scene_of("free_body");
   const auto drift = [&](const std::string& integrator, const std::string& formulation) {
     std::vector<Vector3> momentum;
@@ -69,7 +69,7 @@ TEST(GeometricEnergy, RattleKeepsAngularMomentum) {
   EXPECT_LT(std::abs(trend(energy)), 0.05 * largest(energy));
 }
 
-TEST(GeometricSettings, SpectralRadiusDamps) {
+TEST(FixedStepSettings, SpectralRadiusDamps) {
   const Scene scene = scene_of("double_pendulum");
   const auto lost = [&](double radius) {
     Settings s = settings_of("generalized_alpha_i2", "rA", 0.01, 20, 0.05);

@@ -1,7 +1,7 @@
 // Integrators of fixed step: orders of every quantity, in every step and over changes of chart.
 #include <map>
 
-#include "tests/support/order_cases.h"
+#include "tests/support/fixed_step_cases.h"
 
 namespace poinsot::test {
 namespace {
@@ -40,12 +40,12 @@ Convergence convergence(const Case& c, const Method& method, const std::string& 
   return result;
 }
 
-class Geometric : public ::testing::TestWithParam<std::string> {};  // by formulation
+class FixedStep : public ::testing::TestWithParam<std::string> {};  // by formulation
 
-INSTANTIATE_TEST_SUITE_P(Formulations, Geometric, ::testing::ValuesIn(formulation_names()),
+INSTANTIATE_TEST_SUITE_P(Formulations, FixedStep, ::testing::ValuesIn(formulation_names()),
                          [](const auto& test) { return test.param; });
 
-TEST_P(Geometric, OrderIsTheTheoreticalOneInEveryQuantity) {
+TEST_P(FixedStep, OrderIsTheTheoreticalOneInEveryQuantity) {
   const std::vector<Method> methods = fixed_step_methods();
   std::map<std::string, std::array<int, kQuantities.size()>> seen;
   for (const Case& c : cases(GetParam())) {
@@ -69,7 +69,7 @@ TEST_P(Geometric, OrderIsTheTheoreticalOneInEveryQuantity) {
 // The first steps are as good as all others: errors there are at most a few times those of the second half, which are
 // of order two, whatever the step. A start that loses an order stands out by 1/h, a hundredfold. (Half-implicit Euler
 // has an error of order one in the first step, as its header says.)
-TEST_P(Geometric, NoOrderReductionInTheFirstSteps) {
+TEST_P(FixedStep, NoOrderReductionInTheFirstSteps) {
   for (const Case& c : cases(GetParam())) {
     for (const double h : {c.step / 2, c.step / 8}) {
       const std::vector<Snapshot> exact = reference(c.scene, c.step, c.end, h);
@@ -104,7 +104,7 @@ int charts(const Case& c) {
 }
 
 // A change of chart (reps) is a new start: no quantity loses its order over a run with one, at any step of it.
-TEST(GeometricCharts, ChangeOfChartKeepsTheOrder) {
+TEST(FixedStepCharts, ChangeOfChartKeepsTheOrder) {
   const Case top{"heavy_top", scene_of("heavy_top"), 0.5, 5e-4};
   ASSERT_GE(charts(top), 2);
   std::vector<double> steps;
@@ -126,7 +126,7 @@ TEST(GeometricCharts, ChangeOfChartKeepsTheOrder) {
 }
 
 // Nor does one of the first order.
-TEST(GeometricCharts, ChangeOfChartKeepsTheFirstOrder) {
+TEST(FixedStepCharts, ChangeOfChartKeepsTheFirstOrder) {
   const Case top{"heavy_top", scene_of("heavy_top"), 0.4, 2e-4};
   ASSERT_GE(charts(top), 2);
   for (const Method& method : fixed_step_methods()) {
@@ -139,7 +139,7 @@ TEST(GeometricCharts, ChangeOfChartKeepsTheFirstOrder) {
 }
 
 // Velocity rows: the knife edge has its motion in closed form, x = c sin²(wt)/(2w²).
-TEST(GeometricRows, VelocityRowsAreSecondOrder) {
+TEST(FixedStepRows, VelocityRowsAreSecondOrder) {
   const double c = 9.81 * std::sin(std::acos(-1) / 6), w = 2, t = 0.8;
   const double x = c * std::pow(std::sin(w * t), 2) / (2 * w * w);
   for (const Method& method : kSecondOrder) {
