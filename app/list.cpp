@@ -19,10 +19,15 @@ void print_table(const char* title, const Table& table) {
   fmt::print("{}\n", title);
   for (const auto& entry : table) {
     fmt::print("  {:<{}}  {}\n", entry.name, width, entry.about);
-    if constexpr (requires { entry.refuses; }) {
-      for (const auto& refusal : entry.refuses) {
-        fmt::print("  {:<{}}  refuses {}: {}\n", "", width, refusal.formulation, refusal.why);
-      }
+    if constexpr (requires { entry.parameters; }) {
+      for (const MethodParameter& p : entry.parameters)
+        fmt::print("  {:<{}}  {}, {} to {}, default {}: {}\n", "", width, p.name, p.least, p.most, p.by_default,
+                   p.about);
+    }
+    if constexpr (requires { entry.needs_vector_space; }) {
+      for (const FormulationEntry& formulation : formulations())
+        if (const auto refusal = refusal_of(entry, formulation.name))
+          fmt::print("  {:<{}}  refuses {}: {}\n", "", width, refusal->formulation, refusal->why);
     }
   }
 }

@@ -52,7 +52,7 @@ void JsonValue::expected(std::string_view allowed) const {
   fail(fmt::format("found {}, expected {}", describe(*value_), allowed));
 }
 
-void JsonValue::keys(std::string_view owner, std::initializer_list<std::string_view> allowed) const {
+void JsonValue::keys(std::string_view owner, std::span<const std::string_view> allowed) const {
   if (!value_->is_object()) expected(fmt::format("{} as an object", owner));
   for (const auto& [key, value] : value_->items()) {
     if (std::ranges::find(allowed, key) == allowed.end()) {

@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -25,7 +26,10 @@ class JsonValue {
 
   // Objects. keys() comes first: it refuses what is not an object and every key not listed. `owner` is whose keys they
   // are: "a body", "a DP1".
-  void keys(std::string_view owner, std::initializer_list<std::string_view> allowed) const;
+  void keys(std::string_view owner, std::span<const std::string_view> allowed) const;
+  void keys(std::string_view owner, std::initializer_list<std::string_view> allowed) const {
+    keys(owner, std::span(allowed.begin(), allowed.size()));
+  }
   JsonValue required(std::string_view key) const&;
   std::optional<JsonValue> optional(std::string_view key) const&;
   JsonValue required(std::string_view key) const&& = delete;

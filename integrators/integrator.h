@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -63,10 +65,17 @@ class Integrator {
   virtual Status run(const Run& run) = 0;
 };
 
-// A formulation an integrator cannot be used with, and why.
-struct Refusal {
-  std::string_view formulation;
-  std::string_view why;  // a clause: "it needs a vector space of coordinates"
+// A number that means something to one method or to some: a key of the configuration like the others.
+struct MethodParameter {
+  std::string_view name;
+  std::string_view about;  // one line
+  double by_default;
+  double least, most;
+
+  double of(const Settings& settings) const {
+    const auto given = settings.parameters.find(name);
+    return given == settings.parameters.end() ? by_default : given->second;
+  }
 };
 
 struct IntegratorEntry {
@@ -75,10 +84,19 @@ struct IntegratorEntry {
   Analysis analysis;
   int order;  // in the step, of positions, velocities, accelerations and multipliers alike; 0: not a matter of steps
   std::unique_ptr<Integrator> (*make)();
-  std::span<const Refusal> refuses = {};
-  bool controls_error = false;  // chooses its steps by rtol and atol; `step` and `tolerance` mean nothing to it
+  bool controls_error = false;      // chooses its steps by rtol and atol; `step` and `tolerance` mean nothing to it
+  bool needs_vector_space = false;  // of coordinates with their rates as velocities: CoordinateSpace::vector_space
+  std::span<const MethodParameter> parameters = {};
 };
 
 Registry<IntegratorEntry>& integrators();
+
+// A formulation an integrator cannot be used with, and why.
+struct Refusal {
+  std::string_view formulation;
+  std::string why;  // a clause: "it needs a vector space of coordinates ..."
+};
+// Nothing where the integrator takes the formulation.
+std::optional<Refusal> refusal_of(const IntegratorEntry& integrator, std::string_view formulation);
 
 }  // namespace poinsot

@@ -1,7 +1,9 @@
 // How to solve: the solver configuration, one field per key of the configuration file and of the command line.
 #pragma once
 
+#include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -26,16 +28,16 @@ struct Settings {
   std::string integrator = "implicit_euler";  // of dynamics
   std::string linear_solver = "auto";
   std::string jacobian = "exact";
-  double step = 1e-3;            // s
-  double end = 1;                // s; the last step lands on it exactly
-  double tolerance = 1e-3;       // Newton: 2-norm of the correction of (a, λ), or of the position in kinematics
-  double spectral_radius = 0.8;  // of generalized-α at infinity, 0 to 1
-  double rtol = 1e-8;            // integrators with error control
-  std::optional<double> atol;    // rtol/100 where it is not given
+  double step = 1e-3;          // s
+  double end = 1;              // s; the last step lands on it exactly
+  double tolerance = 1e-3;     // Newton: 2-norm of the correction of (a, λ), or of the position in kinematics
+  double rtol = 1e-8;          // integrators with error control
+  std::optional<double> atol;  // rtol/100 where it is not given
   int max_iterations = 20;
   double every = 0;  // s between outputs; 0: every step
   Assembly assembly = Assembly::small;
   bool reactions = false;  // kinematics: find the multipliers, too (inverse dynamics)
+  std::map<std::string, double, std::less<>> parameters = {};  // that are given of those the integrator declares
 
   double absolute_tolerance() const { return atol.value_or(rtol / 100); }
 };

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <utility>
 
 #include "core/expression.h"
 #include "core/input_error.h"
@@ -44,8 +43,6 @@ const std::array kEntries{
     SettingEntry{"step", "step size h, s", &Settings::step, nullptr, false},
     SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false, kLeastEnd},
     SettingEntry{"tolerance", "Newton: 2-norm of the correction", &Settings::tolerance, nullptr, false},
-    SettingEntry{"spectral_radius", "generalized_alpha: spectral radius at infinity, at most 1",
-                 &Settings::spectral_radius, nullptr, true, 0, 1},
     SettingEntry{"rtol", "relative tolerance of integrators with error control", &Settings::rtol, nullptr, false,
                  kLeastRtol},
     SettingEntry{"atol", "absolute tolerance of integrators with error control", &Settings::atol, nullptr, false},
@@ -54,6 +51,28 @@ const std::array kEntries{
     SettingEntry{"assemble", "project an initial state that violates the constraints", &Settings::assembly, nullptr,
                  false},
 };
+
+// Names of the integrators that declare a parameter of this name.
+std::vector<std::string_view> owners(std::string_view parameter) {
+  std::vector<std::string_view> names;
+  for (const IntegratorEntry& entry : integrators())
+    if (std::ranges::find(entry.parameters, parameter, &MethodParameter::name) != entry.parameters.end())
+      names.push_back(entry.name);
+  return names;
+}
+
+std::vector<SettingEntry> make_entries() {
+  std::vector<SettingEntry> entries(std::begin(kEntries), std::end(kEntries));
+  for (const IntegratorEntry& integrator : integrators()) {
+    for (const MethodParameter& parameter : integrator.parameters) {
+      if (std::ranges::find(entries, parameter.name, &SettingEntry::key) != entries.end()) continue;
+      entries.push_back({parameter.name,
+                         fmt::format("{}: {}", fmt::join(owners(parameter.name), ", "), parameter.about), &parameter,
+                         nullptr, true, parameter.least, parameter.most});
+    }
+  }
+  return entries;
+}
 
 // Where a setting was found, and how to speak of it when it is wrong.
 struct Source {
@@ -73,14 +92,13 @@ std::string one_of(const SettingEntry& entry) {
 
 std::string allowed_number(const SettingEntry& entry) {
   if (std::holds_alternative<int Settings::*>(entry.member)) return "a whole number, at least 1";
+  if (std::isfinite(entry.most)) return fmt::format("a number from {:g} to {:g}", entry.least, entry.most);
   if (entry.least > 0) return fmt::format("a number, at least {:.2g}", entry.least);
-  if (std::isfinite(entry.most)) return fmt::format("a number from 0 to {:g}", entry.most);
   return entry.zero_allowed ? "a number, at least 0" : "a number greater than 0";
 }
 
 bool in_range(const SettingEntry& entry, double value) {
-  return std::isfinite(value) && value >= entry.least && value <= entry.most &&
-         (value > 0 || (entry.zero_allowed && value == 0));
+  return std::isfinite(value) && value >= entry.least && value <= entry.most && (value != 0 || entry.zero_allowed);
 }
 
 void set_number(const SettingEntry& entry, double value, const Source& source, Settings& settings) {
@@ -89,6 +107,8 @@ void set_number(const SettingEntry& entry, double value, const Source& source, S
     settings.*(*number) = value;
   } else if (const auto* optional = std::get_if<std::optional<double> Settings::*>(&entry.member)) {
     settings.*(*optional) = value;
+  } else if (std::holds_alternative<const MethodParameter*>(entry.member)) {
+    settings.parameters.insert_or_assign(std::string(entry.key), value);
   } else {
     if (value != std::floor(value) || value > 1e9) source.expected(allowed_number(entry));
     settings.*std::get<int Settings::*>(entry.member) = static_cast<int>(value);
@@ -109,21 +129,32 @@ bool chooses_steps(const Settings& settings) {
   return settings.analysis == Analysis::dynamics && integrator && integrator->controls_error;
 }
 
-// A type that holds the keys of all entries: the reader takes them as a list.
-template <std::size_t... k>
-void refuse_unknown_keys(const JsonValue& root, std::index_sequence<k...>) {
-  root.keys("a solver configuration", {kEntries[k].key...});
+bool is_parameter(std::string_view name, const Settings& settings) {
+  const std::vector<std::string_view> of = owners(name);
+  return settings.analysis == Analysis::dynamics && std::ranges::find(of, settings.integrator) != of.end();
+}
+
+void refuse_parameters_of_others(const Settings& settings) {
+  for (const auto& [name, value] : settings.parameters) {
+    if (is_parameter(name, settings)) continue;
+    const std::vector<std::string_view> of = owners(name);
+    if (of.empty()) throw InputError(fmt::format("{}: no integrator has a parameter of this name", name));
+    const std::string subject =
+        settings.analysis == Analysis::kinematics ? "kinematics" : fmt::format("integrator '{}'", settings.integrator);
+    throw InputError(fmt::format("{}: no parameter of {}; it is one of {}", name, subject, fmt::join(of, ", ")));
+  }
 }
 
 }  // namespace
 
 std::span<const SettingEntry> setting_entries() {
-  return kEntries;
+  static const std::vector<SettingEntry> entries = make_entries();
+  return entries;
 }
 
 const SettingEntry* find_setting(std::string_view key) {
-  const auto entry = std::find_if(kEntries.begin(), kEntries.end(), [&](const auto& e) { return e.key == key; });
-  return entry == kEntries.end() ? nullptr : &*entry;
+  const auto entry = std::ranges::find(setting_entries(), key, &SettingEntry::key);
+  return entry == setting_entries().end() ? nullptr : &*entry;
 }
 
 std::string option_name(const SettingEntry& entry) {
@@ -139,6 +170,8 @@ std::string value_text(const SettingEntry& entry, const Settings& settings) {
   if (std::holds_alternative<std::optional<double> Settings::*>(entry.member))
     return settings.atol ? fmt::format("{}", *settings.atol) : "rtol/100";
   if (const auto* count = std::get_if<int Settings::*>(&entry.member)) return fmt::format("{}", settings.*(*count));
+  if (const auto* parameter = std::get_if<const MethodParameter*>(&entry.member))
+    return fmt::format("{}", (*parameter)->of(settings));
   if (entry.names) return entry.names()[static_cast<std::size_t>(settings.analysis)];
   switch (settings.assembly) {
     case Assembly::always:
@@ -152,7 +185,8 @@ std::string value_text(const SettingEntry& entry, const Settings& settings) {
 }
 
 void check_numbers(const Settings& settings) {
-  for (const SettingEntry& entry : kEntries) {
+  refuse_parameters_of_others(settings);
+  for (const SettingEntry& entry : setting_entries()) {
     double value = 0;
     if (const auto* number = std::get_if<double Settings::*>(&entry.member))
       value = settings.*(*number);
@@ -160,6 +194,8 @@ void check_numbers(const Settings& settings) {
       value = settings.absolute_tolerance();
     else if (const auto* count = std::get_if<int Settings::*>(&entry.member))
       value = settings.*(*count);
+    else if (const auto* parameter = std::get_if<const MethodParameter*>(&entry.member))
+      value = (*parameter)->of(settings);
     else
       continue;
     if (!in_range(entry, value))
@@ -206,8 +242,10 @@ void read_settings(const std::filesystem::path& file, Settings& settings) {
 void parse_settings(std::string_view text, std::string_view file, Settings& settings) {
   const JsonDocument document(text, file);
   const JsonValue root = document.root();
-  refuse_unknown_keys(root, std::make_index_sequence<kEntries.size()>{});
-  for (const SettingEntry& entry : kEntries) {
+  std::vector<std::string_view> keys;
+  for (const SettingEntry& entry : setting_entries()) keys.push_back(entry.key);
+  root.keys("a solver configuration", keys);
+  for (const SettingEntry& entry : setting_entries()) {
     const std::optional<JsonValue> value = root.optional(entry.key);
     if (!value) continue;
     const Source source{&*value, nullptr, {}};
@@ -222,14 +260,16 @@ void parse_settings(std::string_view text, std::string_view file, Settings& sett
 
 std::string to_json(const Settings& settings) {
   nlohmann::ordered_json json;
-  for (const SettingEntry& entry : kEntries) {
+  for (const SettingEntry& entry : setting_entries()) {
     if (const auto* number = std::get_if<double Settings::*>(&entry.member))
       json[entry.key] = settings.*(*number);
     else if (std::holds_alternative<std::optional<double> Settings::*>(entry.member))
       json[entry.key] = settings.absolute_tolerance();
     else if (const auto* count = std::get_if<int Settings::*>(&entry.member))
       json[entry.key] = settings.*(*count);
-    else if (entry.names)
+    else if (const auto* parameter = std::get_if<const MethodParameter*>(&entry.member)) {
+      if (is_parameter(entry.key, settings)) json[entry.key] = (*parameter)->of(settings);
+    } else if (entry.names)
       json[entry.key] = value_text(entry, settings);
     else if (settings.assembly != Assembly::small)  // the default is what is done where the key is left out
       json[entry.key] = settings.assembly == Assembly::always;

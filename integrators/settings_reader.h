@@ -1,7 +1,8 @@
 // Reads the solver configuration: a strict JSON file with comments, or single values as the command line gives them.
 //
 // One table holds every key with what it means and what it may be; the file, the command line, the help texts, the
-// messages and the run record are made from it. Numbers may be written as constant expressions ("1/1000", "2*pi").
+// messages and the run record are made from it. Parameters of methods are in it as the integrators declare them.
+// Numbers may be written as constant expressions ("1/1000", "2*pi").
 #pragma once
 
 #include <filesystem>
@@ -13,15 +14,15 @@
 #include <variant>
 #include <vector>
 
-#include "integrators/settings.h"
+#include "integrators/integrator.h"
 
 namespace poinsot {
 
 struct SettingEntry {
-  std::string_view key;    // in the file; on the command line with dashes, "--linear-solver"
-  std::string_view about;  // one line, with the unit
+  std::string_view key;  // in the file; on the command line with dashes, "--linear-solver"
+  std::string about;     // one line, with the unit
   std::variant<Analysis Settings::*, std::string Settings::*, double Settings::*, std::optional<double> Settings::*,
-               int Settings::*, Assembly Settings::*>
+               int Settings::*, Assembly Settings::*, const MethodParameter*>
       member;
   std::vector<std::string> (*names)();  // what a key with a name may be; nullptr for numbers and switches
   bool zero_allowed;                    // numbers: at least 0 instead of greater than 0
@@ -35,7 +36,8 @@ std::string option_name(const SettingEntry& entry);      // "--linear-solver"
 // "rA", "0.001": a setting as it would be written in the file, without quotes.
 std::string value_text(const SettingEntry& entry, const Settings& settings);
 
-// Throws InputError that begins with the key of the first number that is not allowed.
+// Throws InputError that begins with the key of the first number that is not allowed, or is a parameter of other
+// integrators.
 void check_numbers(const Settings& settings);
 // The part of it that is about step, end and every together: no more steps and output times than can be counted.
 void check_counts(const Settings& settings);
@@ -47,7 +49,7 @@ void set_setting(const SettingEntry& entry, std::string_view text, Settings& set
 void read_settings(const std::filesystem::path& file, Settings& settings);
 void parse_settings(std::string_view text, std::string_view file, Settings& settings);
 
-// The settings as a configuration file, every key of it.
+// The settings as a configuration file, every key of it that means something to the integrator.
 std::string to_json(const Settings& settings);
 
 // Makes t_n = n step, n = 0..N, land on `end` exactly: where `end` is no multiple of `step`, the step is shortened to

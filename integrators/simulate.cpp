@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/check.h"
@@ -19,16 +20,18 @@ namespace poinsot {
 namespace {
 
 const IntegratorEntry& integrator_of(const Settings& settings) {
-  if (settings.analysis == Analysis::kinematics) return integrators().require("kinematics");
+  if (settings.analysis == Analysis::kinematics) {
+    const auto of_kinematics = std::ranges::find(integrators(), Analysis::kinematics, &IntegratorEntry::analysis);
+    check(of_kinematics != integrators().end(), "there is an integrator of kinematics");
+    return *of_kinematics;
+  }
   const IntegratorEntry& entry = integrators().require(settings.integrator);
   if (entry.analysis != Analysis::dynamics) {
     throw InputError(fmt::format("integrator '{}' is not one of dynamics", entry.name));
   }
-  for (const Refusal& refusal : entry.refuses) {
-    if (refusal.formulation == settings.formulation) {
-      throw InputError(
-          fmt::format("integrator '{}' refuses formulation '{}': {}", entry.name, refusal.formulation, refusal.why));
-    }
+  if (const auto refusal = refusal_of(entry, settings.formulation)) {
+    throw InputError(
+        fmt::format("integrator '{}' refuses formulation '{}': {}", entry.name, refusal->formulation, refusal->why));
   }
   return entry;
 }

@@ -66,10 +66,19 @@ TEST_F(Help, ListHasALineForEveryEntryOfEveryRegistry) {
   listed("linear solvers", linear_solvers());
   listed("jacobians", jacobians());
   for (const IntegratorEntry& entry : integrators()) {
-    for (const Refusal& refusal : entry.refuses) {
+    for (const MethodParameter& parameter : entry.parameters) {
       ++expected;
       EXPECT_TRUE(std::any_of(list.begin(), list.end(), [&](const std::string& line) {
-        return line.ends_with(fmt::format("refuses {}: {}", refusal.formulation, refusal.why));
+        return line.ends_with(fmt::format("{}, {} to {}, default {}: {}", parameter.name, parameter.least,
+                                          parameter.most, parameter.by_default, parameter.about));
+      })) << entry.name;
+    }
+    for (const FormulationEntry& formulation : formulations()) {
+      const auto refusal = refusal_of(entry, formulation.name);
+      if (!refusal) continue;
+      ++expected;
+      EXPECT_TRUE(std::any_of(list.begin(), list.end(), [&](const std::string& line) {
+        return line.ends_with(fmt::format("refuses {}: {}", formulation.name, refusal->why));
       })) << entry.name;
     }
   }

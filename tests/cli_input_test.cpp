@@ -84,6 +84,9 @@ TEST_F(WrongInput, CommandLineValues) {
   for (const char* radius : {"3", "-1", "1.001"})
     refused("--spectral-radius", radius,
             fmt::format("--spectral-radius: found \"{}\", expected a number from 0 to 1", radius));
+  refused("--spectral-radius", "0.5",
+          "spectral_radius: no parameter of integrator 'implicit_euler'; it is one of generalized_alpha, "
+          "generalized_alpha_i2");
   refused("--every", "-1", "--every: found \"-1\", expected a number, at least 0");
   refused("--max-iterations", "2.5", "--max-iterations: found \"2.5\", expected a whole number, at least 1");
   for (const char* key : {"analysis", "formulation", "integrator", "linear_solver", "jacobian"}) {
@@ -112,6 +115,12 @@ TEST_F(WrongInput, Configuration) {
                                "poinsot: config.json: /rtol: found 1e-15, expected a number, at least 2.2e-15");
   expect_configuration_refused(R"({"spectral_radius": 3})",
                                "poinsot: config.json: /spectral_radius: found 3, expected a number from 0 to 1");
+  expect_configuration_refused(R"({"integrator": "rattle", "spectral_radius": 0.5})",
+                               "poinsot: spectral_radius: no parameter of integrator 'rattle'; it is one of "
+                               "generalized_alpha, generalized_alpha_i2");
+  expect_configuration_refused(R"({"analysis": "kinematics", "spectral_radius": 0.5})",
+                               "poinsot: spectral_radius: no parameter of kinematics; it is one of generalized_alpha, "
+                               "generalized_alpha_i2");
   expect_configuration_refused(R"({"max_iterations": 0})",
                                "poinsot: config.json: /max_iterations: found 0, expected a whole number, at least 1");
   expect_configuration_refused(

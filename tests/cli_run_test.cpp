@@ -70,7 +70,9 @@ TEST_F(Run, TheRecordSaysWhereTheNumbersComeFrom) {
   EXPECT_EQ(record["program"]["libraries"].size(), origin.libraries.size());
   EXPECT_EQ(record["processor"], processor());
   for (const SettingEntry& entry : setting_entries())
-    EXPECT_EQ(record["configuration"].contains(entry.key), entry.key != "assemble") << entry.key;
+    EXPECT_EQ(record["configuration"].contains(entry.key),
+              entry.key != "assemble" && !std::holds_alternative<const MethodParameter*>(entry.member))
+        << entry.key;
 
   const nlohmann::json& statistics = record["statistics"];
   EXPECT_EQ(statistics["linear_solver"], "block");  // auto's pick

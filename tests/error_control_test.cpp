@@ -37,9 +37,7 @@ std::vector<Method> methods() {
     const auto of = std::ranges::find(kPrecision, entry.name, &Precision::integrator);
     check(of != std::end(kPrecision), "it is known how exact an integrator with error control is");
     for (const std::string& formulation : formulation_names()) {
-      if (std::ranges::none_of(entry.refuses, [&](const Refusal& r) { return r.formulation == formulation; })) {
-        all.push_back({*of, formulation});
-      }
+      if (!refusal_of(entry, formulation)) all.push_back({*of, formulation});
     }
   }
   return all;

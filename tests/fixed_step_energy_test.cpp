@@ -73,13 +73,14 @@ TEST(FixedStepSettings, SpectralRadiusDamps) {
   const Scene scene = scene_of("double_pendulum");
   const auto lost = [&](double radius) {
     Settings s = settings_of("generalized_alpha_i2", "rA", 0.01, 20, 0.05);
-    s.spectral_radius = radius;
+    s.parameters["spectral_radius"] = radius;
     return -trend(energies(scene, s));
   };
   EXPECT_GT(lost(0), 5 * lost(0.8));
   for (double radius : {-0.1, 1.1, std::nan("")}) {
     Settings s;
-    s.spectral_radius = radius;
+    s.integrator = "generalized_alpha";
+    s.parameters["spectral_radius"] = radius;
     EXPECT_THROW((void)simulate(scene, s, {}), InputError) << radius;
   }
 }

@@ -1,5 +1,6 @@
-"""Includes point one way: core <- linsolve <- formulations <- integrators <- bench/study <- bench/paper <- app. The
-benchmark binaries, bench/*, may include everything up to bench/study. Only the program knows CLI11. Prints every breach."""
+"""Includes point one way: core <- linsolve <- formulations <- integrators <- bench/study <- bench/paper <- app, and within
+integrators from the seam through stepping, start and methods to what stands beside them. The benchmark binaries, bench/*,
+may include everything up to bench/study. Only the program knows CLI11. Prints every breach."""
 
 import pathlib
 import posixpath
@@ -41,6 +42,26 @@ def breaches(root):
                     yield f"{file}:{number}: {layer} must not know the command line: {line.strip()}"
 
 
-found = list(breaches(pathlib.Path(sys.argv[1])))
+def rooms(root):
+    """Within integrators: the seam <- stepping <- start <- methods <- what stands beside them."""
+    order = ["seam", "stepping", "start", "methods", "beside"]
+    seam = {"integrator.h", "jacobian_policy.h", "settings.h", "state.h"}
+
+    def room(file):  # below integrators/
+        if "/" in file:
+            return file.split("/")[0]
+        return "seam" if file in seam else "beside"
+
+    folder = root / "integrators"
+    for path in sorted(path for path in folder.rglob("*") if path.suffix in {".h", ".cpp"}):
+        own = room(path.relative_to(folder).as_posix())
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            included = re.match(r'\s*#\s*include\s*"integrators/([^"]+)"', line)
+            if included and order.index(room(included[1])) > order.index(own):
+                yield f"{path.relative_to(root)}:{number}: {own} must not include {room(included[1])}: {line.strip()}"
+
+
+root = pathlib.Path(sys.argv[1])
+found = list(breaches(root)) + list(rooms(root))
 print("\n".join(found))
 sys.exit(1 if found else 0)

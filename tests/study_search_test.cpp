@@ -112,7 +112,7 @@ TEST_F(Search, a_sweep_goes_through_every_case_that_fits) {
   std::size_t by_step = 0, by_tolerance = 0;
   for (const IntegratorEntry& integrator : integrators())
     for (const FormulationEntry& formulation : formulations())
-      if (!study::refusal_of(integrator, formulation.name)) ++(integrator.controls_error ? by_tolerance : by_step);
+      if (!refusal_of(integrator, formulation.name)) ++(integrator.controls_error ? by_tolerance : by_step);
   EXPECT_LT(by_step + by_tolerance, integrators().size() * formulations().size());  // some do not fit
   EXPECT_EQ(levels[0].size(), by_step + by_tolerance);
   EXPECT_EQ(levels[1].size(), by_step + by_tolerance);
@@ -130,7 +130,7 @@ TEST_F(Search, a_plan_of_what_does_not_fit_is_refused) {
   bool some = false;
   for (const IntegratorEntry& integrator : integrators())
     for (const FormulationEntry& formulation : formulations()) {
-      const auto refusal = study::refusal_of(integrator, formulation.name);
+      const auto refusal = refusal_of(integrator, formulation.name);
       if (!refusal) continue;
       some = true;
       plan.integrators = {std::string(integrator.name)};
@@ -200,7 +200,7 @@ TEST_F(Search, what_it_finds_is_as_accurate_as_asked_and_no_method_is_forgotten)
   std::size_t all = 0;
   for (const IntegratorEntry& integrator : integrators())
     for (const FormulationEntry& formulation : formulations())
-      all += integrator.analysis == Analysis::dynamics && !study::refusal_of(integrator, formulation.name);
+      all += integrator.analysis == Analysis::dynamics && !refusal_of(integrator, formulation.name);
   EXPECT_EQ(methods.size(), all);
 }
 

@@ -25,11 +25,6 @@ std::string Case::method() const {
   return settings.linear_solver == kUsualSolver ? name : fmt::format("{} with {}", name, settings.linear_solver);
 }
 
-const Refusal* refusal_of(const IntegratorEntry& integrator, std::string_view formulation) {
-  const auto found = std::ranges::find(integrator.refuses, formulation, &Refusal::formulation);
-  return found == integrator.refuses.end() ? nullptr : &*found;
-}
-
 SweepPlan SweepPlan::full() {
   SweepPlan plan;
   plan.formulations = poinsot::formulations().names();
@@ -56,7 +51,7 @@ void require_cases(const SweepPlan& plan) {
   std::string why;
   for (const std::string& integrator : plan.integrators)
     for (const std::string& formulation : plan.formulations) {
-      const Refusal* refusal = refusal_of(integrators().require(integrator), formulation);
+      const auto refusal = refusal_of(integrators().require(integrator), formulation);
       if (!refusal) return;
       if (why.empty())
         why = fmt::format("integrator '{}' refuses formulation '{}': {}", integrator, formulation, refusal->why);

@@ -55,8 +55,6 @@ inline constexpr double kPatience = 5;
 // Throws InputError where no integrator of the plan takes any of its formulations.
 void require_cases(const SweepPlan& plan);
 
-const Refusal* refusal_of(const IntegratorEntry& integrator, std::string_view formulation);
-
 class Sweep {
  public:
   Sweep(const Scene& scene, double end, const Reference& reference);

@@ -12,7 +12,7 @@ namespace {
 // which a step of the usual length passes.
 constexpr int kDifficult = 2;
 
-class Method : public ExplicitStepper {
+class ControlledPair : public ExplicitStepper {
  public:
   using ExplicitStepper::ExplicitStepper;
 
@@ -36,8 +36,8 @@ class ExplicitRungeKutta final : public Integrator {
 
   Status run(const Run& run) override {
     PhaseClock clock;
-    Method method(pair_, run.problem, run.solver, run.settings.rtol, run.settings.absolute_tolerance(), run.statistics,
-                  clock);
+    ControlledPair method(pair_, run.problem, run.solver, run.settings.rtol, run.settings.absolute_tolerance(),
+                          run.statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
     method.start(run.state);
     return controlled_run(method, pair_.rule, run, clock);

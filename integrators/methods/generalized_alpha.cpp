@@ -29,7 +29,7 @@ class GeneralizedAlpha : public FixedSteps {
   GeneralizedAlpha(Form form, const Run& run)
       : FixedSteps(run),
         form_(form),
-        k_(settings_.spectral_radius),
+        k_(kSpectralRadius.of(settings_)),
         scale_{1, h_ * k_.gamma * k_.gain(), h_ * h_ * k_.beta * k_.gain()},
         policy_(jacobians().require(settings_.jacobian)),
         system_(problem_, run.solver, policy_.matrix, run.statistics, clock_),
@@ -91,13 +91,13 @@ class GeneralizedAlpha : public FixedSteps {
     if (Status status = consistent_.solve(x_.t, span(aside_)); !status.ok()) return status;
     x_.v += aside_.head(nv_);
     problem_.set_velocity(span(x_.v));
-    if (Status status = consistent_.accelerations(x_.t, span(x_.z)); !status.ok()) return status;
     return start();
   }
 
  private:
-  // a and, in index 3, the part of v normal to the constraints, from a consistent state.
+  // v̇, λ, a and, in index 3, the part of v normal to the constraints, from a consistent (q, v) where the problem stands.
   Status start() {
+    if (Status status = consistent_.accelerations(x_.t, span(x_.z)); !status.ok()) return status;
     // The error of the difference quotient, of order h/100, is less than the h² neglected. Where a whole step shows
     // that the change of v̇ is not resolved (a stiff spring out of rest), or is of second order, the start does without
     // v̈.

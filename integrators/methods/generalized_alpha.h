@@ -29,6 +29,9 @@
 
 namespace poinsot {
 
+inline constexpr MethodParameter kSpectralRadius{
+    "spectral_radius", "spectral radius at infinity: 0 damps high frequencies most, 1 not at all", 0.8, 0, 1};
+
 std::unique_ptr<Integrator> make_generalized_alpha();     // index 3
 std::unique_ptr<Integrator> make_generalized_alpha_i2();  // stabilized index 2
 

@@ -9,7 +9,7 @@ namespace {
 constexpr StepRule kRule{0.9, 0.25, 0, 0.5, 8, true};
 constexpr double kSameStep = 1.2;  // growth up to which a kept matrix saves more than a longer step does
 
-class Method : public RadauStepper {
+class ControlledRadau : public RadauStepper {
  public:
   using RadauStepper::RadauStepper;
 
@@ -25,8 +25,8 @@ class Radau5 final : public Integrator {
   Status run(const Run& run) override {
     PhaseClock clock;
     const Settings& settings = run.settings;
-    Method method(run.problem, run.solver, settings.linear_solver, settings.rtol, settings.absolute_tolerance(),
-                  run.statistics, clock);
+    ControlledRadau method(run.problem, run.solver, settings.linear_solver, settings.rtol,
+                           settings.absolute_tolerance(), run.statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
     method.start(run.state);
     return controlled_run(method, kRule, run, clock);

@@ -21,14 +21,14 @@ constexpr double kFast = 0.03;     // rate of convergence up to which a matrix i
 constexpr double kTrusted = 0.05;  // θ/(1 − θ) of the last step below which this step's is not trusted to be
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-struct Method {
+struct Tableau {
   Matrix A;
   Vector3 c, e;  // e: weights of the stages in the error estimate, in units of μ
   double mu;     // real eigenvalue of A
 };
 
-Method make_method() {
-  Method m;
+Tableau make_tableau() {
+  Tableau m;
   const double s = std::sqrt(6.0);
   m.A << (88 - 7 * s) / 360, (296 - 169 * s) / 1800, (-2 + 3 * s) / 225,  //
       (296 + 169 * s) / 1800, (88 + 7 * s) / 360, (-2 - 3 * s) / 225,     //
@@ -39,14 +39,14 @@ Method make_method() {
   return m;
 }
 
-const Method& method() {
-  static const Method the = make_method();
+const Tableau& tableau() {
+  static const Tableau the = make_tableau();
   return the;
 }
 
 // The values at x of the polynomials that are 1 at one node c and 0 at the others.
 Vector3 lagrange(double x) {
-  const Vector3& c = method().c;
+  const Vector3& c = tableau().c;
   Vector3 l;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -107,7 +107,7 @@ Status RadauStepper::prepare() {
 
 template <class Sink>
 void RadauStepper::write_stages(const Linearized& linear, double h, int n, int nv, Sink&& entry) {
-  const Matrix on_D = h * method().A, on_K = on_D * on_D;
+  const Matrix on_D = h * tableau().A, on_K = on_D * on_D;
   for (int i = 0; i < 3; ++i) {
     linear.at[static_cast<std::size_t>(i)].visit(
         [&](int row, int column, double M, double D, double K) {
@@ -124,7 +124,7 @@ void RadauStepper::write_stages(const Linearized& linear, double h, int n, int n
 
 template <class Sink>
 void RadauStepper::write_filter(const Linearized& linear, double h, int nv, Sink&& entry) {
-  const double hmu = h * method().mu;
+  const double hmu = h * tableau().mu;
   linear.at[0].visit([&](int i, int j, double M, double D, double K) { entry(i, j, M + hmu * D + hmu * hmu * K); },
                      [&](int row, int j, double G) {
                        entry(nv + row, j, G);
@@ -161,7 +161,7 @@ double RadauStepper::first_step(double end) const {
 
 // The problem stands at stage i as it is now, and stage_ says where that is.
 void RadauStepper::stand_at_stage(const State& from, double to, Eigen::Index i) {
-  stage_.t = i == 2 ? to : from.t + method().c[i] * (to - from.t);
+  stage_.t = i == 2 ? to : from.t + tableau().c[i] * (to - from.t);
   stage_.v = V_.col(i);
   stage_.z = Z_.col(i);
   problem_.retract(span(from.q), column(dQ_, i), span(stage_.q));
@@ -199,16 +199,16 @@ void RadauStepper::predict(const State& from, double h) {
     if (h_before_ == 0) {
       Z_.col(i) = from.z;
     } else {
-      Z_.col(i).noalias() = Z_before_.lazyProduct(lagrange((from.t - before_.t + method().c[i] * h) / h_before_));
+      Z_.col(i).noalias() = Z_before_.lazyProduct(lagrange((from.t - before_.t + tableau().c[i] * h) / h_before_));
     }
-    dQ_.col(i) = (method().c[i] * h) * from.v;
+    dQ_.col(i) = (tableau().c[i] * h) * from.v;
   }
   move(from, h, kFirstSweeps);
 }
 
 // v_i and δq_i of the stages' accelerations. (Eigen's other products allocate.)
 void RadauStepper::move(const State& from, double h, int sweeps) {
-  const Matrix hA = h * method().A;
+  const Matrix hA = h * tableau().A;
   V_.noalias() = Z_.topRows(nv_).lazyProduct(hA.transpose());
   V_.colwise() += from.v;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -300,7 +300,7 @@ void RadauStepper::end_of_step(const State& from, double to, State& at) {
 
 // x = (1 − hμ J)⁻¹ e, e = hμ f(y_n) + μ Σ e_i (y_i − y_n), J linearized at the first stage.
 Status RadauStepper::error_of(const State& from, double h, double& error) {
-  const Method& m = method();
+  const Tableau& m = tableau();
   const double hmu = h * m.mu;
   e_.head(nv_) = hmu * from.v + m.mu * dQ_.lazyProduct(m.e);
   e_.tail(nv_) = hmu * from.z.head(nv_) + m.mu * (V_.lazyProduct(m.e) - m.e.sum() * from.v);
