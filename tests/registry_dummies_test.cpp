@@ -34,10 +34,7 @@ static_assert(!Formulation<WithoutMass>, "a formulation has a mass matrix");
 // Half-implicit Euler's steps under another name.
 class DummyIntegrator final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
-             Statistics& statistics) override {
-    return inner_->run(problem, solver, settings, state, observe, statistics);
-  }
+  Status run(const Run& run) override { return inner_->run(run); }
 
  private:
   std::unique_ptr<Integrator> inner_ = integrators().require("half_implicit").make();

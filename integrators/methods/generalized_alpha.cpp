@@ -95,7 +95,8 @@ class GeneralizedAlpha : public FixedSteps {
   }
 
  private:
-  // v̇, λ, a and, in index 3, the part of v normal to the constraints, from a consistent (q, v) where the problem stands.
+  // v̇, λ, a and, in index 3, the part of v normal to the constraints, from a consistent (q, v) where the problem
+  // stands.
   Status start() {
     if (Status status = consistent_.accelerations(x_.t, span(x_.z)); !status.ok()) return status;
     // The error of the difference quotient, of order h/100, is less than the h² neglected. Where a whole step shows

@@ -98,7 +98,7 @@ class Rattle final : public FixedSteps {
     ends_.begin().problem.velocity_residual(span(rows_));
     for (int row : velocity_rows_) r[nv_ + row] = rows_[row] / h_;
     ends_.end().problem.set_velocity(span(u_));
-    ends_.begin().problem.velocity_residual(span(rows_));
+    ends_.end().problem.velocity_residual(span(rows_));
     for (int row : velocity_rows_) r[nv_ + row] += rows_[row] / h_;
   }
 
