@@ -14,7 +14,7 @@
 #include "formulations/problem.h"
 #include "integrators/settings.h"
 #include "integrators/state.h"
-#include "linsolve/linear_solver.h"
+#include "linsolve/linear_system.h"
 
 namespace poinsot {
 
@@ -34,7 +34,7 @@ struct Statistics {
   struct {
     double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
   } violation;
-  std::string_view linear_solver;  // the one that did the work: of auto, its pick
+  std::vector<LinearWork> linear;  // which linear solvers factored which systems; the busiest first
 };
 
 // A point of the trajectory. The problem stands at (t, q, v).
@@ -50,7 +50,7 @@ class Integrator {
   virtual ~Integrator() = default;
   // Advances `state`, consistent at 0, to settings.end. After a failure its q and v are those of the last good step, as
   // the samples given out are.
-  virtual Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state,
+  virtual Status run(Problem& problem, LinearSystems& systems, const Settings& settings, State& state,
                      const Observer& observe, Statistics& statistics) = 0;
 };
 

@@ -20,6 +20,8 @@ struct JacobianEntry {
   std::string_view about;
   MatrixKind matrix;  // of dynamics; in kinematics the matrix is always G
   Refresh refresh;
+
+  Workload workload() const { return refresh == Refresh::when_slow ? Workload::solves : Workload::factorizations; }
 };
 
 Registry<JacobianEntry>& jacobians();

@@ -42,15 +42,17 @@ class Auto final : public LinearSolver {
     return solver_ ? solver_->statistics() : LinearSolver::statistics();
   }
   std::string_view picked() const override { return picked_; }
+  Helper helper() const override { return solver_ ? solver_->helper() : Helper(); }
 
  private:
   LinearStatus do_analyze(const Pattern& pattern) override {
     picked_ = saddle_point(pattern) ? "block" : "klu";
     solver_ = linear_solvers().require(picked_).make();
-    return solver_->analyze(pattern);
+    return solver_->analyze(pattern, workload());
   }
   LinearStatus do_factor() override { return solver_->factor(); }
   LinearStatus do_solve(std::span<double> b) override { return solver_->solve(b); }
+  LinearStatus do_solve_transposed(std::span<double> b) override { return solver_->solve_transposed(b); }
 
   std::string_view picked_;
   std::unique_ptr<LinearSolver> solver_;

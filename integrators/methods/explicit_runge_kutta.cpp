@@ -34,10 +34,10 @@ class ExplicitRungeKutta final : public Integrator {
  public:
   explicit ExplicitRungeKutta(const RungeKuttaPair& pair) : pair_(pair) {}
 
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+  Status run(Problem& problem, LinearSystems& systems, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
     PhaseClock clock;
-    Method method(pair_, problem, solver, settings.rtol, settings.absolute_tolerance(), statistics, clock);
+    Method method(pair_, problem, systems, settings.rtol, settings.absolute_tolerance(), statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
     method.start(state);
     return controlled_run(method, pair_.rule, problem, settings, state, observe, statistics, clock);

@@ -27,7 +27,7 @@ struct Coefficients {
 
 class Run {
  public:
-  Run(Form form, Problem& problem, LinearSolver& solver, const Settings& settings, State& state,
+  Run(Form form, Problem& problem, LinearSystems& systems, const Settings& settings, State& state,
       const Observer& observe, Statistics& statistics)
       : form_(form),
         problem_(problem),
@@ -39,9 +39,9 @@ class Run {
         k_(settings.spectral_radius),
         scale_{1, h_ * k_.gamma * k_.gain(), h_ * h_ * k_.beta * k_.gain()},
         policy_(jacobians().require(settings.jacobian)),
-        system_(problem, solver, policy_.matrix, statistics, clock_),
+        system_(problem, systems.add(policy_.workload()), policy_.matrix, statistics, clock_),
         newton_(problem, system_, settings, policy_.refresh, statistics),
-        consistent_(problem, settings.linear_solver),
+        consistent_(problem, settings.linear()),
         velocity_rows_(velocity_rows(problem)),
         nv_(problem.nv()),
         nc_(problem.nc()),
@@ -236,9 +236,9 @@ class Run {
 template <Form form>
 class GeneralizedAlpha final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+  Status run(Problem& problem, LinearSystems& systems, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
-    return Run(form, problem, solver, settings, state, observe, statistics)();
+    return Run(form, problem, systems, settings, state, observe, statistics)();
   }
 };
 

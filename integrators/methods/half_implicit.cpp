@@ -14,17 +14,18 @@ using Vector = Eigen::VectorXd;
 
 class HalfImplicit final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+  Status run(Problem& problem, LinearSystems& systems, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
     const TimeGrid grid(settings);
     const double h = grid.step();
     PhaseClock clock;
     const std::unique_ptr<Problem> second = problem.clone();
+    LinearSystem& linear = systems.add();
     struct End {  // of a step; where one step ends the next begins, and the problem stands there already
       Problem& problem;
       StepSystem system;
-    } ends[] = {{problem, {problem, solver, MatrixKind::consistent, statistics, clock}},
-                {*second, {*second, solver, MatrixKind::consistent, statistics, clock}}};
+    } ends[] = {{problem, {problem, linear, MatrixKind::consistent, statistics, clock}},
+                {*second, {*second, linear, MatrixKind::consistent, statistics, clock}}};
     End *here = &ends[0], *there = &ends[1];
     if (Status status = here->system.prepare(); !status.ok()) return status;
     NewtonLoop newton(problem, here->system, settings, Refresh::every_step, statistics);

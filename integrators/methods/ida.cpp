@@ -64,16 +64,15 @@ void free_ida(void* ida) {
 
 class Run {
  public:
-  Run(Problem& problem, LinearSolver& solver, const Settings& settings, const State& state, const Observer& observe,
+  Run(Problem& problem, LinearSystems& systems, const Settings& settings, const State& state, const Observer& observe,
       Statistics& statistics)
       : problem_(problem),
         settings_(settings),
         observe_(observe),
         statistics_(statistics),
         form_(problem),
-        system_(problem, solver, statistics, clock_),
-        point_solver_(linear_solvers().require(settings.linear_solver).make()),
-        consistent_(problem, *point_solver_, statistics, clock_),
+        system_(problem, systems.add(Workload::solves), statistics, clock_),
+        consistent_(problem, systems.add(), statistics, clock_),
         sizes_(2 * static_cast<std::size_t>(problem.nv())),
         sizes_now_(sizes_.size()),
         at_(state),
@@ -260,7 +259,6 @@ class Run {
   PhaseClock clock_;
   StabilizedIndex2 form_;
   TimedSystem system_;
-  std::unique_ptr<LinearSolver> point_solver_;
   Consistent consistent_;
   std::vector<double> sizes_, sizes_now_;
   State at_, next_;  // the last point given out, and the next one while it is made
@@ -276,9 +274,9 @@ class Run {
 
 class Ida final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+  Status run(Problem& problem, LinearSystems& systems, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
-    Run run(problem, solver, settings, state, observe, statistics);
+    Run run(problem, systems, settings, state, observe, statistics);
     if (Status status = run.prepare(state); !status.ok()) return status;
     const Status status = run.integrate();
     state = run.state();

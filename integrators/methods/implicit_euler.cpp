@@ -10,14 +10,14 @@ using Vector = Eigen::VectorXd;
 
 class ImplicitEuler final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+  Status run(Problem& problem, LinearSystems& systems, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
     const JacobianEntry& policy = jacobians().require(settings.jacobian);
     const TimeGrid grid(settings);
     const double h = grid.step();
     const StepScale scale{1, h, h * h};
     PhaseClock clock;
-    StepSystem system(problem, solver, policy.matrix, statistics, clock);
+    StepSystem system(problem, systems.add(policy.workload()), policy.matrix, statistics, clock);
     if (Status status = system.prepare(); !status.ok()) return status;
     NewtonLoop newton(problem, system, settings, policy.refresh, statistics);
 

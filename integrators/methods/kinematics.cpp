@@ -19,16 +19,16 @@ using Vector = Eigen::VectorXd;
 
 class Kinematics final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+  Status run(Problem& problem, LinearSystems& systems, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
     const JacobianEntry& policy = jacobians().require(settings.jacobian);
     const bool predict = policy.refresh != Refresh::before_step;  // the original study's codes do not
     const TimeGrid grid(settings);
     PhaseClock clock;
-    StepSystem system(problem, solver, MatrixKind::kinematic, statistics, clock);
+    StepSystem system(problem, systems.add(), MatrixKind::kinematic, statistics, clock);
     if (Status status = system.prepare(); !status.ok()) return status;
     std::unique_ptr<Consistent> inverse_dynamics;
-    if (settings.reactions) inverse_dynamics = std::make_unique<Consistent>(problem, settings.linear_solver);
+    if (settings.reactions) inverse_dynamics = std::make_unique<Consistent>(problem, settings.linear());
 
     Vector &q = state.q, &v = state.v, delta(problem.nc()), q_next(q.size()), dq(v.size());
     if (!settings.reactions) state.z.setZero(problem.nv());  // no multipliers

@@ -22,11 +22,10 @@ class Method : public RadauStepper {
 
 class Radau5 final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+  Status run(Problem& problem, LinearSystems& systems, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
     PhaseClock clock;
-    Method method(problem, solver, settings.linear_solver, settings.rtol, settings.absolute_tolerance(), statistics,
-                  clock);
+    Method method(problem, systems, settings.rtol, settings.absolute_tolerance(), statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
     method.start(state);
     return controlled_run(method, kRule, problem, settings, state, observe, statistics, clock);

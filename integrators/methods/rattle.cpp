@@ -15,11 +15,11 @@ using Vector = Eigen::VectorXd;
 
 class Run {
  public:
-  Run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+  Run(Problem& problem, LinearSystem& linear, const Settings& settings, State& state, const Observer& observe,
       Statistics& statistics)
       : second_(problem.clone()),
-        ends_{{problem, {problem, solver, MatrixKind::consistent, statistics, clock_}},
-              {*second_, {*second_, solver, MatrixKind::consistent, statistics, clock_}}},
+        ends_{{problem, {problem, linear, MatrixKind::consistent, statistics, clock_}},
+              {*second_, {*second_, linear, MatrixKind::consistent, statistics, clock_}}},
         state_(state),
         observe_(observe),
         statistics_(statistics),
@@ -194,9 +194,9 @@ class Run {
 
 class Rattle final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+  Status run(Problem& problem, LinearSystems& systems, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
-    return Run(problem, solver, settings, state, observe, statistics)();
+    return Run(problem, systems.add(), settings, state, observe, statistics)();
   }
 };
 

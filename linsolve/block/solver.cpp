@@ -8,8 +8,6 @@
 //              then Bauer's condition (condition.h) and the residual of a solve decide;
 //   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
 //
-// A mechanism without degrees of freedom needs less: its square G alone is factorized (determined.h).
-//
 // Where this does not lead to a trustworthy answer the same values go to klu, whose word counts, singular included.
 // Matrices without a saddle point's symmetric structure (kinematics) go to klu from the start.
 #include <algorithm>
@@ -26,7 +24,6 @@
 #include "linsolve/block/schedule.h"
 #include "linsolve/condition.h"
 #include "linsolve/csc_layout.h"
-#include "linsolve/determined.h"
 #include "linsolve/equilibration.h"
 #include "linsolve/finite.h"
 #include "linsolve/residual.h"
@@ -61,10 +58,7 @@ class Solver final : public LinearSolver {
     helped_ = 0;
     fused_.assign(index(1 + *std::ranges::max_element(node_)), -1);
     by_klu_ = only_klu_ = symmetry(layout_) < kSymmetric;
-    ordered_ = determined_fits_ = false;
-    determined_ = only_klu_ ? nullptr : std::make_unique<Determined>();
-    if (determined_ && !determined_->analyze(layout_)) determined_.reset();
-    if (!only_klu_ && !determined_) only_klu_ = !order();
+    if (!only_klu_) only_klu_ = !order();
     return {};
   }
 
@@ -77,13 +71,11 @@ class Solver final : public LinearSolver {
     }
     factor_.resize(schedule_);
     statistics_.factor_nonzeros = schedule_.factor_nonzeros;
-    return ordered_ = true;
+    return true;
   }
 
   LinearStatus do_factor() override {
-    determined_fits_ = determined_ && determined_->fits(values_);
-    if (determined_fits_) return factor_determined();
-    by_klu_ = only_klu_ = only_klu_ || (!ordered_ && !order());
+    by_klu_ = only_klu_;
     if (by_klu_) return factor_by_klu();
     const Drift drift = factor_.factor(schedule_, values_, examined_);
     if (!examined_ || !within(drift, kFar)) return factor_fresh();
@@ -92,15 +84,7 @@ class Solver final : public LinearSolver {
     return {};
   }
 
-  LinearStatus factor_determined() {
-    const LinearStatistics& after = determined_->statistics();
-    statistics_.factorizations -= after.factorizations, statistics_.refactorizations -= after.refactorizations;
-    LinearStatus status = determined_->factor(values_);
-    statistics_.factorizations += after.factorizations, statistics_.refactorizations += after.refactorizations;
-    statistics_.factor_nonzeros = after.factor_nonzeros;
-    statistics_.reciprocal_condition = after.reciprocal_condition;
-    return status;
-  }
+  Helper helper() const override { return {"klu", klu_.get()}; }
 
   static bool within(const Drift& drift, double range) {
     return drift.poison == 0 && drift.least * range >= 1 && drift.largest <= range;
@@ -195,10 +179,6 @@ class Solver final : public LinearSolver {
   }
 
   LinearStatus do_solve(std::span<double> b) override {
-    if (determined_fits_) {
-      determined_->solve(layout_, values_, b);
-      return {};
-    }
     if (by_klu_) return klu_->solve(b);
     if (!drifted_) {
       factor_.solve(schedule_, b);
@@ -256,12 +236,11 @@ class Solver final : public LinearSolver {
   std::vector<int> node_, fused_;
   Schedule schedule_;
   Factor factor_;
-  std::unique_ptr<Determined> determined_;  // where the structure has the form
   std::unique_ptr<LinearSolver> klu_;
   Residual residual_;
   std::vector<double> b_;
   std::vector<double> weight_;  // of rows in the choice of pivots
-  bool ordered_ = false, examined_ = false, determined_fits_ = false;
+  bool examined_ = false;
   bool watched_ = false;  // the last fresh factorization left larger residuals or cancelled much: all are looked at
   bool drifted_ = false;  // that, or pivots left those of the last fresh factorization
   bool by_klu_ = false, only_klu_ = false;
