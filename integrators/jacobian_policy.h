@@ -5,6 +5,7 @@
 
 #include "core/registry.h"
 #include "formulations/problem.h"
+#include "linsolve/linear_solver.h"
 
 namespace poinsot {
 

@@ -17,10 +17,6 @@ constexpr LinearSolverEntry kEntries[] = {
      "LU with partial pivoting of the full matrix, kernels of fixed size for one or two bodies; refuses more than 2000 "
      "unknowns",
      make_dense, true},
-    {"schur",
-     "LDL' of the Schur complement over bodies; for symmetric saddle points with a block for each body (consistent and "
-     "simplified matrices, of rA outside a step only), refuses all others",
-     make_schur},
     {"eigen_sparselu", "supernodal sparse LU of Eigen with fresh pivots every time; a reference without SuiteSparse",
      make_eigen_sparselu, true},
 #ifdef POINSOT_UMFPACK

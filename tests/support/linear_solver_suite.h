@@ -19,32 +19,9 @@ inline LinearStatus prepare(LinearSolver& solver, const SampleSystem& s) {
   return solver.factor();
 }
 
-// Some solvers take symmetric systems only; they refuse the others, and are tested with the symmetric parts of bodies.
 class LinearSolvers : public testing::TestWithParam<LinearSolverEntry> {
  protected:
-  LinearSolvers() {
-    std::mt19937_64 random(1);
-    const LinearStatus status = prepare(*make(), saddle_point(chain(2, 5), BodyKind::six, random));
-    symmetric_only_ = status.failure == LinearFailure::refused;
-    EXPECT_EQ(status.message.empty(), !symmetric_only_);
-  }
   static std::unique_ptr<LinearSolver> make() { return GetParam().make(); }
-  bool symmetric_only() const { return symmetric_only_; }
-
-  SampleSystem suited(SampleSystem s) const {
-    for (std::size_t m = 0; symmetric_only_ && m < s.pattern.blocks.size(); ++m) {
-      const Block& b = s.pattern.blocks[m];
-      const auto n = static_cast<std::size_t>(b.rows);
-      if (b.row != b.col || b.rows != b.cols) continue;
-      for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < i; ++j)
-          s.block(m)[j * n + i] = s.block(m)[i * n + j] = 0.5 * (s.block(m)[j * n + i] + s.block(m)[i * n + j]);
-    }
-    return s;
-  }
-
- private:
-  bool symmetric_only_ = false;
 };
 
 INSTANTIATE_TEST_SUITE_P(Registry, LinearSolvers, testing::ValuesIn(linear_solvers()),
