@@ -46,7 +46,7 @@ class Auto final : public LinearSolver {
 
  private:
   LinearStatus do_analyze(const Pattern& pattern) override {
-    picked_ = saddle_point(pattern) ? "block" : "klu";
+    picked_ = workload() != Workload::transposed && saddle_point(pattern) ? "block" : "klu";
     solver_ = linear_solvers().require(picked_).make();
     return solver_->analyze(pattern, workload());
   }

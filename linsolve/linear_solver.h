@@ -41,8 +41,8 @@ struct LinearStatistics {
   double reciprocal_condition = 0;  // whatever the scaling (linsolve/condition.h), when last examined; 0 where unknown
 };
 
-// What there will be more of; a hint for solvers that have a choice.
-enum class Workload { factorizations, solves };
+// What there will be most of, a hint for solvers that have a choice; or that the transposed matrix will be asked for.
+enum class Workload { factorizations, solves, transposed };
 
 class LinearSolver {
  public:

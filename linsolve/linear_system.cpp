@@ -42,7 +42,7 @@ LinearStatus LinearSystem::analyze(const Pattern& pattern) {
   whole_.reset(), jacobian_.reset();
   if (may_reduce_ && SquareJacobian::fits(pattern)) {
     auto jacobian = std::make_unique<SquareJacobian>(solver_->make());
-    if (jacobian->analyze(pattern, workload_)) {
+    if (jacobian->analyze(pattern)) {
       pattern_ = pattern;
       jacobian_ = std::move(jacobian);
       return {};

@@ -14,7 +14,7 @@ bool SquareJacobian::fits(const Pattern& pattern) {
   return 2 * std::ranges::count(velocity, 1) == pattern.n;
 }
 
-bool SquareJacobian::analyze(const Pattern& pattern, Workload workload) {
+bool SquareJacobian::analyze(const Pattern& pattern) {
   if (!layout_.build(pattern).ok()) return false;
   const int n = layout_.n;
   const auto find = [&](int i, int j) {
@@ -51,7 +51,7 @@ bool SquareJacobian::analyze(const Pattern& pattern, Workload workload) {
       g_.emplace_back(k, 0);
       mirror_.emplace_back(k, above);
     }
-  if (entries_above != static_cast<int>(g_.size()) || !solver_->analyze(g, workload).ok()) return false;
+  if (entries_above != static_cast<int>(g_.size()) || !solver_->analyze(g, Workload::transposed).ok()) return false;
   for (std::size_t k = 0; k < g_.size(); ++k) g_[k].second = solver_->slots()[k];
   values_.assign(index(layout_.nonzeros()), 0);
   for (auto* v : {&v_, &f_}) v->assign(velocities_.size(), 0);

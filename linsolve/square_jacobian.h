@@ -27,7 +27,7 @@ class SquareJacobian {
   // patterns end here.
   static bool fits(const Pattern& pattern);
   // Whether the pattern has the form, and the solver takes G. Keeps a reference to nothing.
-  bool analyze(const Pattern& pattern, Workload workload);
+  bool analyze(const Pattern& pattern);
 
   std::span<const int> slots() const { return layout_.slots; }
   std::span<double> values() { return values_; }

@@ -145,7 +145,9 @@ TEST_P(LinearSolvers, SolveWithTheTransposedMatrixOrSayThatTheyDoNot) {
     for (const BodyKind kind : {BodyKind::six, BodyKind::seven}) {
       const SampleSystem s = badly_scaled(mechanism, kind, true, random);
       const auto solver = make();
-      ASSERT_TRUE(prepare(*solver, s).ok());
+      ASSERT_TRUE(solver->analyze(s.pattern, Workload::transposed).ok());
+      write(s, *solver);
+      ASSERT_TRUE(solver->factor().ok());
       for (int k = 0; k < 2; ++k) {  // the second factorization keeps pivots
         const std::vector<double> b = random_vector(s.pattern.n, random);
         std::vector<double> x = b;
@@ -154,7 +156,6 @@ TEST_P(LinearSolvers, SolveWithTheTransposedMatrixOrSayThatTheyDoNot) {
           EXPECT_EQ(status.failure, LinearFailure::refused);
           return;
         }
-        if (status.failure == LinearFailure::refused) return;  // of auto: a saddle point goes to one that does not
         ASSERT_TRUE(status.ok()) << status.message;
         expect_solved(transposed(s), x, b);
         ASSERT_TRUE(solver->factor().ok());
