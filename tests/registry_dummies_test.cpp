@@ -34,9 +34,9 @@ static_assert(!Formulation<WithoutMass>, "a formulation has a mass matrix");
 // Half-implicit Euler's steps under another name.
 class DummyIntegrator final : public Integrator {
  public:
-  Status run(Problem& problem, LinearSolver& solver, const Settings& settings, State& state, const Observer& observe,
+  Status run(Problem& problem, LinearSystems& systems, const Settings& settings, State& state, const Observer& observe,
              Statistics& statistics) override {
-    return inner_->run(problem, solver, settings, state, observe, statistics);
+    return inner_->run(problem, systems, settings, state, observe, statistics);
   }
 
  private:
@@ -107,7 +107,8 @@ TEST(Dummies, RunTogether) {
   settings.end = 0.1;
   const Recorded found = run(scene_of("double_pendulum"), settings);
   ASSERT_TRUE(found.outcome.status.ok()) << found.outcome.status.message;
-  EXPECT_EQ(found.outcome.statistics.linear_solver, "dummy_linear_solver");
+  ASSERT_EQ(found.outcome.statistics.linear.size(), 1);
+  EXPECT_EQ(found.outcome.statistics.linear[0].solver, "dummy_linear_solver");
   settings.formulation = "rA";
   settings.integrator = "half_implicit";
   settings.linear_solver = "dense";
