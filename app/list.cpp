@@ -41,6 +41,7 @@ void add_list(CLI::App& app, int& status) {
     print_table("formulations", formulations());
     print_table("integrators", integrators());
     print_table("linear solvers", linear_solvers());
+    print_table("linear systems", linear_systems());
     print_table("jacobians", jacobians());
     status = 0;
   });

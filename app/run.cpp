@@ -34,13 +34,21 @@ struct LastState {
   std::vector<BodyState> bodies;
 };
 
+// "klu on G: 3 factorizations with fresh pivots, 998 with kept ones, condition 17"
+std::string description(const LinearWork& w) {
+  std::string text = fmt::format("{} on {}", w.solver, w.system == "whole" ? "the whole matrix" : w.system);
+  if (!w.handed_over_by.empty()) text += fmt::format(", handed over by {}", w.handed_over_by);
+  text += fmt::format(": {} factorizations with fresh pivots, {} with kept ones", w.factorizations, w.refactorizations);
+  if (w.refinements > 0) text += fmt::format(", {} refinements", w.refinements);
+  if (w.reciprocal_condition > 0) text += fmt::format(", condition {:.2g}", 1 / w.reciprocal_condition);
+  return text;
+}
+
 void print_summary(const Scene& scene, const Settings& settings, const Outcome& outcome, const LastState& last) {
   const Statistics& s = outcome.statistics;
   const bool kinematics = settings.analysis == Analysis::kinematics;
-  std::string solver = settings.linear_solver;
-  if (s.linear_solver != solver && !s.linear_solver.empty()) solver += fmt::format(" ({})", s.linear_solver);
   fmt::print("{}: {}, {}{}, {}, h = {:g} s\n", scene.name, kinematics ? "kinematics" : "dynamics", settings.formulation,
-             kinematics ? "" : ", " + settings.integrator, solver, settings.step);
+             kinematics ? "" : ", " + settings.integrator, settings.linear_solver, settings.step);
   fmt::print("t = {:g} s\n", last.t);
   std::size_t width = 4;
   for (const Body& body : scene.bodies) width = std::max(width, body.name.size());
@@ -61,6 +69,7 @@ void print_summary(const Scene& scene, const Settings& settings, const Outcome& 
       "{:.3g} s, {:.3g} us a step: assembly {:.0f} %, factorization {:.0f} %, solve {:.0f} %, the rest {:.0f} %\n",
       s.seconds.total, 1e6 * s.seconds.total / steps, share(s.seconds.assembly), share(s.seconds.factor),
       share(s.seconds.solve), share(s.seconds.other));
+  for (const LinearWork& w : s.linear) fmt::print("{}\n", description(w));
   fmt::print("largest violation of the constraints: position {:.2g}, velocity {:.2g}\n", s.violation.position,
              s.violation.velocity);
 }

@@ -33,7 +33,18 @@ std::string to_json(const RunRecord& record) {
   if (failure != Failure::none) json["failure_time"] = time;
   json["notices"] = record.outcome.notices;
   json["reactions_undetermined"] = record.outcome.reactions_undetermined;
-  json["statistics"] = {{"linear_solver", s.linear_solver},
+  auto linear = nlohmann::ordered_json::array();
+  for (const LinearWork& w : s.linear) {
+    linear.push_back({{"solver", w.solver},
+                      {"system", w.system},
+                      {"factorizations", w.factorizations},
+                      {"refactorizations", w.refactorizations},
+                      {"solves", w.solves},
+                      {"refinements", w.refinements}});
+    if (!w.handed_over_by.empty()) linear.back()["handed_over_by"] = w.handed_over_by;
+    if (w.reciprocal_condition > 0) linear.back()["condition"] = 1 / w.reciprocal_condition;
+  }
+  json["statistics"] = {{"linear", linear},
                         {"steps", s.steps},
                         {"rejected_steps", s.rejected_steps},
                         {"newton_iterations", s.newton_iterations},

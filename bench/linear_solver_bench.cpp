@@ -1,8 +1,10 @@
 // Factorization and solve of the exact Newton matrix, every linear solver × mechanism × formulation, and growing
-// scenes.
+// scenes; the whole matrix, and its constraint Jacobian alone where that is square ("klu_on_G").
 #include <algorithm>
 
 #include "bench/bench_support.h"
+#include "core/index.h"
+#include "linsolve/linear_system.h"
 
 namespace poinsot::bench {
 namespace {
@@ -10,32 +12,36 @@ namespace {
 enum class Part { factor, solve };
 
 void run(benchmark::State& state, const SceneSource& source, const FormulationEntry& formulation,
-         const LinearSolverEntry& entry, Part part) {
+         const LinearChoice& choice, Part part) {
   Standing standing(source.scene(), formulation);
-  const std::unique_ptr<LinearSolver> solver = entry.make();
+  LinearSystems systems(choice);
+  LinearSystem& linear = systems.add();
   if (!standing.good) return state.SkipWithError("no start");
-  if (const LinearStatus s = solver->analyze(standing.problem->pattern(MatrixKind::exact)); !s.ok()) {
+  if (const LinearStatus s = linear.analyze(standing.problem->pattern(MatrixKind::exact)); !s.ok()) {
     return state.SkipWithError(s.message.c_str());
   }
-  standing.assemble(MatrixKind::exact, solver->slots(), solver->values());
-  std::vector<double> b(static_cast<std::size_t>(solver->size()), 1.0), x = b;
+  standing.assemble(MatrixKind::exact, linear.slots(), linear.values());
+  std::vector<double> b(index(standing.problem->nv() + standing.problem->nc()), 1.0), x = b;
   for (int k = 0; k < 2; ++k) {  // the first factorization chooses pivots, the second keeps them
-    if (const LinearStatus s = solver->factor(); !s.ok()) return state.SkipWithError(s.message.c_str());
-    if (const LinearStatus s = solver->solve(x); !s.ok()) return state.SkipWithError(s.message.c_str());
+    if (const LinearStatus s = linear.factor(); !s.ok()) return state.SkipWithError(s.message.c_str());
+    if (const LinearStatus s = linear.solve(x); !s.ok()) return state.SkipWithError(s.message.c_str());
   }
+  const LinearWork work = systems.work().front();
+  if ((choice.system == "auto") != (work.system == "G")) return state.SkipWithError("G is not square");
+  if (!work.handed_over_by.empty()) return state.SkipWithError("handed over");
   {
     PerBody figures(state, standing.problem->bodies());
     for (auto _ : state) {
       if (part == Part::factor) {
-        if (!solver->factor().ok()) return state.SkipWithError("factor");
+        if (!linear.factor().ok()) return state.SkipWithError("factor");
       } else {
         std::copy(b.begin(), b.end(), x.begin());
-        if (!solver->solve(x).ok()) return state.SkipWithError("solve");
+        if (!linear.solve(x).ok()) return state.SkipWithError("solve");
       }
     }
   }
-  state.counters["nonzeros"] = static_cast<double>(solver->statistics().nonzeros);
-  state.counters["factor_nonzeros"] = static_cast<double>(solver->statistics().factor_nonzeros);
+  state.counters["nonzeros"] = static_cast<double>(linear.statistics().nonzeros);
+  state.counters["factor_nonzeros"] = static_cast<double>(linear.statistics().factor_nonzeros);
 }
 
 void register_all() {
@@ -49,9 +55,14 @@ void register_all() {
     for (const FormulationEntry& formulation : formulations()) {
       for (const LinearSolverEntry& entry : linear_solvers()) {
         if (entry.name == "dense" && source.bodies > 10) continue;  // cubic cost
-        const std::string of = fmt::format("{}/{}/{}", source.name, formulation.name, entry.name);
-        benchmark::RegisterBenchmark(("factor/" + of).c_str(), run, source, formulation, entry, Part::factor);
-        benchmark::RegisterBenchmark(("solve/" + of).c_str(), run, source, formulation, entry, Part::solve);
+        for (const LinearSystemEntry& system : linear_systems()) {
+          if (system.square_jacobian && !entry.takes_jacobian) continue;
+          const std::string of = fmt::format("{}/{}/{}{}", source.name, formulation.name, entry.name,
+                                             system.square_jacobian ? "_on_G" : "");
+          const LinearChoice choice{std::string(entry.name), std::string(system.name)};
+          benchmark::RegisterBenchmark(("factor/" + of).c_str(), run, source, formulation, choice, Part::factor);
+          benchmark::RegisterBenchmark(("solve/" + of).c_str(), run, source, formulation, choice, Part::solve);
+        }
       }
     }
   }

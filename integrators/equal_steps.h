@@ -10,7 +10,7 @@
 #include "integrators/stepping/explicit_stepper.h"
 #include "integrators/stepping/radau_stepper.h"
 #include "integrators/stepping/vectors.h"
-#include "linsolve/registry.h"
+#include "linsolve/linear_system.h"
 
 namespace poinsot {
 
@@ -26,13 +26,14 @@ inline Status try_step(RadauStepper& stepper, double to) {
 // A stepper at the start of a scene, and what it needs to live.
 template <class Stepper>
 struct EqualSteps {
-  // make(problem, solver, statistics, clock) makes the stepper.
+  // make(problem, systems, statistics, clock) makes the stepper.
   template <class Make>
   EqualSteps(const Scene& scene, const Settings& settings, Make&& make)
-      : model(std::make_shared<const Model>(compile(scene))), start(find_initial_state(model, Settings{})) {
+      : model(std::make_shared<const Model>(compile(scene))),
+        start(find_initial_state(model, Settings{})),
+        systems(settings.linear()) {
     problem = formulations().require(settings.formulation).make(model, start.dropped);
-    solver = linear_solvers().require(settings.linear_solver).make();
-    stepper = make(*problem, *solver, statistics, clock);
+    stepper = make(*problem, systems, statistics, clock);
     State first(*problem);
     check(find_first_state(start, settings, *problem, first).ok(), "the start is regular");
     check(stepper->prepare().ok(), "the pattern can be analysed");
@@ -57,7 +58,7 @@ struct EqualSteps {
   std::shared_ptr<const Model> model;
   InitialState start;
   std::unique_ptr<Problem> problem;
-  std::unique_ptr<LinearSolver> solver;
+  LinearSystems systems;
   Statistics statistics;
   PhaseClock clock;
   std::unique_ptr<Stepper> stepper;

@@ -16,7 +16,7 @@
 #include "formulations/problem.h"
 #include "integrators/settings.h"
 #include "integrators/state.h"
-#include "linsolve/linear_solver.h"
+#include "linsolve/linear_system.h"
 
 namespace poinsot {
 
@@ -36,7 +36,7 @@ struct Statistics {
   struct {
     double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
   } violation;
-  std::string_view linear_solver;  // the one that did the work: of auto, its pick
+  std::vector<LinearWork> linear;  // which linear solvers factored which systems; the busiest first
 };
 
 // A point of the trajectory. The problem stands at (t, q, v).
@@ -50,7 +50,7 @@ using Observer = std::function<void(const Sample&)>;
 // What an integrator is given: the problem, how to solve it, and where what it finds goes.
 struct Run {
   Problem& problem;
-  LinearSolver& solver;
+  LinearSystems& systems;
   const Settings& settings;
   State& state;  // consistent at 0
   const Observer& observe;

@@ -5,6 +5,7 @@
 
 #include "core/registry.h"
 #include "formulations/problem.h"
+#include "linsolve/linear_solver.h"
 
 namespace poinsot {
 
@@ -20,6 +21,8 @@ struct JacobianEntry {
   std::string_view about;
   MatrixKind matrix;  // of dynamics; in kinematics the matrix is always G
   Refresh refresh;
+
+  Workload workload() const { return refresh == Refresh::when_slow ? Workload::solves : Workload::factorizations; }
 };
 
 Registry<JacobianEntry>& jacobians();

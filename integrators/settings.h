@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "linsolve/linear_system.h"
+
 namespace poinsot {
 
 enum class Analysis { kinematics, dynamics };
@@ -26,7 +28,7 @@ struct Settings {
   Analysis analysis = Analysis::dynamics;
   std::string formulation = "rA";
   std::string integrator = "implicit_euler";  // of dynamics
-  std::string linear_solver = "auto";
+  std::string linear_solver = "auto", linear_system = "auto";
   std::string jacobian = "exact";
   double step = 1e-3;          // s
   double end = 1;              // s; the last step lands on it exactly
@@ -39,6 +41,7 @@ struct Settings {
   bool reactions = false;  // kinematics: find the multipliers, too (inverse dynamics)
   std::map<std::string, double, std::less<>> parameters = {};  // that are given of those the integrator declares
 
+  LinearChoice linear() const { return {linear_solver, linear_system}; }
   double absolute_tolerance() const { return atol.value_or(rtol / 100); }
 };
 

@@ -38,6 +38,8 @@ const std::array kEntries{
     SettingEntry{"integrator", "time stepping of dynamics", &Settings::integrator, integrator_names, false},
     SettingEntry{"linear_solver", "solver of the linear systems", &Settings::linear_solver,
                  [] { return linear_solvers().names(); }, false},
+    SettingEntry{"linear_system", "matrix that is factored", &Settings::linear_system,
+                 [] { return linear_systems().names(); }, false},
     SettingEntry{"jacobian", "matrix of Newton's method", &Settings::jacobian, [] { return jacobians().names(); },
                  false},
     SettingEntry{"step", "step size h, s", &Settings::step, nullptr, false},

@@ -58,7 +58,7 @@ void refuse_free_motion(const Problem& problem) {
 Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe) {
   check_numbers(settings);
   const FormulationEntry& formulation = formulations().require(settings.formulation);
-  const LinearSolverEntry& linear_solver = linear_solvers().require(settings.linear_solver);
+  LinearSystems systems(settings.linear());
   (void)jacobians().require(settings.jacobian);
   const IntegratorEntry& integrator = integrator_of(settings);
 
@@ -77,8 +77,7 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
   if (!outcome.status.ok()) return outcome;
   const Eigen::VectorXd q_start = state.q;
-  const std::unique_ptr<LinearSolver> solver = linear_solver.make();
-  outcome.status = integrator.make()->run({*problem, *solver, settings, state, observe, outcome.statistics});
+  outcome.status = integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics});
   const Failure failure = outcome.status.failure;
   if (settings.analysis == Analysis::dynamics &&
       (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {
@@ -86,7 +85,7 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
     const std::string why = near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
     if (!why.empty()) outcome.status.message += "; " + why;
   }
-  outcome.statistics.linear_solver = solver->picked().empty() ? linear_solver.name : solver->picked();
+  outcome.statistics.linear = systems.work();
   return outcome;
 }
 

@@ -1,14 +1,20 @@
 // auto: picks a linear solver when the structure is known, and leaves everything to it.
 //
 //   structure                                 pick    measured: klu's time for factor + solve over the pick's
-//   unsymmetric: kinematics, G alone          klu     1 (block hands these to klu, with a copy: 0.9 to 1.0)
+//   unsymmetric: kinematics; G alone          klu     (block hands the first over to klu, and does not take the second)
 //   saddle point of bodies and constraints    block   1.1 to 1.8 the paper's mechanisms, 1.3 to 1.5 one hinged body,
 //                                                     2.3 to 3.1 chains of 10, 2.7 to 3.2 of 100 and more,
 //                                                     3.7 to 4.5 trees, 2.8 to 4.2 ladders, 1.5 to 2.3 many
 //                                                     four-bars
 //
 // Measured: bench/linear_solver_bench, exact Newton matrices in rA, rp and reps, all in one run in turn, on an AMD EPYC
-// with AVX-512. In whole steps dense is up to a tenth faster on the single pendulum.
+// with AVX-512 (before commit 71b95ac; where it says "the paper's mechanisms", block had G alone of those without
+// degrees of freedom and klu the whole matrix). In whole steps dense is up to a tenth faster on the single pendulum.
+//
+// Where solves outnumber factorizations (jacobian "kept") the pick is the same: instructions of a whole step in rA,
+// klu's over block's, were 1.21 for the double pendulum, 1.41 and 1.00 for chains of 10 and 100, 1.72 for a ladder of
+// 30 (callgrind, `release` build of commit 71b95ac, SSE2). Times with wider vectors are not known there: klu's solves
+// wait less, and with "kept" it has been seen 3 to 21 % faster up to 100 bodies.
 #include "linsolve/back_ends.h"
 #include "linsolve/registry.h"
 
@@ -42,15 +48,17 @@ class Auto final : public LinearSolver {
     return solver_ ? solver_->statistics() : LinearSolver::statistics();
   }
   std::string_view picked() const override { return picked_; }
+  Helper helper() const override { return solver_ ? solver_->helper() : Helper(); }
 
  private:
   LinearStatus do_analyze(const Pattern& pattern) override {
-    picked_ = saddle_point(pattern) ? "block" : "klu";
+    picked_ = workload() != Workload::transposed && saddle_point(pattern) ? "block" : "klu";
     solver_ = linear_solvers().require(picked_).make();
-    return solver_->analyze(pattern);
+    return solver_->analyze(pattern, workload());
   }
   LinearStatus do_factor() override { return solver_->factor(); }
   LinearStatus do_solve(std::span<double> b) override { return solver_->solve(b); }
+  LinearStatus do_solve_transposed(std::span<double> b) override { return solver_->solve_transposed(b); }
 
   std::string_view picked_;
   std::unique_ptr<LinearSolver> solver_;

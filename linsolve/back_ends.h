@@ -12,7 +12,6 @@ std::unique_ptr<LinearSolver> make_block();
 std::unique_ptr<LinearSolver> make_dense();
 std::unique_ptr<LinearSolver> make_eigen_sparselu();
 std::unique_ptr<LinearSolver> make_klu();
-std::unique_ptr<LinearSolver> make_schur();
 std::unique_ptr<LinearSolver> make_umfpack();  // only with POINSOT_UMFPACK
 
 }  // namespace poinsot

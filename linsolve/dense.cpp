@@ -24,11 +24,12 @@ struct Kernels {
   void (*factor)(double*, int, int*, double*);
   double (*refactor)(double*, int, double*);
   void (*solve)(const double*, int, const int*, const double*, double*, double*);
+  void (*solve_transposed)(const double*, int, const int*, const double*, double*, double*);
 };
 
 template <int N>
 constexpr Kernels kernels() {
-  return {N, dense::factor<N>, dense::refactor<N>, dense::solve<N>};
+  return {N, dense::factor<N>, dense::refactor<N>, dense::solve<N>, dense::solve_transposed<N>};
 }
 
 // One body in rA and reps, then rp: kinematics 6, 7; a spherical joint 9, 11; a hinge 11, 13; driven 12, 14. Two bodies
@@ -85,6 +86,10 @@ class Dense final : public ScaledLu {
 
   void do_substitute(std::span<double> b) override {
     kernels_->solve(lu_.data(), n_, order_.data(), inverse_.data(), x_.data(), b.data());
+  }
+
+  void do_substitute_transposed(std::span<double> b) override {
+    kernels_->solve_transposed(lu_.data(), n_, order_.data(), inverse_.data(), x_.data(), b.data());
   }
 
   double pivot(int k) override { return column(k)[k]; }

@@ -2,7 +2,7 @@
 //
 //   factor:    P A = L U in place, choosing rows; row k of P A is row order[k] of A; 1/u_kk in `inverse`
 //   refactor:  the same with the rows already in order, straight on; the largest |l|, NaN where a pivot is zero
-//   solve:     x ← A⁻¹ x
+//   solve:     x ← A⁻¹ x;  solve_transposed:  x ← A⁻ᵀ x
 //
 // Columns are stored one after the other, padded to whole vectors; the padding is zero and stays so.
 #pragma once
@@ -127,6 +127,20 @@ void solve(const double* a, int size, const int* order, const double* inverse, d
     }
     std::copy_n(x, n, b);
   }
+}
+
+// Column by column, each a scalar product.
+template <int N>
+void solve_transposed(const double* a, int size, const int* order, const double* inverse, double* x, double* b) {
+  const int n = N ? N : size, rows = stride(n);
+  for (int k = 0; k < n; ++k) {
+    double sum = b[k];
+    for (int i = 0; i < k; ++i) sum -= a[k * rows + i] * x[i];
+    x[k] = sum * inverse[k];
+  }
+  for (int k = n - 1; k >= 0; --k)
+    for (int i = k + 1; i < n; ++i) x[k] -= a[k * rows + i] * x[i];
+  for (int k = 0; k < n; ++k) b[order[k]] = x[k];
 }
 
 }  // namespace poinsot::dense

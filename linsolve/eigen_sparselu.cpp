@@ -52,6 +52,12 @@ class EigenSparseLu final : public ScaledLu {
     map = x_;
   }
 
+  void do_substitute_transposed(std::span<double> b) override {
+    Eigen::Map<Eigen::VectorXd> map(b.data(), layout().n);
+    x_ = lu_.transpose().solve(map);
+    map = x_;
+  }
+
   double pivot(int k) override { return lu_.pivot(k); }
   int pivot_column(int k) override { return lu_.column(k); }
 

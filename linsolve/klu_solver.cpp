@@ -74,13 +74,7 @@ void Klu::do_substitute(std::span<double> b) {
   klu_solve(symbolic_, numeric_, layout().n, 1, b.data(), &common_);
 }
 
-void Klu::substitute(std::span<double> b) {
-  check(state() == State::factored, "Klu::substitute comes after a factor that was ok");
-  do_substitute(b);
-}
-
-void Klu::substitute_transposed(std::span<double> b) {
-  check(state() == State::factored, "Klu::substitute_transposed comes after a factor that was ok");
+void Klu::do_substitute_transposed(std::span<double> b) {
   klu_tsolve(symbolic_, numeric_, layout().n, 1, b.data(), &common_);
 }
 

@@ -20,18 +20,12 @@ class Klu final : public ScaledLu {
   Klu();
   ~Klu() override;
 
-  // The parts of a solve for the values of the last factor(), for callers who scale while they gather, and test results
-  // themselves: b ← S⁻¹ b and b ← S⁻ᵀ b with the equilibrated S = D_r A D_c, so that A⁻¹ = D_c S⁻¹ D_r.
-  void substitute(std::span<double> b);
-  void substitute_transposed(std::span<double> b);
-  std::span<const double> row_factors() const { return equilibration().row(); }
-  std::span<const double> column_factors() const { return equilibration().col(); }
-
  private:
   LinearStatus do_symbolic() override;
   LinearStatus do_fresh() override;
   bool do_refactor() override;
   void do_substitute(std::span<double> b) override;
+  void do_substitute_transposed(std::span<double> b) override;
   double pivot(int k) override { return fresh_pivots_[static_cast<std::size_t>(k)]; }
   int pivot_column(int k) override { return symbolic_->Q[k]; }
 

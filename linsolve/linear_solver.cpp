@@ -3,6 +3,7 @@
 #include <new>
 
 #include "core/check.h"
+#include "core/index.h"
 #include "linsolve/finite.h"
 
 namespace poinsot {
@@ -19,7 +20,7 @@ LinearStatus guarded(Work&& work) {
 }
 
 bool fits(const Pattern& pattern) {
-  if (pattern.n < 1 || pattern.node.size() != static_cast<std::size_t>(pattern.n)) return false;
+  if (pattern.n < 1 || pattern.node.size() != index(pattern.n)) return false;
   for (const Block& b : pattern.blocks)
     if (b.rows < 1 || b.cols < 1 || b.row < 0 || b.col < 0 || b.row > pattern.n - b.rows || b.col > pattern.n - b.cols)
       return false;
@@ -30,10 +31,11 @@ bool fits(const Pattern& pattern) {
 
 }  // namespace
 
-LinearStatus LinearSolver::analyze(const Pattern& pattern) {
+LinearStatus LinearSolver::analyze(const Pattern& pattern, Workload workload) {
   check(fits(pattern), "every block of a pattern lies in its matrix, and every unknown has a node");
   state_ = State::empty;
   n_ = pattern.n;
+  workload_ = workload;
   ++statistics_.analyses;
   LinearStatus status = guarded([&] { return do_analyze(pattern); });
   if (status.ok()) state_ = State::analyzed;
@@ -49,10 +51,23 @@ LinearStatus LinearSolver::factor() {
 }
 
 LinearStatus LinearSolver::solve(std::span<double> b) {
+  return solved(b, [&] { return do_solve(b); });
+}
+
+LinearStatus LinearSolver::solve_transposed(std::span<double> b) {
+  return solved(b, [&] { return do_solve_transposed(b); });
+}
+
+LinearStatus LinearSolver::do_solve_transposed(std::span<double>) {
+  return {LinearFailure::refused, -1, "this linear solver does not solve with the transposed matrix"};
+}
+
+template <class Work>
+LinearStatus LinearSolver::solved(std::span<double> b, Work&& work) {
   check(state_ == State::factored, "LinearSolver::solve comes after a factor that was ok");
-  check(b.size() == static_cast<std::size_t>(n_), "LinearSolver::solve gets one number for each unknown");
+  check(b.size() == index(n_), "LinearSolver::solve gets one number for each unknown");
   ++statistics_.solves;
-  LinearStatus status = guarded([&] { return do_solve(b); });
+  LinearStatus status = guarded(work);
   if (status.ok() && !all_finite(b))
     status = {LinearFailure::not_finite, -1, "the solution of the linear system is not finite"};
   if (!status.ok()) state_ = State::analyzed;

@@ -4,7 +4,8 @@
 // 2. The caller writes the values of A: it zeroes values(), then adds every block at the slots() (see
 // linsolve/pattern.h).
 // 3. factor() factorizes what values() holds; values() stays as it is. state() becomes factored when it answers ok.
-// 4. solve(b) replaces b by A⁻¹ b, as often as wanted, for the values of the last factor().
+// 4. solve(b) replaces b by A⁻¹ b, solve_transposed(b) by A⁻ᵀ b, as often as wanted, for the values of the last
+// factor(). Not every solver knows the second (linsolve/registry.h).
 // 5. 2 to 4 repeat; nothing is allocated in them after the first round.
 // 6. A matrix that is singular to working precision is never answered with ok: neither by factor() nor by solve().
 // 7. Calls out of order and wrong sizes are bugs of the caller: they throw std::logic_error.
@@ -34,25 +35,36 @@ struct [[nodiscard]] LinearStatus {
 struct LinearStatistics {
   std::int64_t analyses = 0, factorizations = 0, refactorizations = 0,
                solves = 0;       // refactorizations: with kept pivots
-  std::int64_t handed_over = 0;  // factorizations left to klu, counted here only
+  std::int64_t handed_over = 0;  // calls of factor() left to another solver, counted here only
+  std::int64_t refinements = 0;  // corrections of solutions by their residual
   std::int64_t nonzeros = 0, factor_nonzeros = 0;
   double reciprocal_condition = 0;  // whatever the scaling (linsolve/condition.h), when last examined; 0 where unknown
 };
 
+// What there will be most of, a hint for solvers that have a choice; or that the transposed matrix will be asked for.
+enum class Workload { factorizations, solves, transposed };
+
 class LinearSolver {
  public:
   enum class State { empty, analyzed, factored };
+  // Another solver that this one hands over to what it does not master, once it has.
+  struct Helper {
+    std::string_view name;
+    const LinearSolver* solver = nullptr;
+  };
 
   virtual ~LinearSolver() = default;
 
-  LinearStatus analyze(const Pattern& pattern);
+  LinearStatus analyze(const Pattern& pattern, Workload workload = Workload::factorizations);
   LinearStatus factor();
   LinearStatus solve(std::span<double> b);
+  LinearStatus solve_transposed(std::span<double> b);
 
   virtual std::span<const int> slots() const { return slots_; }  // one per block column, blocks in pattern order
   virtual std::span<double> values() { return values_; }
   // Of a solver that chooses another one to do its work: that one's name, from analyze() on.
   virtual std::string_view picked() const { return {}; }
+  virtual Helper helper() const { return {}; }
   State state() const { return state_; }
   int size() const { return n_; }
   virtual const LinearStatistics& statistics() const { return statistics_; }
@@ -62,13 +74,19 @@ class LinearSolver {
   virtual LinearStatus do_analyze(const Pattern& pattern) = 0;
   virtual LinearStatus do_factor() = 0;
   virtual LinearStatus do_solve(std::span<double> b) = 0;
+  virtual LinearStatus do_solve_transposed(std::span<double> b);
+  Workload workload() const { return workload_; }
 
   std::vector<int> slots_;
   std::vector<double> values_;
   LinearStatistics statistics_;
 
  private:
+  template <class Work>
+  LinearStatus solved(std::span<double> b, Work&& work);
+
   int n_ = 0;
+  Workload workload_ = Workload::factorizations;
   State state_ = State::empty;
 };
 

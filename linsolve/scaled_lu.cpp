@@ -108,4 +108,12 @@ LinearStatus ScaledLu::do_solve(std::span<double> b) {
   return {};
 }
 
+// With S = D_r A D_c: A⁻¹ = D_c S⁻¹ D_r, A⁻ᵀ = D_r S⁻ᵀ D_c.
+LinearStatus ScaledLu::do_solve_transposed(std::span<double> b) {
+  equilibration_.scale_solution(b);
+  do_substitute_transposed(b);
+  equilibration_.scale_right_hand_side(b);
+  return {};
+}
+
 }  // namespace poinsot

@@ -26,12 +26,12 @@ class ScaledLu : public LinearSolver {
   // more, or where the back end knows no such thing.
   virtual bool do_refactor() { return false; }
   virtual void do_substitute(std::span<double> b) = 0;
+  virtual void do_substitute_transposed(std::span<double> b) = 0;
   // Pivot k of the last fresh factorization, and the column of the matrix that has it (or −1).
   virtual double pivot(int k) = 0;
   virtual int pivot_column(int k) = 0;
 
   const CscLayout& layout() const { return layout_; }
-  const Equilibration& equilibration() const { return equilibration_; }
   std::span<double> scaled() { return scaled_; }
   static LinearStatus singular(int unknown);
 
@@ -39,6 +39,7 @@ class ScaledLu : public LinearSolver {
   LinearStatus do_analyze(const Pattern& pattern) final;
   LinearStatus do_factor() final;
   LinearStatus do_solve(std::span<double> b) final;
+  LinearStatus do_solve_transposed(std::span<double> b) final;
 
   LinearStatus factor_fresh();
   LinearStatus factor_scaled();

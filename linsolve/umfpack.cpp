@@ -48,8 +48,11 @@ class Umfpack final : public ScaledLu {
     return {};
   }
 
-  void do_substitute(std::span<double> b) override {
-    umfpack_di_wsolve(UMFPACK_A, layout().start.data(), layout().row.data(), scaled().data(), x_.data(), b.data(),
+  void do_substitute(std::span<double> b) override { substitute(UMFPACK_A, b); }
+  void do_substitute_transposed(std::span<double> b) override { substitute(UMFPACK_At, b); }
+
+  void substitute(int system, std::span<double> b) {
+    umfpack_di_wsolve(system, layout().start.data(), layout().row.data(), scaled().data(), x_.data(), b.data(),
                       numeric_, control_, nullptr, index_work_.data(), work_.data());
     std::ranges::copy(x_, b.begin());
   }

@@ -75,7 +75,15 @@ TEST_F(Run, TheRecordSaysWhereTheNumbersComeFrom) {
         << entry.key;
 
   const nlohmann::json& statistics = record["statistics"];
-  EXPECT_EQ(statistics["linear_solver"], "block");  // auto's pick
+  ASSERT_EQ(statistics["linear"].size(), 1);
+  const nlohmann::json& linear = statistics["linear"][0];
+  EXPECT_EQ(linear["solver"], "block");  // auto's pick
+  EXPECT_EQ(linear["system"], "whole");
+  EXPECT_EQ(linear["factorizations"].get<int>() + linear["refactorizations"].get<int>(), statistics["factorizations"]);
+  EXPECT_EQ(linear["solves"], statistics["solves"]);
+  EXPECT_EQ(linear["refinements"], 0);
+  EXPECT_GT(linear["condition"], 1);
+  EXPECT_FALSE(linear.contains("handed_over_by"));
   EXPECT_EQ(statistics["steps"], 100);
   for (const char* count : {"newton_iterations", "jacobian_evaluations", "factorizations", "solves"})
     EXPECT_GE(statistics[count], 100) << count;

@@ -50,8 +50,8 @@ TEST_P(Explicit, StopsWhereItWouldCreep) {
 
 EqualSteps<ExplicitStepper> bench(const Scene& scene, Settings settings, const RungeKuttaPair& pair) {
   settings.linear_solver = "dense";  // fresh pivots: orders are measured down to 1e-13
-  return {scene, settings, [&](Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock) {
-            return std::make_unique<ExplicitStepper>(pair, problem, solver, settings.rtol,
+  return {scene, settings, [&](Problem& problem, LinearSystems& systems, Statistics& statistics, PhaseClock& clock) {
+            return std::make_unique<ExplicitStepper>(pair, problem, systems, settings.rtol,
                                                      settings.absolute_tolerance(), statistics, clock);
           }};
 }

@@ -20,7 +20,7 @@ std::shared_ptr<const Model> model_of(const std::string& name) {
 }
 
 // The matrix of a step of h at the initial state, with accelerations and multipliers of the size they have there.
-LinearSystem matrix_of(const std::string& name, const FormulationEntry& formulation, MatrixKind kind, double h,
+SampleSystem matrix_of(const std::string& name, const FormulationEntry& formulation, MatrixKind kind, double h,
                        int turn = 0) {
   const auto model = model_of(name);
   const InitialState start = find_initial_state(model, Settings());
@@ -34,7 +34,7 @@ LinearSystem matrix_of(const std::string& name, const FormulationEntry& formulat
   problem->set_position(0, moved);
   problem->set_velocity(v);
 
-  LinearSystem system{name + " " + std::string(formulation.name), problem->pattern(kind), {}};
+  SampleSystem system{name + " " + std::string(formulation.name), problem->pattern(kind), {}};
   std::vector<int> slots;
   int size = 0;
   for (const Block& block : system.pattern.blocks) {
@@ -49,8 +49,8 @@ LinearSystem matrix_of(const std::string& name, const FormulationEntry& formulat
 }
 
 // Largest residual of a solve by rows, each relative to the sizes that meet in it.
-double backward_error(const LinearSystem& system, std::span<const double> x, std::span<const double> b) {
-  LinearSystem sizes = system;
+double backward_error(const SampleSystem& system, std::span<const double> x, std::span<const double> b) {
+  SampleSystem sizes = system;
   for (double& value : sizes.values) value = std::abs(value);
   std::vector<double> x_sizes(x.begin(), x.end());
   for (double& value : x_sizes) value = std::abs(value);
@@ -87,7 +87,7 @@ TEST_P(OnMechanisms, SolveStepsOfAnyLengthAndOtherValuesOnTheSamePattern) {
         bool analyzed = false;
         for (const double h : {1e-2, 1e-3, 1e-6}) {
           for (int turn = 0; turn < 3; ++turn) {
-            const LinearSystem system = matrix_of(name, formulation, kind, h, turn);
+            const SampleSystem system = matrix_of(name, formulation, kind, h, turn);
             if (!analyzed) {
               const LinearStatus status = solver->analyze(system.pattern);
               if (refused(status, name, kind, formulation)) continue;
@@ -113,7 +113,7 @@ TEST_P(OnMechanisms, SolveStepsOfAnyLengthAndOtherValuesOnTheSamePattern) {
 TEST_P(OnMechanisms, SolveKinematics) {
   for (const char* name : {"single_pendulum", "four_link", "slider_crank"}) {
     for (const FormulationEntry& formulation : formulations()) {
-      const LinearSystem system = matrix_of(name, formulation, MatrixKind::kinematic, 1);
+      const SampleSystem system = matrix_of(name, formulation, MatrixKind::kinematic, 1);
       const auto solver = GetParam().make();
       const LinearStatus status = solver->analyze(system.pattern);
       if (refused(status, name, MatrixKind::kinematic, formulation)) continue;
@@ -130,7 +130,7 @@ TEST_P(OnMechanisms, SolveKinematics) {
 TEST_P(OnMechanisms, SayThatMechanismsWithDependentRowsAreSingular) {
   for (const char* name : {"double_four_bar", "andrews"}) {
     for (const FormulationEntry& formulation : formulations()) {
-      const LinearSystem system = matrix_of(name, formulation, MatrixKind::consistent, 1e-3);
+      const SampleSystem system = matrix_of(name, formulation, MatrixKind::consistent, 1e-3);
       const auto solver = GetParam().make();
       LinearStatus status = solver->analyze(system.pattern);
       if (status.ok()) {

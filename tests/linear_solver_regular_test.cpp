@@ -11,8 +11,7 @@ TEST_P(LinearSolvers, PassesBadlyScaledRegularMatrices) {
     for (const BodyKind kind : {BodyKind::six, BodyKind::seven})
       for (const Mechanism& m : {chain(1, 5), chain(8, 5), tree(9, random), ladder(2)})
         for (const bool both : {false, true}) {
-          const LinearSystem s = suited(badly_scaled(m, kind, both, random));
-          if (symmetric_only() && !both) continue;
+          const SampleSystem s = badly_scaled(m, kind, both, random);
           const auto solver = make();
           const LinearStatus status = prepare(*solver, s);
           ASSERT_TRUE(status.ok()) << s.name << ": " << status.message;
@@ -22,8 +21,8 @@ TEST_P(LinearSolvers, PassesBadlyScaledRegularMatrices) {
 }
 
 // The rigid rods of a chain along y, hinged about x: its condition grows as N⁴ and passes 1e16, its pivots stay good.
-LinearSystem straight_chain(int bodies) {
-  LinearSystem s;
+SampleSystem straight_chain(int bodies) {
+  SampleSystem s;
   s.name = "straight_chain_" + std::to_string(bodies);
   s.pattern.n = 11 * bodies;
   const auto add = [&](int row, int col, int rows, int cols, std::initializer_list<double> by_rows) {
@@ -54,7 +53,7 @@ LinearSystem straight_chain(int bodies) {
 }
 
 TEST_P(LinearSolvers, PassesALongChain) {
-  const LinearSystem s = straight_chain(10000);
+  const SampleSystem s = straight_chain(10000);
   const auto solver = make();
   const LinearStatus status = prepare(*solver, s);
   if (status.failure == LinearFailure::refused) GTEST_SKIP() << status.message;

@@ -36,7 +36,7 @@ std::vector<Motion> motions() {
 
 // A system of the motion: its matrix, and its accelerations and multipliers, a solution of the size that is met.
 struct Met {
-  LinearSystem system;
+  SampleSystem system;
   std::vector<double> solution;
 };
 

@@ -19,7 +19,7 @@
 namespace poinsot::test {
 
 // A matrix as an assembler writes it: a value for each entry of each block, column by column, blocks in pattern order.
-struct LinearSystem {
+struct SampleSystem {
   std::string name;
   Pattern pattern;
   std::vector<double> values;
@@ -55,7 +55,7 @@ struct LinearSystem {
 };
 
 // Writes the system where the solver said, as an assembler does.
-inline void write(const LinearSystem& system, LinearSolver& solver) {
+inline void write(const SampleSystem& system, LinearSolver& solver) {
   std::ranges::fill(solver.values(), 0.0);
   std::size_t v = 0, c = 0;
   for (const Block& b : system.pattern.blocks)
@@ -106,10 +106,10 @@ inline Mechanism ladder(int rungs) {
 
 // M: symmetric positive definite plus an unsymmetric perturbation, as in an exact Newton matrix; for the 4 orientation
 // unknowns of `seven` only of rank 3, with the null vector the normalization row forbids. G: random rows.
-inline LinearSystem saddle_point(const Mechanism& mechanism, BodyKind kind, std::mt19937_64& random) {
+inline SampleSystem saddle_point(const Mechanism& mechanism, BodyKind kind, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   const int b = kind == BodyKind::six ? 6 : 7, dim = b - 3;
-  LinearSystem s;
+  SampleSystem s;
   s.name = mechanism.name + (kind == BodyKind::six ? "_six" : "_seven");
   int rows = 0;
   for (const Joint& joint : mechanism.joints) rows += joint.rows;
@@ -169,7 +169,7 @@ inline LinearSystem saddle_point(const Mechanism& mechanism, BodyKind kind, std:
 // LU in long double of the row-equilibrated dense matrix, with partial pivoting.
 class Reference {
  public:
-  explicit Reference(const LinearSystem& s)
+  explicit Reference(const SampleSystem& s)
       : n_(static_cast<std::size_t>(s.pattern.n)), a_(n_ * n_, 0.0L), scale_(n_, 0.0L), order_(n_) {
     std::size_t v = 0;
     for (const Block& b : s.pattern.blocks)
@@ -218,8 +218,8 @@ class Reference {
 };
 
 // Masses from 1e-5 to 1e3 and constraint rows over h², h = 1e-6.
-inline LinearSystem badly_scaled(const Mechanism& mechanism, BodyKind kind, bool both, std::mt19937_64& random) {
-  LinearSystem s = saddle_point(mechanism, kind, random);
+inline SampleSystem badly_scaled(const Mechanism& mechanism, BodyKind kind, bool both, std::mt19937_64& random) {
+  SampleSystem s = saddle_point(mechanism, kind, random);
   const double h = 1e-6;
   for (std::size_t m = 0; m < s.pattern.blocks.size(); ++m) {
     const Block& b = s.pattern.blocks[m];

@@ -16,9 +16,9 @@ INSTANTIATE_TEST_SUITE_P(Formulations, Radau, ::testing::ValuesIn(formulation_na
 
 EqualSteps<RadauStepper> bench(const Scene& scene, Settings settings) {
   settings.linear_solver = "dense";  // fresh pivots: orders are measured down to 1e-13
-  return {scene, settings, [&](Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock) {
-            return std::make_unique<RadauStepper>(problem, solver, settings.linear_solver, settings.rtol,
-                                                  settings.absolute_tolerance(), statistics, clock);
+  return {scene, settings, [&](Problem& problem, LinearSystems& systems, Statistics& statistics, PhaseClock& clock) {
+            return std::make_unique<RadauStepper>(problem, systems, settings.rtol, settings.absolute_tolerance(),
+                                                  statistics, clock);
           }};
 }
 

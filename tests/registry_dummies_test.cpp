@@ -104,7 +104,8 @@ TEST(Dummies, RunTogether) {
   settings.end = 0.1;
   const Recorded found = run(scene_of("double_pendulum"), settings);
   ASSERT_TRUE(found.outcome.status.ok()) << found.outcome.status.message;
-  EXPECT_EQ(found.outcome.statistics.linear_solver, "dummy_linear_solver");
+  ASSERT_EQ(found.outcome.statistics.linear.size(), 1);
+  EXPECT_EQ(found.outcome.statistics.linear[0].solver, "dummy_linear_solver");
   settings.formulation = "rA";
   settings.integrator = "half_implicit";
   settings.linear_solver = "dense";
@@ -118,7 +119,18 @@ TEST(Dummies, RunTogether) {
   }
 }
 
+// ida asks for a vector space of coordinates, whoever offers it.
 TEST(Dummies, AreRefusedWhereTheyMustBe) {
+  Settings settings;
+  settings.formulation = "dummy_formulation";
+  settings.integrator = "ida";
+  try {
+    (void)simulate(scene_of("double_pendulum"), settings, {});
+    ADD_FAILURE() << "ida takes a formulation on a Lie group";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("'ida' refuses formulation 'dummy_formulation'"));
+  }
+
   const auto solver = linear_solvers().require("dummy_linear_solver").make();
   Pattern pattern;
   pattern.n = DummyLinearSolver::kLargest + 1;

@@ -69,14 +69,14 @@ Motion march(const Scene& scene, const Method& method, std::string_view formulat
     status = equal.march(end, steps, steps / kSamples, [&](const Sample& sample) { recorder.add(sample); });
   };
   if (std::string_view(method.name) == "radau5") {
-    run(EqualSteps<RadauStepper>(scene, settings, [&](auto& problem, auto& solver, auto& statistics, auto& clock) {
-      return std::make_unique<RadauStepper>(problem, solver, settings.linear_solver, settings.rtol,
-                                            settings.absolute_tolerance(), statistics, clock);
+    run(EqualSteps<RadauStepper>(scene, settings, [&](auto& problem, auto& systems, auto& statistics, auto& clock) {
+      return std::make_unique<RadauStepper>(problem, systems, settings.rtol, settings.absolute_tolerance(), statistics,
+                                            clock);
     }));
   } else {
     const RungeKuttaPair& pair = std::string_view(method.name) == "dop853" ? dop853_pair() : dopri5_pair();
-    run(EqualSteps<ExplicitStepper>(scene, settings, [&](auto& problem, auto& solver, auto& statistics, auto& clock) {
-      return std::make_unique<ExplicitStepper>(pair, problem, solver, settings.rtol, settings.absolute_tolerance(),
+    run(EqualSteps<ExplicitStepper>(scene, settings, [&](auto& problem, auto& systems, auto& statistics, auto& clock) {
+      return std::make_unique<ExplicitStepper>(pair, problem, systems, settings.rtol, settings.absolute_tolerance(),
                                                statistics, clock);
     }));
   }

@@ -37,7 +37,7 @@ std::vector<Conflict> find_conflicts(const std::shared_ptr<const Model>& model, 
   const std::unique_ptr<Problem> whole = intrinsic_formulation().make(model, {});
   std::vector<double> q(static_cast<std::size_t>(whole->nq())), v(static_cast<std::size_t>(whole->nv()));
   check(independent->from_bodies(states, q, v).ok(), "it represents every orientation");
-  Consistent consistent(*independent, Settings{}.linear_solver);
+  Consistent consistent(*independent, LinearChoice());
   // A projection that fails leaves the state where it was, and the rows are measured there.
   const std::vector<double> q_given = q, v_given = v;
   if (!consistent.project_position(0, q).ok()) q = q_given;

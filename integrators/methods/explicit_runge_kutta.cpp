@@ -36,7 +36,7 @@ class ExplicitRungeKutta final : public Integrator {
 
   Status run(const Run& run) override {
     PhaseClock clock;
-    ControlledPair method(pair_, run.problem, run.solver, run.settings.rtol, run.settings.absolute_tolerance(),
+    ControlledPair method(pair_, run.problem, run.systems, run.settings.rtol, run.settings.absolute_tolerance(),
                           run.statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
     method.start(run.state);

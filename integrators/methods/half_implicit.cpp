@@ -13,7 +13,7 @@ class HalfImplicit final : public FixedSteps {
  public:
   explicit HalfImplicit(const Run& run)
       : FixedSteps(run),
-        ends_(problem_, run.solver, run.statistics, clock_),
+        ends_(problem_, run.systems.add(), run.statistics, clock_),
         newton_(problem_, ends_.begin().system, settings_, Refresh::every_step, run.statistics),
         broyden_(problem_.nv() + problem_.nc(), problem_.nv()),
         velocity_rows_(velocity_rows(problem_)),

@@ -71,9 +71,8 @@ class Session {
         settings_(run.settings),
         statistics_(run.statistics),
         form_(problem_),
-        system_(problem_, run.solver, statistics_, clock_),
-        point_solver_(linear_solvers().require(settings_.linear_solver).make()),
-        consistent_(problem_, *point_solver_, statistics_, clock_),
+        system_(problem_, run.systems.add(Workload::solves), statistics_, clock_),
+        consistent_(problem_, run.systems.add(), statistics_, clock_),
         sizes_(2 * static_cast<std::size_t>(problem_.nv())),
         sizes_now_(sizes_.size()),
         at_(run.state),
@@ -260,7 +259,6 @@ class Session {
   PhaseClock clock_;
   StabilizedIndex2 form_;
   TimedSystem system_;
-  std::unique_ptr<LinearSolver> point_solver_;
   Consistent consistent_;
   std::vector<double> sizes_, sizes_now_;
   State at_, next_;  // the last point given out, and the next one while it is made

@@ -12,7 +12,7 @@ class ImplicitEuler final : public FixedSteps {
       : FixedSteps(run),
         policy_(jacobians().require(settings_.jacobian)),
         scale_{1, h_, h_ * h_},
-        system_(problem_, run.solver, policy_.matrix, run.statistics, clock_),
+        system_(problem_, run.systems.add(policy_.workload()), policy_.matrix, run.statistics, clock_),
         newton_(problem_, system_, settings_, policy_.refresh, run.statistics),
         dq_(nv_) {}
 

@@ -17,12 +17,12 @@ class Kinematics final : public FixedSteps {
   explicit Kinematics(const Run& run)
       : FixedSteps(run),
         refresh_(jacobians().require(settings_.jacobian).refresh),
-        system_(problem_, run.solver, MatrixKind::kinematic, run.statistics, clock_),
+        system_(problem_, run.systems.add(), MatrixKind::kinematic, run.statistics, clock_),
         delta_(nc_),
         q_next_(problem_.nq()),
         dq_(nv_) {
     if (settings_.reactions) {
-      inverse_dynamics_ = std::make_unique<Consistent>(problem_, settings_.linear_solver);
+      inverse_dynamics_ = std::make_unique<Consistent>(problem_, settings_.linear());
     } else {
       x_.z.setZero(nv_);  // no multipliers
     }

@@ -25,8 +25,8 @@ class Radau5 final : public Integrator {
   Status run(const Run& run) override {
     PhaseClock clock;
     const Settings& settings = run.settings;
-    ControlledRadau method(run.problem, run.solver, settings.linear_solver, settings.rtol,
-                           settings.absolute_tolerance(), run.statistics, clock);
+    ControlledRadau method(run.problem, run.systems, settings.rtol, settings.absolute_tolerance(), run.statistics,
+                           clock);
     if (Status status = method.prepare(); !status.ok()) return status;
     method.start(run.state);
     return controlled_run(method, kRule, run, clock);

@@ -16,7 +16,7 @@ Status find_first_state(const InitialState& initial, const Settings& settings, P
     std::ranges::copy(initial.z, state.z.begin());
     return {};
   }
-  Consistent consistent(problem, settings.linear_solver);
+  Consistent consistent(problem, settings.linear());
   consistent.stand(state);
   if (discrete && problem.accept(state.t, span(state.q), span(state.v), state.a())) consistent.stand(state);
   return consistent.accelerations(state.t, span(state.z));

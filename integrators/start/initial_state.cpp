@@ -77,7 +77,7 @@ class Assembler {
     const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, result_.dropped);
     std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
     check(problem->from_bodies(given_, q, v).ok(), "rA represents every orientation");
-    Consistent consistent(*problem, settings_.linear_solver);
+    Consistent consistent(*problem, settings_.linear());
     if (off_position()) {
       if (Status status = consistent.project_position(0, q); !status.ok()) return status;
     }

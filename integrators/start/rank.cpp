@@ -77,7 +77,7 @@ bool neighbour(Problem& problem, const std::vector<int>& dependent, std::span<co
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   for (std::size_t k = 0; k < at_rest.size(); ++k) move[k] = normal(random);
-  Consistent consistent(*here, Settings{}.linear_solver);
+  Consistent consistent(*here, LinearChoice());
   if (!consistent.factor(0).ok() || !consistent.solve(0, move).ok()) return false;
   move.resize(at_rest.size());
   double length = 0;
@@ -95,7 +95,7 @@ bool neighbour(Problem& problem, const std::vector<int>& dependent, std::span<co
 
   const std::unique_ptr<Problem> there =
       make(dependent_columns(transposed_gradient(problem, beside, states), kRankTolerance));
-  if (!Consistent(*there, Settings{}.linear_solver).project_position(0, beside).ok()) return false;
+  if (!Consistent(*there, LinearChoice()).project_position(0, beside).ok()) return false;
   if (distance() < 0.5 * moved) return false;  // the constraints take it back where it was
   problem.set_position(0, beside);
   std::vector<double> Phi(static_cast<std::size_t>(problem.nc()));

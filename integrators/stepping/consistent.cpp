@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "integrators/stepping/vectors.h"
-#include "linsolve/registry.h"
 
 namespace poinsot {
 namespace {
@@ -27,20 +26,20 @@ double largest(std::span<const double> x) {
 
 }  // namespace
 
-Consistent::Consistent(Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock)
-    : Consistent(problem, solver, statistics, clock, nullptr) {}
+Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock)
+    : Consistent(problem, linear, statistics, clock, nullptr) {}
 
-Consistent::Consistent(Problem& problem, std::string_view linear_solver)
-    : Consistent(problem, std::make_unique<Aside>(Aside{linear_solvers().require(linear_solver).make(), {}, {}})) {}
+Consistent::Consistent(Problem& problem, const LinearChoice& choice)
+    : Consistent(problem, std::make_unique<Aside>(Aside{LinearSystem(choice), {}, {}})) {}
 
 Consistent::Consistent(Problem& problem, std::unique_ptr<Aside>&& aside)
-    : Consistent(problem, *aside->solver, aside->statistics, aside->clock, std::move(aside)) {}
+    : Consistent(problem, aside->linear, aside->statistics, aside->clock, std::move(aside)) {}
 
-Consistent::Consistent(Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock,
+Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock,
                        std::unique_ptr<Aside>&& aside)
     : problem_(problem),
       aside_(std::move(aside)),
-      system_(problem, solver, MatrixKind::consistent, statistics, clock),
+      system_(problem, linear, MatrixKind::consistent, statistics, clock),
       nv_(static_cast<std::size_t>(problem.nv())),
       nc_(static_cast<std::size_t>(problem.nc())),
       rhs_(problem.nv() + problem.nc()),

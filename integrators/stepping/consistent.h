@@ -13,7 +13,6 @@
 #include <Eigen/Core>
 #include <memory>
 #include <span>
-#include <string_view>
 
 #include "integrators/stepping/step_system.h"
 
@@ -22,9 +21,9 @@ namespace poinsot {
 class Consistent {
  public:
   // Part of a run: counted and timed there.
-  Consistent(Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock);
-  // Beside a run: with a linear solver of its own, counted nowhere.
-  Consistent(Problem& problem, std::string_view linear_solver);
+  Consistent(Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock);
+  // Beside a run: with a linear system of its own, counted nowhere.
+  Consistent(Problem& problem, const LinearChoice& choice);
 
   // Analyses the pattern. Where steps must not allocate, call it before the clock starts; else the first factorization
   // does.
@@ -57,12 +56,12 @@ class Consistent {
  private:
   // What a run lends.
   struct Aside {
-    std::unique_ptr<LinearSolver> solver;
+    LinearSystem linear;
     Statistics statistics;
     PhaseClock clock;
   };
   Consistent(Problem& problem, std::unique_ptr<Aside>&& aside);
-  Consistent(Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock,
+  Consistent(Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock,
              std::unique_ptr<Aside>&& aside);
 
   // δq and δv for the constraints' residuals at the problem's point, in moves().

@@ -14,11 +14,11 @@ Eigen::Index columns(const RungeKuttaPair& pair) {
 
 }  // namespace
 
-ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, LinearSolver& solver, double rtol,
+ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, LinearSystems& systems, double rtol,
                                  double atol, Statistics& statistics, PhaseClock& clock)
     : pair_(pair),
       problem_(problem),
-      consistent_(problem, solver, statistics, clock),
+      consistent_(problem, systems.add(Workload::solves), statistics, clock),
       rtol_(rtol),
       atol_(atol),
       nv_(static_cast<std::size_t>(problem.nv())),

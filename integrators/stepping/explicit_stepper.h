@@ -26,7 +26,7 @@ class ExplicitStepper {
  public:
   using Vector = Eigen::VectorXd;
 
-  ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, LinearSolver& solver, double rtol, double atol,
+  ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, LinearSystems& systems, double rtol, double atol,
                   Statistics& statistics, PhaseClock& clock);
 
   Status prepare() { return consistent_.prepare(); }

@@ -63,14 +63,12 @@ std::span<double> column(Eigen::Matrix<double, Eigen::Dynamic, 3>& m, Eigen::Ind
 
 // The error estimate has order 3, the method 5: with the same tolerance for both, errors would be far smaller than
 // asked for. Hairer's code asks the estimate for 0.1 rtol^(2/3).
-RadauStepper::RadauStepper(Problem& problem, LinearSolver& solver, std::string_view linear_solver, double rtol,
-                           double atol, Statistics& statistics, PhaseClock& clock)
+RadauStepper::RadauStepper(Problem& problem, LinearSystems& systems, double rtol, double atol, Statistics& statistics,
+                           PhaseClock& clock)
     : problem_(problem),
-      filter_solver_(linear_solvers().require(linear_solver).make()),
-      point_solver_(linear_solvers().require(linear_solver).make()),
-      system_(problem, solver, statistics, clock),
-      filter_(problem, *filter_solver_, statistics, clock),
-      consistent_(problem, *point_solver_, statistics, clock),
+      system_(problem, systems.add(Workload::solves), statistics, clock),
+      filter_(problem, systems.add(), statistics, clock),
+      consistent_(problem, systems.add(Workload::solves), statistics, clock),
       step_(problem),
       within_(problem),
       rtol_(0.1 * std::pow(rtol, 2.0 / 3)),

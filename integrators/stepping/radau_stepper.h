@@ -33,10 +33,8 @@ class RadauStepper {
  public:
   using Vector = Eigen::VectorXd;
 
-  // `solver` takes the stages; others of the kind called `linear_solver` are made for the error and for the consistent
-  // points.
-  RadauStepper(Problem& problem, LinearSolver& solver, std::string_view linear_solver, double rtol, double atol,
-               Statistics& statistics, PhaseClock& clock);
+  RadauStepper(Problem& problem, LinearSystems& systems, double rtol, double atol, Statistics& statistics,
+               PhaseClock& clock);
 
   Status prepare();
   // From a consistent state. The problem stands there afterwards.
@@ -87,7 +85,6 @@ class RadauStepper {
   void end_of_step(const State& from, double to, State& at);
 
   Problem& problem_;
-  std::unique_ptr<LinearSolver> filter_solver_, point_solver_;
   TimedSystem system_, filter_;
   Consistent consistent_;
   Linearized step_, within_;               // within_: of samples

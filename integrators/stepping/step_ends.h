@@ -18,10 +18,10 @@ class StepEnds {
   };
 
   // The first step begins at `problem`.
-  StepEnds(Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock)
+  StepEnds(Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock)
       : second_(problem.clone()),
-        ends_{{problem, {problem, solver, MatrixKind::consistent, statistics, clock}},
-              {*second_, {*second_, solver, MatrixKind::consistent, statistics, clock}}} {}
+        ends_{{problem, {problem, linear, MatrixKind::consistent, statistics, clock}},
+              {*second_, {*second_, linear, MatrixKind::consistent, statistics, clock}}} {}
   StepEnds(const StepEnds&) = delete;
   StepEnds& operator=(const StepEnds&) = delete;
 

@@ -4,18 +4,18 @@
 
 namespace poinsot {
 
-TimedSystem::TimedSystem(const Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock)
-    : problem_(problem), solver_(solver), statistics_(statistics), clock_(clock) {}
+TimedSystem::TimedSystem(const Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock)
+    : problem_(problem), linear_(linear), statistics_(statistics), clock_(clock) {}
 
 Status TimedSystem::prepare(const Pattern& pattern, std::vector<int> unknowns) {
   unknowns_ = std::move(unknowns);
-  return explained(0, solver_.analyze(pattern));
+  return explained(0, linear_.analyze(pattern));
 }
 
 Status TimedSystem::factor(double t) {
   ++statistics_.jacobian_evaluations;
   clock_.lap(Phase::assembly);
-  LinearStatus status = solver_.factor();
+  LinearStatus status = linear_.factor();
   ++statistics_.factorizations;
   clock_.lap(Phase::factor);
   return explained(t, std::move(status));
@@ -23,7 +23,7 @@ Status TimedSystem::factor(double t) {
 
 Status TimedSystem::solve(double t, std::span<double> b) {
   clock_.lap(Phase::other);
-  LinearStatus status = solver_.solve(b);
+  LinearStatus status = linear_.solve(b);
   ++statistics_.solves;
   clock_.lap(Phase::solve);
   return explained(t, std::move(status));

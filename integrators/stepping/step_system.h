@@ -14,7 +14,7 @@ namespace poinsot {
 // Any system about a problem.
 class TimedSystem {
  public:
-  TimedSystem(const Problem& problem, LinearSolver& solver, Statistics& statistics, PhaseClock& clock);
+  TimedSystem(const Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock);
 
   // Analyses the pattern. Call once, before the clock starts. unknowns[k]: which of the problem's unknowns the system's
   // k-th belongs to, for messages; empty: they are the same.
@@ -24,20 +24,20 @@ class TimedSystem {
   template <class Write>
   Status refresh(double t, Write&& write) {
     clock_.lap(Phase::other);
-    std::ranges::fill(solver_.values(), 0.0);
-    write(solver_.slots(), solver_.values());
+    std::ranges::fill(linear_.values(), 0.0);
+    write(linear_.slots(), linear_.values());
     return factor(t);
   }
   // b ← A⁻¹ b.
   Status solve(double t, std::span<double> b);
-  bool ready() const { return solver_.state() == LinearSolver::State::factored; }
+  bool ready() const { return linear_.factored(); }
 
  private:
   Status factor(double t);
   Status explained(double t, LinearStatus status) const;
 
   const Problem& problem_;
-  LinearSolver& solver_;
+  LinearSystem& linear_;
   Statistics& statistics_;
   PhaseClock& clock_;
   std::vector<int> unknowns_;
@@ -46,8 +46,8 @@ class TimedSystem {
 // A system of the problem's own matrices.
 class StepSystem : public TimedSystem {
  public:
-  StepSystem(Problem& problem, LinearSolver& solver, MatrixKind kind, Statistics& statistics, PhaseClock& clock)
-      : TimedSystem(problem, solver, statistics, clock), problem_(problem), kind_(kind) {}
+  StepSystem(Problem& problem, LinearSystem& linear, MatrixKind kind, Statistics& statistics, PhaseClock& clock)
+      : TimedSystem(problem, linear, statistics, clock), problem_(problem), kind_(kind) {}
 
   Status prepare() { return TimedSystem::prepare(problem_.pattern(kind_)); }
   // Assembles at the problem's point and factors.

@@ -8,10 +8,9 @@
 //              then Bauer's condition (condition.h) and the residual of a solve decide;
 //   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
 //
-// A mechanism without degrees of freedom needs less: its square G alone is factorized (determined.h).
-//
-// Where this does not lead to a trustworthy answer the same values go to klu, whose word counts, singular included.
-// Matrices without a saddle point's symmetric structure (kinematics) go to klu from the start.
+// Where this does not lead to a trustworthy answer the same values are handed over to klu, whose word counts, singular
+// included; so are all matrices without a saddle point's symmetric structure (kinematics). Each is counted, and
+// helper() shows who took them.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -26,7 +25,6 @@
 #include "linsolve/block/schedule.h"
 #include "linsolve/condition.h"
 #include "linsolve/csc_layout.h"
-#include "linsolve/determined.h"
 #include "linsolve/equilibration.h"
 #include "linsolve/finite.h"
 #include "linsolve/residual.h"
@@ -34,17 +32,30 @@
 namespace poinsot::block {
 namespace {
 
-constexpr double kSymmetric = 0.9;        // share of mirrored entries that makes a saddle point
-constexpr double kNear = 10, kFar = 1e3;  // drift of pivots that is trusted unseen, and with a look at residuals
-constexpr double kSmallResidual = 2e-15;  // relative; above, residuals of later solutions are looked at
+constexpr double kSymmetric = 0.9;  // share of mirrored entries: saddle points have 1, matrices of kinematics less
+// Drift of pivots. Growth of rounding errors goes with it at worst: within a decade solutions lose one digit of the
+// three that condition and elimination usually leave free; within three, what refinement brings back in one step.
+constexpr double kNear = 10, kFar = 1e3;
+// Residuals, relative; rounding of a sum of a few terms leaves about 1e-15.
+constexpr double kSmallResidual = 2e-15;  // above, residuals of later solutions are looked at
 constexpr double kGoodResidual = 3e-15;   // above, a solution is refined; less than ten times klu's good ones
-constexpr double kFairResidual = 1e-12;   // above, other pivots are tried
+constexpr double kFairResidual = 1e-12;   // above, other pivots are tried: refinement would take more than one step
 constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not accepted
-constexpr double kCancelled = 1e-6;       // part of its size that is left of a pivot: worth another order
-constexpr double kRounding = 1e-10;       // the same: little but rounding
-constexpr int kRefinements = 3;
-constexpr int kRepairs = 8;
-constexpr int kPatience = 3;  // times in a row that klu has to help before it takes over
+// Part of its size that is left of a pivot. Of 16 digits 10 remain at the first, which refinement makes good, though
+// another order may do without; at the second no more than 6, of which refinement may converge to anything.
+constexpr double kCancelled = 1e-6, kRounding = 1e-10;
+constexpr int kRefinements = 3;  // each gains three digits or more of kFairResidual; beyond, they do not converge
+constexpr int kRepairs = 8;      // each fuses all that is bad at the time and costs an analysis
+constexpr int kPatience = 3;     // times in a row that klu has to help before it takes over
+
+// How solutions are made of the values at hand.
+enum class Answer {
+  open,         // pivots are examined at the next factorization
+  trusted,      // given out unseen
+  checked,      // the residual of each is looked at
+  helped,       // by klu; the next values are tried here again
+  handed_over,  // by klu, and all that follow
+};
 
 class Solver final : public LinearSolver {
  private:
@@ -57,14 +68,9 @@ class Solver final : public LinearSolver {
     values_.assign(index(layout_.nonzeros()), 0);
     statistics_.nonzeros = layout_.nonzeros();
     klu_.reset();
-    examined_ = false;
     helped_ = 0;
     fused_.assign(index(1 + *std::ranges::max_element(node_)), -1);
-    by_klu_ = only_klu_ = symmetry(layout_) < kSymmetric;
-    ordered_ = determined_fits_ = false;
-    determined_ = only_klu_ ? nullptr : std::make_unique<Determined>();
-    if (determined_ && !determined_->analyze(layout_)) determined_.reset();
-    if (!only_klu_ && !determined_) only_klu_ = !order();
+    answer_ = symmetry(layout_) >= kSymmetric && order() ? Answer::open : Answer::handed_over;
     return {};
   }
 
@@ -77,30 +83,20 @@ class Solver final : public LinearSolver {
     }
     factor_.resize(schedule_);
     statistics_.factor_nonzeros = schedule_.factor_nonzeros;
-    return ordered_ = true;
+    return true;
   }
 
   LinearStatus do_factor() override {
-    determined_fits_ = determined_ && determined_->fits(values_);
-    if (determined_fits_) return factor_determined();
-    by_klu_ = only_klu_ = only_klu_ || (!ordered_ && !order());
-    if (by_klu_) return factor_by_klu();
-    const Drift drift = factor_.factor(schedule_, values_, examined_);
-    if (!examined_ || !within(drift, kFar)) return factor_fresh();
+    if (answer_ == Answer::handed_over) return factor_by_klu();
+    const bool examined = answer_ == Answer::trusted || answer_ == Answer::checked;
+    const Drift drift = factor_.factor(schedule_, values_, examined);
+    if (!examined || !within(drift, kFar)) return factor_fresh();
     ++statistics_.refactorizations;
-    drifted_ = watched_ || !within(drift, kNear);
+    answer_ = watched_ || !within(drift, kNear) ? Answer::checked : Answer::trusted;
     return {};
   }
 
-  LinearStatus factor_determined() {
-    const LinearStatistics& after = determined_->statistics();
-    statistics_.factorizations -= after.factorizations, statistics_.refactorizations -= after.refactorizations;
-    LinearStatus status = determined_->factor(values_);
-    statistics_.factorizations += after.factorizations, statistics_.refactorizations += after.refactorizations;
-    statistics_.factor_nonzeros = after.factor_nonzeros;
-    statistics_.reciprocal_condition = after.reciprocal_condition;
-    return status;
-  }
+  Helper helper() const override { return {"klu", klu_.get()}; }
 
   static bool within(const Drift& drift, double range) {
     return drift.poison == 0 && drift.least * range >= 1 && drift.largest <= range;
@@ -115,7 +111,7 @@ class Solver final : public LinearSolver {
       (void)equilibration.find(layout_, values_);
       residual_.measure_by(equilibration.row(), equilibration.col());
     }
-    examined_ = false;
+    answer_ = Answer::open;
     for (int repairs = 0; !trustworthy(); ++repairs) {
       const auto bad = cancelled_pivots(schedule_, values_, residual_.rows(), kCancelled);
       if (repairs == kRepairs || !fuse(bad) || !order()) return factor_by_klu();
@@ -124,9 +120,8 @@ class Solver final : public LinearSolver {
     // size.
     if (!cancelled_pivots(schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
     watched_ = watched_ || !cancelled_pivots(schedule_, values_, weight_, kCancelled).empty();
-    examined_ = true;
     factor_.keep_pivots(schedule_);
-    drifted_ = watched_;
+    answer_ = watched_ ? Answer::checked : Answer::trusted;
     helped_ = 0;
     return {};
   }
@@ -141,6 +136,7 @@ class Solver final : public LinearSolver {
     std::vector<double> x(rows.size());  // sizes of the unknowns, then a solution
     for (std::size_t j = 0; j < x.size(); ++j) x[j] = residual_.column(j);
     double size = 0;
+    std::int64_t corrections = 0;
     const auto solve = [&](std::span<double> b) {
       b_.assign(b.begin(), b.end());
       factor_.solve(schedule_, b);
@@ -156,7 +152,8 @@ class Solver final : public LinearSolver {
       std::ranges::transform(rows, x.begin(), [](double row) { return 1 / row; });
       solve(x);
       watched_ = size > kSmallResidual;
-      if (estimate < kSingularCondition && (size <= kFairResidual || (last && refine(x) <= kLargeResidual)))
+      if (estimate < kSingularCondition &&
+          (size <= kFairResidual || (last && refine(x, corrections) <= kLargeResidual)))
         return true;
       std::ranges::transform(condition.rows(), weight_.begin(), [](double w) { return 1 / w; });
       std::ranges::copy(condition.columns(), x.begin());
@@ -195,28 +192,25 @@ class Solver final : public LinearSolver {
   }
 
   LinearStatus do_solve(std::span<double> b) override {
-    if (determined_fits_) {
-      determined_->solve(layout_, values_, b);
-      return {};
-    }
-    if (by_klu_) return klu_->solve(b);
-    if (!drifted_) {
+    if (answer_ == Answer::helped || answer_ == Answer::handed_over) return klu_->solve(b);
+    if (answer_ == Answer::trusted) {
       factor_.solve(schedule_, b);
       return {};
     }
     b_.assign(b.begin(), b.end());
     factor_.solve(schedule_, b);
-    if (residual(b_, b) <= kGoodResidual || refine(b) <= kLargeResidual) return {};
+    if (residual(b_, b) <= kGoodResidual || refine(b, statistics_.refinements) <= kLargeResidual) return {};
     std::ranges::copy(b_, b.begin());
     if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
     return klu_->solve(b);
   }
 
   // Corrects x, whose residual for b_ was found, until the residual is small, a few times at most; the residual.
-  double refine(std::span<double> x) {
+  double refine(std::span<double> x, std::int64_t& corrections) {
     double size = HUGE_VAL;
     for (int step = 0; step < kRefinements && !(size <= kGoodResidual); ++step) {
       correct(x);
+      ++corrections;
       size = residual(b_, x);
     }
     return size;
@@ -243,12 +237,11 @@ class Solver final : public LinearSolver {
       if (LinearStatus status = klu_->analyze(columns); !status.ok()) return status;
     }
     ++statistics_.handed_over;
-    if (++helped_ >= kPatience) only_klu_ = true;
+    if (answer_ != Answer::handed_over) answer_ = ++helped_ < kPatience ? Answer::helped : Answer::handed_over;
     std::ranges::copy(values_, klu_->values().begin());
     LinearStatus status = klu_->factor();
     statistics_.reciprocal_condition = klu_->statistics().reciprocal_condition;
     statistics_.factor_nonzeros = klu_->statistics().factor_nonzeros;
-    by_klu_ = status.ok();
     return status;
   }
 
@@ -256,16 +249,13 @@ class Solver final : public LinearSolver {
   std::vector<int> node_, fused_;
   Schedule schedule_;
   Factor factor_;
-  std::unique_ptr<Determined> determined_;  // where the structure has the form
   std::unique_ptr<LinearSolver> klu_;
   Residual residual_;
   std::vector<double> b_;
   std::vector<double> weight_;  // of rows in the choice of pivots
-  bool ordered_ = false, examined_ = false, determined_fits_ = false;
+  Answer answer_ = Answer::open;
   bool watched_ = false;  // the last fresh factorization left larger residuals or cancelled much: all are looked at
-  bool drifted_ = false;  // that, or pivots left those of the last fresh factorization
-  bool by_klu_ = false, only_klu_ = false;
-  int helped_ = 0;
+  int helped_ = 0;        // by klu, times in a row
 };
 
 }  // namespace

@@ -13,38 +13,15 @@ namespace poinsot::test {
 inline constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 // analyze, write, factor; the status of the first that fails.
-inline LinearStatus prepare(LinearSolver& solver, const LinearSystem& s) {
+inline LinearStatus prepare(LinearSolver& solver, const SampleSystem& s) {
   if (LinearStatus status = solver.analyze(s.pattern); !status.ok()) return status;
   write(s, solver);
   return solver.factor();
 }
 
-// Some solvers take symmetric systems only; they refuse the others, and are tested with the symmetric parts of bodies.
 class LinearSolvers : public testing::TestWithParam<LinearSolverEntry> {
  protected:
-  LinearSolvers() {
-    std::mt19937_64 random(1);
-    const LinearStatus status = prepare(*make(), saddle_point(chain(2, 5), BodyKind::six, random));
-    symmetric_only_ = status.failure == LinearFailure::refused;
-    EXPECT_EQ(status.message.empty(), !symmetric_only_);
-  }
   static std::unique_ptr<LinearSolver> make() { return GetParam().make(); }
-  bool symmetric_only() const { return symmetric_only_; }
-
-  LinearSystem suited(LinearSystem s) const {
-    for (std::size_t m = 0; symmetric_only_ && m < s.pattern.blocks.size(); ++m) {
-      const Block& b = s.pattern.blocks[m];
-      const auto n = static_cast<std::size_t>(b.rows);
-      if (b.row != b.col || b.rows != b.cols) continue;
-      for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < i; ++j)
-          s.block(m)[j * n + i] = s.block(m)[i * n + j] = 0.5 * (s.block(m)[j * n + i] + s.block(m)[i * n + j]);
-    }
-    return s;
-  }
-
- private:
-  bool symmetric_only_ = false;
 };
 
 INSTANTIATE_TEST_SUITE_P(Registry, LinearSolvers, testing::ValuesIn(linear_solvers()),
@@ -59,7 +36,7 @@ inline std::vector<double> random_vector(int n, std::mt19937_64& random) {
 
 // The factors D_r, D_c in whose norms a badly scaled system is judged.
 struct Scaled {
-  explicit Scaled(const LinearSystem& s) {
+  explicit Scaled(const SampleSystem& s) {
     CscLayout layout;
     EXPECT_TRUE(layout.build(s.pattern).ok());
     std::vector<double> values(static_cast<std::size_t>(layout.nonzeros()), 0.0);
@@ -100,7 +77,7 @@ struct Scaled {
 };
 
 // ‖D_r (b − A x)‖ / (‖D_r A D_c‖ ‖D_c⁻¹ x‖ + ‖D_r b‖), largest entries.
-inline long double backward_error(const LinearSystem& s, const Scaled& scaled, std::span<const double> x,
+inline long double backward_error(const SampleSystem& s, const Scaled& scaled, std::span<const double> x,
                                   std::span<const double> b) {
   std::vector<long double> r = s.times(x);
   for (std::size_t i = 0; i < r.size(); ++i) r[i] = static_cast<long double>(b[i]) - r[i];
@@ -108,7 +85,7 @@ inline long double backward_error(const LinearSystem& s, const Scaled& scaled, s
 }
 
 // Backward error at rounding level, forward error no more than the condition makes of it.
-inline void expect_solved(const LinearSystem& s, std::span<const double> x, std::span<const double> b) {
+inline void expect_solved(const SampleSystem& s, std::span<const double> x, std::span<const double> b) {
   const Scaled scaled(s);
   EXPECT_LE(backward_error(s, scaled, x, b), 8 * kEps * s.pattern.n) << s.name;
 
@@ -131,7 +108,7 @@ inline void expect_solved(const LinearSystem& s, std::span<const double> x, std:
       << s.name;
 }
 
-inline void expect_solves(LinearSolver& solver, const LinearSystem& s, std::mt19937_64& random) {
+inline void expect_solves(LinearSolver& solver, const SampleSystem& s, std::mt19937_64& random) {
   const std::vector<double> b = random_vector(s.pattern.n, random);
   std::vector<double> x = b;
   const LinearStatus status = solver.solve(x);

@@ -1,0 +1,98 @@
+#include "linsolve/linear_system.h"
+
+#include <algorithm>
+
+namespace poinsot {
+namespace {
+
+void add(LinearWork one, const LinearStatistics& did, std::vector<LinearWork>& work) {
+  if (did.factorizations + did.refactorizations == 0) return;
+  const auto same = std::ranges::find_if(work, [&](const LinearWork& w) {
+    return w.solver == one.solver && w.system == one.system && w.handed_over_by == one.handed_over_by;
+  });
+  LinearWork& sum = same == work.end() ? work.emplace_back(one) : *same;
+  sum.factorizations += did.factorizations;
+  sum.refactorizations += did.refactorizations;
+  sum.solves += did.solves;
+  sum.refinements += did.refinements;
+  if (did.reciprocal_condition > 0 &&
+      (sum.reciprocal_condition == 0 || did.reciprocal_condition < sum.reciprocal_condition))
+    sum.reciprocal_condition = did.reciprocal_condition;
+}
+
+void add(std::string_view name, const LinearSolver& solver, std::string_view system, std::vector<LinearWork>& work) {
+  if (!solver.picked().empty()) name = solver.picked();
+  LinearStatistics own = solver.statistics();
+  if (const LinearSolver::Helper helper = solver.helper(); helper.solver) {
+    own.solves -= helper.solver->statistics().solves;
+    add({helper.name, system, name}, helper.solver->statistics(), work);
+  }
+  add({name, system, {}}, own, work);
+}
+
+}  // namespace
+
+LinearSystem::LinearSystem(const LinearChoice& choice, Workload workload)
+    : solver_(&linear_solvers().require(choice.solver)), workload_(workload) {
+  may_reduce_ = linear_systems().require(choice.system).square_jacobian && solver_->takes_jacobian;
+}
+
+LinearStatus LinearSystem::analyze(const Pattern& pattern) {
+  by_jacobian_ = false;
+  whole_.reset(), jacobian_.reset();
+  if (may_reduce_ && SquareJacobian::fits(pattern)) {
+    auto jacobian = std::make_unique<SquareJacobian>(solver_->make());
+    if (jacobian->analyze(pattern)) {
+      pattern_ = pattern;
+      jacobian_ = std::move(jacobian);
+      return {};
+    }
+  }
+  whole_ = solver_->make();
+  return whole_->analyze(pattern, workload_);
+}
+
+LinearStatus LinearSystem::factor() {
+  if (!jacobian_) return whole_->factor();
+  by_jacobian_ = jacobian_->carries_all();
+  return by_jacobian_ ? jacobian_->factor() : factor_whole_instead();
+}
+
+// For values that have not the form, though their places have.
+LinearStatus LinearSystem::factor_whole_instead() {
+  if (!whole_) {
+    whole_ = solver_->make();
+    if (LinearStatus status = whole_->analyze(pattern_, workload_); !status.ok()) return status;
+  }
+  std::ranges::fill(whole_->values(), 0.0);
+  std::size_t column = 0;
+  for (const Block& b : pattern_.blocks)
+    for (int c = 0; c < b.cols; ++c, ++column)
+      std::copy_n(jacobian_->values().data() + jacobian_->slots()[column], b.rows,
+                  whole_->values().data() + whole_->slots()[column]);
+  return whole_->factor();
+}
+
+bool LinearSystem::factored() const {
+  if (by_jacobian_) return jacobian_->factored();
+  return whole_ && whole_->state() == LinearSolver::State::factored;
+}
+
+void LinearSystem::add_work(std::vector<LinearWork>& work) const {
+  if (jacobian_) add(solver_->name, jacobian_->solver(), "G", work);
+  if (whole_) add(solver_->name, *whole_, "whole", work);
+}
+
+LinearSystem& LinearSystems::add(Workload workload) {
+  return *systems_.emplace_back(std::make_unique<LinearSystem>(choice_, workload));
+}
+
+std::vector<LinearWork> LinearSystems::work() const {
+  std::vector<LinearWork> work;
+  for (const auto& system : systems_) system->add_work(work);
+  std::ranges::stable_sort(work, std::ranges::greater(),
+                           [](const LinearWork& w) { return w.factorizations + w.refactorizations; });
+  return work;
+}
+
+}  // namespace poinsot

@@ -1,0 +1,52 @@
+// A mechanism without degrees of freedom: as many constraints as velocities, so that G is square and
+//
+//   [ K  Gᵀ ] [ v ]   [ f ]
+//   [ G  0  ] [ λ ] = [ γ ]      is solved by   v = G⁻¹ γ,   λ = G⁻ᵀ (f − K v).
+//
+// One factorization of G, half the size, instead of the whole matrix; K is only multiplied with. The block above G is
+// compared with Gᵀ number by number at every factorization; where it differs (velocity rows, some force laws) the whole
+// matrix has to be factored.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "linsolve/csc_layout.h"
+#include "linsolve/linear_solver.h"
+
+namespace poinsot {
+
+class SquareJacobian {
+ public:
+  // Factors G with `solver`, which takes matrices of any structure and solves with their transpose.
+  explicit SquareJacobian(std::unique_ptr<LinearSolver> solver) : solver_(std::move(solver)) {}
+
+  // Whether there are as many unknowns with a diagonal entry (velocities) as without (multipliers). Needs little; most
+  // patterns end here.
+  static bool fits(const Pattern& pattern);
+  // Whether the pattern has the form, and the solver takes G. Keeps a reference to nothing.
+  bool analyze(const Pattern& pattern);
+
+  std::span<const int> slots() const { return layout_.slots; }
+  std::span<double> values() { return values_; }
+  bool carries_all() const;  // the values are symmetric in G and Gᵀ
+  // After carries_all(). The unknown of a failure is one of the whole system.
+  LinearStatus factor();
+  LinearStatus solve(std::span<double> b);
+  bool factored() const { return solver_->state() == LinearSolver::State::factored; }
+  const LinearSolver& solver() const { return *solver_; }
+
+ private:
+  CscLayout layout_;  // of the whole
+  std::vector<double> values_;
+  std::vector<int> velocities_, multipliers_;  // their places in the whole system, ascending
+  std::vector<int> velocity_of_;               // by unknown, −1 for a multiplier
+  std::vector<std::pair<int, int>> g_;         // entries of G: place in the whole, place in solver_
+  std::vector<std::pair<int, int>> mirror_;    // entries of G and Gᵀ that have to be equal
+  std::unique_ptr<LinearSolver> solver_;
+  std::vector<double> v_, f_;
+};
+
+}  // namespace poinsot

@@ -1,0 +1,172 @@
+// Which matrix is factored, by which linear solver, and that the record of a run says so.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/index.h"
+#include "core/scene_reader.h"
+#include "formulations/registry.h"
+#include "integrators/simulate.h"
+#include "linsolve/registry.h"
+#include "tests/linsolve_systems.h"
+
+namespace poinsot::test {
+namespace {
+
+std::vector<std::string> models() {
+  std::vector<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(std::string(POINSOT_SOURCE_DIR) + "/models"))
+    if (const std::string name = file.path().stem(); name.find('.') == std::string::npos) names.push_back(name);
+  std::ranges::sort(names);
+  return names;
+}
+
+Scene model(const std::string& name) {
+  return read_scene(std::string(POINSOT_SOURCE_DIR) + "/models/" + name + ".json");
+}
+
+// As many constraints as velocities, none of them on velocities alone.
+bool has_square_jacobian(const Scene& scene) {
+  const Model compiled = compile(scene);
+  return compiled.rows.size() == 6 * compiled.bodies.size() &&
+         std::ranges::none_of(compiled.rows, [](const Row& row) { return row.type == RowType::pfaffian; });
+}
+
+Settings a_few_steps(std::string_view formulation, std::string_view linear_solver) {
+  Settings settings;
+  settings.formulation = formulation;
+  settings.linear_solver = linear_solver;
+  settings.step = 1e-4;
+  settings.end = 1e-3;
+  settings.tolerance = 1e-2;
+  settings.max_iterations = 50;
+  return settings;
+}
+
+class Models : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(All, Models, testing::ValuesIn(models()), [](const auto& name) { return name.param; });
+
+// What the record names is who counted the factorizations; what it should be follows from the model and the choice.
+TEST_P(Models, TheRecordNamesWhoFactoredWhichSystem) {
+  const Scene scene = model(GetParam());
+  const bool square = has_square_jacobian(scene),
+             saddle_point = GetParam() != "knife_edge";  // whose entries have mirrors
+  for (const LinearSolverEntry& entry : linear_solvers()) {
+    for (const char* choice : {"auto", "whole"}) {
+      Settings settings = a_few_steps("rA", entry.name);
+      settings.linear_system = choice;
+      const Outcome outcome = simulate(scene, settings, {});
+      ASSERT_TRUE(outcome.status.ok()) << entry.name << ": " << outcome.status.message;
+      ASSERT_EQ(outcome.statistics.linear.size(), 1) << entry.name;
+      const LinearWork& work = outcome.statistics.linear.front();
+      const bool reduced = square && entry.takes_jacobian && std::string_view(choice) == "auto";
+      EXPECT_EQ(work.system, reduced ? "G" : "whole") << entry.name << ' ' << choice;
+      EXPECT_EQ(work.solver, entry.name != "auto" ? entry.name : reduced || !saddle_point ? "klu" : "block") << choice;
+      EXPECT_EQ(work.handed_over_by, "") << entry.name << ' ' << choice;
+      EXPECT_GE(work.factorizations + work.refactorizations, outcome.statistics.factorizations) << entry.name;
+      EXPECT_EQ(work.solves, (reduced ? 2 : 1) * outcome.statistics.solves) << entry.name << ' ' << choice;
+      EXPECT_GT(work.reciprocal_condition, 1e-12) << entry.name;
+      EXPECT_LE(work.reciprocal_condition, 1) << entry.name;
+    }
+  }
+}
+
+TEST_P(Models, NothingIsHandedOverWhereTheMechanismIsRegular) {
+  const Scene scene = model(GetParam());
+  for (const FormulationEntry& formulation : formulations()) {
+    for (const char* jacobian : {"exact", "simplified", "kept"}) {
+      Settings settings = a_few_steps(formulation.name, "block");
+      settings.jacobian = jacobian;
+      const Outcome outcome = simulate(scene, settings, {});
+      EXPECT_TRUE(outcome.status.ok()) << formulation.name << ' ' << jacobian << ": " << outcome.status.message;
+      for (const LinearWork& work : outcome.statistics.linear)
+        EXPECT_EQ(work.solver, "block") << formulation.name << ' ' << jacobian << ", handed over by "
+                                        << work.handed_over_by;
+    }
+  }
+}
+
+// The matrix of kinematics is no saddle point.
+TEST(LinearSystem, AHandOverIsCountedAndNamed) {
+  Settings settings = a_few_steps("rA", "block");
+  settings.analysis = Analysis::kinematics;
+  const Outcome outcome = simulate(model("four_link_joints"), settings, {});
+  ASSERT_TRUE(outcome.status.ok()) << outcome.status.message;
+  ASSERT_EQ(outcome.statistics.linear.size(), 1);
+  const LinearWork& work = outcome.statistics.linear.front();
+  EXPECT_EQ(work.solver, "klu");
+  EXPECT_EQ(work.handed_over_by, "block");
+  EXPECT_EQ(work.system, "whole");
+  EXPECT_GE(work.factorizations + work.refactorizations, outcome.statistics.factorizations);
+  EXPECT_EQ(work.solves, outcome.statistics.solves);
+}
+
+// [K Gᵀ; G 0] of two velocities and two constraints; the block above G may be another than Gᵀ.
+SampleSystem square(double above) {
+  SampleSystem s;
+  s.name = "square";
+  s.pattern.n = 4;
+  s.pattern.node = {0, 0, 1, 1};
+  s.add({0, 0, 2, 2}, std::vector<double>{4, 1, 2, 5});
+  s.add({2, 0, 2, 2}, std::vector<double>{1, 2, 3, -1});
+  s.add({0, 2, 2, 2}, std::vector<double>{1, 3 + above, 2, -1});
+  return s;
+}
+
+void write(const SampleSystem& system, LinearSystem& linear) {
+  std::ranges::fill(linear.values(), 0.0);
+  std::size_t v = 0, c = 0;
+  for (const Block& b : system.pattern.blocks)
+    for (int j = 0; j < b.cols; ++j, ++c)
+      for (int i = 0; i < b.rows; ++i) linear.values()[index(linear.slots()[c] + i)] += system.values[v++];
+}
+
+void expect_solves(LinearSystem& linear, const SampleSystem& system) {
+  write(system, linear);
+  ASSERT_TRUE(linear.factor().ok());
+  EXPECT_TRUE(linear.factored());
+  const std::vector<double> b{1, -2, 3, 5};
+  std::vector<double> x = b;
+  ASSERT_TRUE(linear.solve(x).ok());
+  const std::vector<long double> ax = system.times(x);
+  for (std::size_t k = 0; k < b.size(); ++k) EXPECT_NEAR(static_cast<double>(ax[k]), b[k], 1e-13);
+}
+
+TEST(LinearSystem, ValuesThatAreNotSymmetricTakeTheWholeMatrix) {
+  for (const LinearSolverEntry& entry : linear_solvers()) {
+    if (!entry.takes_jacobian) continue;
+    LinearSystems systems({std::string(entry.name), "auto"});
+    LinearSystem& linear = systems.add();
+    ASSERT_TRUE(linear.analyze(square(0).pattern).ok());
+    EXPECT_FALSE(linear.factored());
+    expect_solves(linear, square(0));
+    ASSERT_EQ(systems.work().size(), 1);
+    EXPECT_EQ(systems.work()[0].system, "G");
+    expect_solves(linear, square(0.5));
+    expect_solves(linear, square(0));
+    ASSERT_EQ(systems.work().size(), 2);
+    EXPECT_EQ(systems.work()[0].system, "G");
+    EXPECT_EQ(systems.work()[1].system, "whole");
+  }
+}
+
+TEST(LinearSystem, ASingularJacobianNamesAnUnknownOfTheWhole) {
+  SampleSystem system = square(0);
+  system.block(1)[0] = system.block(2)[0] = -6;  // G = [-6 3; 2 -1]
+  LinearSystems systems({"klu", "auto"});
+  LinearSystem& linear = systems.add();
+  ASSERT_TRUE(linear.analyze(system.pattern).ok());
+  write(system, linear);
+  const LinearStatus status = linear.factor();
+  EXPECT_EQ(status.failure, LinearFailure::singular);
+  EXPECT_TRUE(status.unknown == 0 || status.unknown == 1) << status.unknown;
+  EXPECT_FALSE(linear.factored());
+}
+
+TEST(LinearSystem, UnknownNamesAreRefused) {
+  EXPECT_THROW(LinearSystems({"klux", "auto"}).add(), InputError);
+  EXPECT_THROW(LinearSystems({"klu", "half"}).add(), InputError);
+}
+
+}  // namespace
+}  // namespace poinsot::test
