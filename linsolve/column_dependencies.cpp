@@ -185,8 +185,9 @@ std::vector<int> separate(std::vector<SparseEntries>& vectors) {
   for (int pass = 0; pass < kPasses; ++pass) {
     bool any = false;
     for (std::size_t k = 0; k < vectors.size(); ++k) {
+      // Among equals the last: what a scene lists later is what it says twice.
       const auto best = std::ranges::max_element(
-          vectors[k], [](const auto& x, const auto& y) { return std::abs(x.second) < std::abs(y.second); });
+          vectors[k], [](const auto& x, const auto& y) { return 0.999 * std::abs(x.second) < std::abs(y.second); });
       const auto [column, value] = *best;
       if (pass > 0 && std::abs(value) <= kFlat) continue;
       pivot_on(k, column, value);

@@ -39,7 +39,7 @@ class ExplicitRungeKutta final : public Integrator {
     PhaseClock clock;
     Method method(pair_, problem, solver, settings.rtol, settings.absolute_tolerance(), statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
-    method.start(state);
+    if (Status status = method.start(state); !status.ok()) return status;
     return controlled_run(method, pair_.rule, problem, settings, state, observe, statistics, clock);
   }
 

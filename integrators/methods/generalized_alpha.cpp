@@ -1,5 +1,6 @@
 #include "integrators/methods/generalized_alpha.h"
 
+#include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/newton_loop.h"
 #include "integrators/stepping/observe.h"
@@ -75,8 +76,8 @@ class Run {
       bool rewritten = false;
       if (problem_.has_discrete_state() || grid_.sampled(n)) {
         stand(t);
-        rewritten = problem_.has_discrete_state() && problem_.accept(t, span(x_.q), span(x_.v), x_.a());
-        if (rewritten) stand(t);
+        if (status = accept(problem_, x_, rewritten); !status.ok()) break;
+        if (rewritten) velocity_rows_ = velocity_rows(problem_);
       }
       if (grid_.sampled(n)) {
         clock_.lap(Phase::other);

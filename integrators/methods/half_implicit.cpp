@@ -29,7 +29,8 @@ class HalfImplicit final : public Integrator {
     if (Status status = here->system.prepare(); !status.ok()) return status;
     NewtonLoop newton(problem, here->system, settings, Refresh::every_step, statistics);
     Broyden broyden(problem.nv() + problem.nc(), problem.nv());
-    const std::vector<int> free_rows = velocity_rows(problem);
+    std::vector<int> free_rows = velocity_rows(problem);
+    int revision = problem.revision();
 
     SteppedState x(state);
     Vector dq(x.nv), rows(x.nc);
@@ -60,6 +61,10 @@ class HalfImplicit final : public Integrator {
         return {};
       };
       broyden.restart();
+      if (here->problem.revision() != revision) {
+        revision = here->problem.revision();
+        free_rows = velocity_rows(here->problem);
+      }
       if (Status status = newton.solve(t, h * h, x.q, residual, matrix, correct); !status.ok()) return status;
       advance();
       std::swap(here, there);

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/sample_times.h"
@@ -70,7 +71,7 @@ class Run {
         settings_(settings),
         observe_(observe),
         statistics_(statistics),
-        form_(problem),
+        form_(std::in_place, problem),
         system_(problem, solver, statistics, clock_),
         point_solver_(linear_solvers().require(settings.linear_solver).make()),
         consistent_(problem, *point_solver_, statistics, clock_),
@@ -81,9 +82,9 @@ class Run {
     SUNContext context = nullptr;
     check(SUNContext_Create(nullptr, &context) == 0, "SUNDIALS gives a context");
     context_.reset(context);
-    y_.reset(N_VNew_Serial(form_.size(), context));
-    y_dot_.reset(N_VNew_Serial(form_.size(), context));
-    inner_.reset(N_VNew_Serial(form_.size(), context));
+    y_.reset(N_VNew_Serial(form_->size(), context));
+    y_dot_.reset(N_VNew_Serial(form_->size(), context));
+    inner_.reset(N_VNew_Serial(form_->size(), context));
     matrix_.reset(SUNMatNewEmpty(context));
     linear_.reset(SUNLinSolNewEmpty(context));
     ida_.reset(IDACreate(context));
@@ -99,9 +100,9 @@ class Run {
   }
 
   Status prepare(const State& state) {
-    if (Status status = system_.prepare(form_.pattern(), form_.unknowns()); !status.ok()) return status;
+    if (Status status = system_.prepare(form_->pattern(), form_->unknowns()); !status.ok()) return status;
     if (Status status = consistent_.prepare(); !status.ok()) return status;
-    form_.start(state, values(y_.get()), values(y_dot_.get()));
+    form_->start(state, values(y_.get()), values(y_dot_.get()));
     void* ida = ida_.get();
     const auto done = [](int flag) { check(flag == IDA_SUCCESS, "IDA accepts what it is given"); };
     done(IDAInit(ida, residual, 0, y_.get(), y_dot_.get()));
@@ -144,7 +145,6 @@ class Run {
       IDAGetLastStep(ida_.get(), &h);
       if (creeping.tries(t, h)) return step_too_small(t, h, {});
       creeping.completed(h);
-      if (problem_.has_discrete_state()) accept(t);
       for (; settings_.every > 0 && times.next() < t; times.pass()) {
         if (Status status = stand_at(times.next()); !status.ok()) return status;
         give_out();
@@ -154,6 +154,8 @@ class Run {
         if (Status status = stand_at(t); !status.ok()) return status;
         give_out();
       }
+      if (!problem_.has_discrete_state() || t >= settings_.end) continue;
+      if (Status status = accept(t); !status.ok()) return status;
     }
     return {};
   }
@@ -168,9 +170,7 @@ class Run {
     }
     if (share_ == 1) return step_too_small(t, h, linear_status_);
     share_ = 1;
-    count();
-    form_.start(at_, values(y_.get()), values(y_dot_.get()));
-    check(IDAReInit(ida_.get(), t, y_.get(), y_dot_.get()) == IDA_SUCCESS, "IDA starts anew");
+    start_anew(t);
     return {};
   }
 
@@ -188,21 +188,30 @@ class Run {
     check(IDAGetDky(ida_.get(), t, 0, inner_.get()) == IDA_SUCCESS, "the time lies within IDA's last step");
     const std::span<const double> y = values(inner_.get());
     next_.t = t;
-    std::ranges::copy(form_.q(y), next_.q.begin());
-    std::ranges::copy(form_.v(y), next_.v.begin());
+    std::ranges::copy(form_->q(y), next_.q.begin());
+    std::ranges::copy(form_->v(y), next_.v.begin());
     if (Status status = consistent_.complete(next_); !status.ok()) return status;
     std::swap(at_, next_);
     return {};
   }
 
-  // Turns of torsion springs; no formulation IDA is used with rewrites its coordinates.
-  void accept(double t) {
-    const std::span<double> y = values(y_.get());
-    const std::size_t nv = static_cast<std::size_t>(problem_.nv());
-    problem_.set_position(t, form_.q(y));
-    problem_.set_velocity(form_.v(y));
-    const bool rewritten = problem_.accept(t, y.first(nv), y.subspan(nv, nv), values(y_dot_.get()).subspan(nv, nv));
-    check(!rewritten, "coordinates of a vector space stay what they are");
+  // Turns of torsion springs, the choice among redundant rows; no formulation IDA is used with rewrites its
+  // coordinates.
+  Status accept(double t) {
+    if (Status status = stand_at(t); !status.ok()) return status;
+    bool rewritten = false;
+    if (Status status = poinsot::accept(problem_, at_, rewritten); !status.ok() || !rewritten) return status;
+    form_.emplace(problem_);
+    if (Status status = system_.prepare(form_->pattern(), form_->unknowns()); !status.ok()) return status;
+    start_anew(t);
+    return {};
+  }
+
+  // From the last point: what IDA remembers of the motion is gone.
+  void start_anew(double t) {
+    count();
+    form_->start(at_, values(y_.get()), values(y_dot_.get()));
+    check(IDAReInit(ida_.get(), t, y_.get(), y_dot_.get()) == IDA_SUCCESS, "IDA starts anew");
   }
 
   void give_out() {
@@ -218,14 +227,14 @@ class Run {
   }
   static int residual(double t, N_Vector y, N_Vector y_dot, N_Vector F, void* user) {
     const std::span<double> out = values(F);
-    of(user).form_.residual(t, values(y), values(y_dot), out);
+    of(user).form_->residual(t, values(y), values(y_dot), out);
     return std::ranges::all_of(out, [](double x) { return std::isfinite(x); }) ? 0 : 1;
   }
   static int jacobian(double t, double alpha, N_Vector y, N_Vector y_dot, N_Vector, SUNMatrix, void* user, N_Vector,
                       N_Vector, N_Vector) {
     Run& run = of(user);
     run.linear_status_ = run.system_.refresh(t, [&](std::span<const int> slots, std::span<double> matrix) {
-      run.form_.assemble(t, alpha, values(y), values(y_dot), slots, matrix);
+      run.form_->assemble(t, alpha, values(y), values(y_dot), slots, matrix);
     });
     return run.linear_status_.ok() ? 0 : 1;
   }
@@ -242,7 +251,7 @@ class Run {
   static int weights(N_Vector y, N_Vector w, void* user) {
     Run& run = of(user);
     const std::span<double> out = values(w);
-    component_sizes(run.problem_, run.form_.q(values(y)), run.form_.v(values(y)), run.sizes_now_);
+    component_sizes(run.problem_, run.form_->q(values(y)), run.form_->v(values(y)), run.sizes_now_);
     const double mean = std::sqrt(static_cast<double>(out.size()) / static_cast<double>(run.sizes_.size()));
     std::ranges::fill(out, 0.0);
     for (std::size_t k = 0; k < run.sizes_.size(); ++k) {
@@ -258,7 +267,7 @@ class Run {
   const Observer& observe_;
   Statistics& statistics_;
   PhaseClock clock_;
-  StabilizedIndex2 form_;
+  std::optional<StabilizedIndex2> form_;  // anew for other rows
   TimedSystem system_;
   std::unique_ptr<LinearSolver> point_solver_;
   Consistent consistent_;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "integrators/jacobian_policy.h"
+#include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/step_system.h"
@@ -48,10 +49,8 @@ class Kinematics final : public Integrator {
       if (!status.ok()) break;
       state.t = t;
       if (n > 0) ++statistics.steps;
-      if (problem.has_discrete_state() && problem.accept(t, span(q), span(v), state.a())) {
-        problem.set_position(t, span(q));
-        problem.set_velocity(span(v));
-      }
+      bool rewritten = false;
+      if (status = accept(problem, state, rewritten); !status.ok()) break;
       if (grid.sampled(n)) {
         clock.lap(Phase::other);
         if (inverse_dynamics) {

@@ -28,7 +28,7 @@ class Radau5 final : public Integrator {
     Method method(problem, solver, settings.linear_solver, settings.rtol, settings.absolute_tolerance(), statistics,
                   clock);
     if (Status status = method.prepare(); !status.ok()) return status;
-    method.start(state);
+    if (Status status = method.start(state); !status.ok()) return status;
     return controlled_run(method, kRule, problem, settings, state, observe, statistics, clock);
   }
 };

@@ -155,8 +155,12 @@ class Run {
 
   Status accept(double t) {
     here_->problem.set_velocity(span(x_.v));
-    if (!here_->problem.accept(t, span(x_.q), span(x_.v), span(rhs_, 0, nv_))) return {};
+    bool rewritten = false;
+    Status status =
+        here_->problem.accept(t, span(x_.q), span(x_.v), span(rhs_, 0, nv_), span(rhs_, nv_, nc_), rewritten);
+    if (!status.ok() || !rewritten) return status;
     z_ = rhs_;
+    velocity_rows_ = velocity_rows(here_->problem);
     stand(here_->problem, t);
     return factor(*here_, t);
   }

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 
+#include "core/index.h"
 #include "linsolve/lists.h"
 
 namespace poinsot {
@@ -10,22 +11,18 @@ namespace {
 
 constexpr double kClearly = 1e-2;  // what of a unit row has to be left beside the others on a body that is taken off
 
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
-
 }  // namespace
 
 std::vector<int> loop_rows(const Model& model, const RowSpace& space) {
   const std::vector<int>& rows = space.rows();
   const int bodies = static_cast<int>(model.bodies.size());
-  const auto row = [&](int k) -> const Row& { return model.rows[at(rows[at(k)])]; };
+  const auto row = [&](int k) -> const Row& { return model.rows[index(rows[index(k)])]; };
   const Lists rows_on = Lists::collect(bodies, [&](auto&& emit) {
     for (int k = 0; k < static_cast<int>(rows.size()); ++k)
       for (const int body : {row(k).i, row(k).j})
         if (body != kGround) emit(body, k);
   });
-  std::vector<char> row_left(rows.size(), 1), body_left(at(bodies), 1);
+  std::vector<char> row_left(rows.size(), 1), body_left(index(bodies), 1);
 
   const auto independent = [&](int body, const std::vector<int>& own) {
     if (own.size() > 6) return false;
@@ -37,26 +34,26 @@ std::vector<int> loop_rows(const Model& model, const RowSpace& space) {
     return std::abs(qr.matrixQR().diagonal()[part.cols() - 1]) > kClearly;
   };
 
-  std::vector<int> due(at(bodies));
-  for (int b = 0; b < bodies; ++b) due[at(b)] = bodies - 1 - b;
+  std::vector<int> due(index(bodies));
+  for (int b = 0; b < bodies; ++b) due[index(b)] = bodies - 1 - b;
   std::vector<int> own;
   while (!due.empty()) {
     const int body = due.back();
     due.pop_back();
-    if (!body_left[at(body)]) continue;
+    if (!body_left[index(body)]) continue;
     own.clear();
     int neighbour = body;  // none yet
     bool one = true;
     for (const int k : rows_on[body]) {
-      if (!row_left[at(k)]) continue;
+      if (!row_left[index(k)]) continue;
       own.push_back(k);
       const int other = row(k).i == body ? row(k).j : row(k).i;
       one = one && (neighbour == body || other == neighbour);
       neighbour = other;
     }
     if (!one || (!own.empty() && !independent(body, own))) continue;
-    body_left[at(body)] = 0;
-    for (const int k : own) row_left[at(k)] = 0;
+    body_left[index(body)] = 0;
+    for (const int k : own) row_left[index(k)] = 0;
     if (neighbour != body && neighbour != kGround) due.push_back(neighbour);
   }
   std::vector<int> left;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/index.h"
 #include "formulations/registry.h"
 #include "integrators/settings.h"
 #include "integrators/start/loop_rows.h"
@@ -31,10 +32,6 @@ constexpr double kPulledBack = 0.3;  // of the move that has to be left after th
 constexpr double kHolds = 1e-9, kContradicts = 1e-6;
 constexpr double kShortWhile = 1e-3;  // s, where nothing moves yet
 constexpr int kManyRows = 20'000;     // of loops: one random direction is looked at in the place of two
-
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
 
 // Bodies of unit mass that turn as hard as they move: projections are the shortest ways.
 std::shared_ptr<const Model> with_unit_masses(const Model& model, std::span<const double> sizes) {
@@ -86,7 +83,7 @@ class Examination {
     return of_model(space.vectors.empty() ? space.columns : separate(space.vectors));
   }
   std::vector<int> of_model(std::vector<int> columns) const {
-    for (int& column : columns) column = space_->rows()[at(column)];
+    for (int& column : columns) column = space_->rows()[index(column)];
     std::ranges::sort(columns);
     return columns;
   }
@@ -97,17 +94,17 @@ class Examination {
     Sparse columns;
     std::size_t dependent = 0;
     bool holds = false;
-    int worst = -1;   // the row that is off most, of those left out
-    double off = 0;   // m
+    int worst = -1;  // the row that is off most, of those left out
+    double off = 0;  // m
   };
 
   void look_beside(NullSpace&& here, const std::vector<int>& surely) {
     const std::size_t suspects = here.columns.size();
     const Sparse columns = space_->columns();
     unit_ = with_unit_masses(*model_, sizes_);
-    std::unique_ptr<Problem> problem = find_formulation("rA")->make(unit_, without_);
+    std::unique_ptr<Problem> problem = intrinsic_formulation().make(unit_, without_);
     Place start;
-    start.q.resize(at(problem->nq())), start.v.resize(at(problem->nv()));
+    start.q.resize(index(problem->nq())), start.v.resize(index(problem->nv()));
     check(problem->from_bodies(states_, start.q, start.v).ok(), "rA represents every orientation");
     bool regular = put_back(*problem, start, true);
     if (regular) find_conflicts(*problem, start, surely);
@@ -125,6 +122,7 @@ class Examination {
       tell_redundant(best->columns, kFreeBeside);
       tell_singular(columns);
       result_.moves_on = along && leads_on(start, *along);
+      if (along) result_.time_beside = along->t;
     } else {
       if (surely.size() < suspects) tell_doubt(columns, surely);
       tell_redundant(columns, kDependent);
@@ -136,11 +134,11 @@ class Examination {
   // Onto the problem's rows, positions first.
   static bool put_back(Problem& problem, Place& place, bool velocities) {
     Consistent consistent(problem, Settings{}.linear_solver);
-    if (!consistent.project_position(problem, place.t, place.q).ok()) return false;
+    if (!consistent.project_position(place.t, place.q).ok()) return false;
     if (!velocities) return true;
     problem.set_position(place.t, place.q);
     problem.set_velocity(place.v);
-    return consistent.project_velocity(problem, place.t, place.v).ok();
+    return consistent.project_velocity(place.t, place.v).ok();
   }
 
   // Largest move of a body by dq, in its size.
@@ -173,14 +171,15 @@ class Examination {
   std::optional<Place> beside_at_random(Problem& problem, const Place& start, int seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
     std::normal_distribution<double> normal;
-    std::vector<double> move(at(problem.nv() + problem.nc()), 0.0);
+    std::vector<double> move(index(problem.nv() + problem.nc()), 0.0);
     for (std::size_t b = 0; b < sizes_.size(); ++b)
       for (std::size_t k = 0; k < 6; ++k) move[6 * b + k] = sizes_[b] * (k < 3 ? 1 : sizes_[b]) * normal(random);
     const double asked = extent(std::span<const double>(move).first(start.v.size()));
     const std::vector<double> at_rest(start.v.size(), 0.0);
     problem.set_position(0, start.q);
     problem.set_velocity(at_rest);
-    if (!Consistent(problem, Settings{}.linear_solver).solve(problem, 0, move).ok()) return {};
+    Consistent consistent(problem, Settings{}.linear_solver);
+    if (!consistent.factor(0).ok() || !consistent.solve(0, move).ok()) return {};
     move.resize(start.v.size());
     const double length = extent(move);
     if (!(length > 1e-6 * asked)) return {};  // it cannot move
@@ -232,8 +231,8 @@ class Examination {
     off_at_start_.resize(space_->rows().size());
     space_->distances(off_at_start_);
     for (double& x : off_at_start_) x = std::abs(x);
-    const std::unique_ptr<Problem> whole = find_formulation("rA")->make(model_, {});
-    std::vector<double> rate(at(whole->nc())), nu(rate.size());
+    const std::unique_ptr<Problem> whole = intrinsic_formulation().make(model_, {});
+    std::vector<double> rate(index(whole->nc())), nu(rate.size());
     whole->set_position(0, start.q);
     whole->set_velocity(start.v);
     whole->velocity_residual(rate);
@@ -244,10 +243,10 @@ class Examination {
       const int row = space_->rows()[k];
       if (!std::ranges::binary_search(without_, row)) continue;
       const double size = space_->size_of_row(k), length = space_->lengths()[k];
-      const double rate_off = std::abs(rate[at(row)]) / length;
+      const double rate_off = std::abs(rate[index(row)]) / length;
       if (off_at_start_[k] > kContradicts * size)
         result_.conflicts.push_back({row, Conflict::Level::position, off_at_start_[k], 0});
-      else if (rate_off > kContradicts * std::max({speed * size, std::abs(nu[at(row)]) / length, kHolds * size}))
+      else if (rate_off > kContradicts * std::max({speed * size, std::abs(nu[index(row)]) / length, kHolds * size}))
         result_.conflicts.push_back({row, Conflict::Level::velocity, rate_off, 0});
     }
   }
@@ -256,7 +255,7 @@ class Examination {
     ColumnDependencies found = column_dependencies(columns, tolerance);
     result_.named = found.named;
     for (ColumnDependency& d : found.columns)
-      result_.dependent.push_back({space_->rows()[at(d.column)], of_model(std::move(d.others))});
+      result_.dependent.push_back({space_->rows()[index(d.column)], of_model(std::move(d.others))});
     NullSpace space = null_space(columns, tolerance);
     result_.aside = chosen(space);
     // A row that contradicts the others is told as the one that does not follow.
@@ -270,7 +269,7 @@ class Examination {
     std::vector<Eigen::Triplet<double>> entries;
     std::vector<int> kept;
     for (int k = 0; k < columns.outerSize(); ++k) {
-      if (std::ranges::binary_search(result_.aside, space_->rows()[at(k)])) continue;
+      if (std::ranges::binary_search(result_.aside, space_->rows()[index(k)])) continue;
       for (Sparse::InnerIterator it(columns, k); it; ++it)
         entries.emplace_back(static_cast<int>(it.row()), static_cast<int>(kept.size()), it.value());
       kept.push_back(k);
@@ -278,21 +277,20 @@ class Examination {
     Sparse part(columns.rows(), static_cast<Eigen::Index>(kept.size()));
     part.setFromTriplets(entries.begin(), entries.end());
     const auto whole = [&](std::vector<int> some) {
-      for (int& k : some) k = kept[at(k)];
+      for (int& k : some) k = kept[index(k)];
       return of_model(std::move(some));
     };
     for (ColumnDependency& d : column_dependencies(part, kIndependent).columns)
-      result_.singular.push_back({space_->rows()[at(kept[at(d.column)])], whole(std::move(d.others))});
+      result_.singular.push_back({space_->rows()[index(kept[index(d.column)])], whole(std::move(d.others))});
     NullSpace space = null_space(part, kIndependent);
-    result_.aside_here =
-        united(result_.aside, whole(space.vectors.empty() ? space.columns : separate(space.vectors)));
+    result_.aside_here = united(result_.aside, whole(space.vectors.empty() ? space.columns : separate(space.vectors)));
     result_.rank_here = result_.rank - static_cast<int>(result_.singular.size());
   }
 
   void tell_doubt(const Sparse& columns, const std::vector<int>& surely) {
     result_.doubt = kIndependent;
     for (const int column : dependent_columns(columns, kIndependent))
-      if (!std::ranges::binary_search(surely, column)) result_.doubtful = space_->rows()[at(column)];
+      if (!std::ranges::binary_search(surely, column)) result_.doubtful = space_->rows()[index(column)];
     for (double part = kIndependent / 10; part > kDependent; part /= 10)
       if (dependent_columns(columns, part).size() > surely.size()) result_.doubt = part;
   }
@@ -300,7 +298,7 @@ class Examination {
   // Whether the mechanism, moved on along its velocities, comes to a position where all rows hold and are independent.
   bool leads_on(const Place& start, const Place& along) {
     if (extent(start.v) == 0) return false;
-    const std::unique_ptr<Problem> problem = find_formulation("rA")->make(unit_, result_.aside);
+    const std::unique_ptr<Problem> problem = intrinsic_formulation().make(unit_, result_.aside);
     Place place = along;
     if (!along.holds) {
       if (!put_back(*problem, place, false)) return false;

@@ -1,13 +1,13 @@
 // Which constraint rows follow from others, which are singular where the mechanism stands, and which contradict.
 //
 // A row is redundant when it follows from the others: its gradient is a combination of theirs, and where they are kept
-// it holds by itself, here and at positions beside. Those positions are looked at: the mechanism is moved a little along
-// its velocities and along random directions its constraints leave free, time going on where drivers ask for it, and
-// put back onto the independent rows. A row that has become independent there, or does not hold any more, is singular
-// here: its gradient is a combination of the others' (or vanishes) at the given position only.
+// it holds by itself, here and at positions beside. Those positions are looked at: the mechanism is moved a little
+// along its velocities and along random directions its constraints leave free, time going on where drivers ask for it,
+// and put back onto the independent rows. A row that has become independent there, or does not hold any more, is
+// singular here: its gradient is a combination of the others' (or vanishes) at the given position only.
 //
-// Rank is decided on unit vectors in lengths of bodies (integrators/start/row_space.h), and among the rows of loops only
-// (loop_rows.h). The cost grows with the number of rows (linsolve/column_dependencies.h).
+// Rank is decided on unit vectors in lengths of bodies (integrators/start/row_space.h), and among the rows of loops
+// only (loop_rows.h). The cost grows with the number of rows (linsolve/column_dependencies.h).
 #pragma once
 
 #include <memory>
@@ -29,8 +29,8 @@ struct Conflict {
   enum class Level { position, velocity, later };
   int row;
   Level level;
-  double by;     // m or m/s that the bodies are off it; `later`: m, at `time`
-  double time;   // s
+  double by;    // m or m/s that the bodies are off it; `later`: m, at `time`
+  double time;  // s
 };
 
 struct RankAnalysis {
@@ -46,7 +46,8 @@ struct RankAnalysis {
   std::vector<Conflict> conflicts;  // by row
   bool named = true;                // false: too many to say what each depends on; `others` are empty
   bool moves_on = true;             // singular: whether the velocities lead away from the singular position
-  double doubt = 0;  // the largest part below kIndependent that is left of a row beside the others; 0: there is none
+  double time_beside = 0;           // s: after which they have, by a thousandth of the bodies' sizes
+  double doubt = 0;   // the largest part below kIndependent that is left of a row beside the others; 0: there is none
   int doubtful = -1;  // the row
 
   int degrees_of_freedom() const { return variables - rank; }

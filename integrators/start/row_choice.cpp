@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/index.h"
+
 namespace poinsot {
 namespace {
 
@@ -15,19 +17,13 @@ constexpr double kWorn = 3;           // coefficient at which rows are chosen an
 constexpr double kNothing = 1e-12;    // of a coefficient beside the row set aside
 constexpr Eigen::Index kDense = 120;  // rows up to which full matrices are faster
 
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
-
 // C with Kᵀ K C = Kᵀ D in the least-squares sense, refined once; false where K's columns are not independent.
-template <class Factorization, class Gram>
-bool least_squares(const Factorization& gram_factors, const Gram&, const Sparse& K, const Sparse& D,
-                   Eigen::MatrixXd& C) {
-  if (gram_factors.info() != Eigen::Success) return false;
-  const Eigen::MatrixXd right = Eigen::MatrixXd(K.transpose() * D);
-  C = gram_factors.solve(right);
+template <class Factorization>
+bool least_squares(const Factorization& gram, const Sparse& K, const Sparse& D, Eigen::MatrixXd& C) {
+  if (gram.info() != Eigen::Success) return false;
+  C = gram.solve(Eigen::MatrixXd(K.transpose() * D));
   const Eigen::MatrixXd left = Eigen::MatrixXd(D) - K * C;
-  C += gram_factors.solve(K.transpose() * left);
+  C += gram.solve(K.transpose() * left);
   return C.allFinite();
 }
 
@@ -41,7 +37,7 @@ std::vector<SparseEntries> RowChoice::unit_null_vectors(double t, std::span<cons
   const Sparse& columns = space_.columns();
   std::vector<int> kept, left_out;
   for (int k = 0; k < columns.cols(); ++k)
-    (std::ranges::binary_search(aside_, space_.rows()[at(k)]) ? left_out : kept).push_back(k);
+    (std::ranges::binary_search(aside_, space_.rows()[index(k)]) ? left_out : kept).push_back(k);
   const auto part = [&](const std::vector<int>& some) {
     Sparse of(columns.rows(), static_cast<Eigen::Index>(some.size()));
     std::vector<Eigen::Triplet<double>> entries;
@@ -56,11 +52,9 @@ std::vector<SparseEntries> RowChoice::unit_null_vectors(double t, std::span<cons
   const Sparse gram = K.transpose() * K;
   bool good = false;
   if (K.cols() <= kDense) {
-    const Eigen::LLT<Eigen::MatrixXd> factors{Eigen::MatrixXd(gram)};
-    good = least_squares(factors, gram, K, D, C);
+    good = least_squares(Eigen::LLT<Eigen::MatrixXd>{Eigen::MatrixXd(gram)}, K, D, C);
   } else {
-    const Eigen::SimplicialLDLT<Sparse> factors(gram);
-    good = least_squares(factors, gram, K, D, C);
+    good = least_squares(Eigen::SimplicialLDLT<Sparse>(gram), K, D, C);
   }
   if (!good) return {};
   std::vector<SparseEntries> vectors(left_out.size());
@@ -82,19 +76,24 @@ bool RowChoice::renew(double t, std::span<const BodyState> states) {
     for (const auto& [row, value] : z) largest = std::max(largest, std::abs(value));
   if (!(largest > kWorn)) return false;
   std::vector<int> chosen = separate(vectors);
-  for (int& k : chosen) k = space_.rows()[at(k)];
+  for (int& k : chosen) k = space_.rows()[index(k)];
   std::ranges::sort(chosen);
   if (chosen == aside_) return false;
   aside_ = std::move(chosen);
   return true;
 }
 
+double RowChoice::size_of(int row) const {
+  const auto k = static_cast<std::size_t>(std::ranges::lower_bound(space_.rows(), row) - space_.rows().begin());
+  return space_.size_of_row(k) * space_.lengths()[k];
+}
+
 std::vector<SparseEntries> RowChoice::null_vectors(double t, std::span<const BodyState> states) {
   std::vector<SparseEntries> vectors = unit_null_vectors(t, states);
   for (SparseEntries& z : vectors)
     for (auto& [row, value] : z) {
-      value /= space_.lengths()[at(row)];
-      row = space_.rows()[at(row)];
+      value /= space_.lengths()[index(row)];
+      row = space_.rows()[index(row)];
     }
   return vectors;
 }

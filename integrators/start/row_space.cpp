@@ -5,14 +5,11 @@
 #include <limits>
 
 #include "core/check.h"
+#include "core/index.h"
 #include "formulations/registry.h"
 
 namespace poinsot {
 namespace {
-
-std::size_t at(int k) {
-  return static_cast<std::size_t>(k);
-}
 
 std::vector<int> all_but(std::size_t count, const std::vector<int>& rows) {
   std::vector<int> others;
@@ -35,11 +32,11 @@ bool has_points(RowType type) {
 std::vector<double> body_sizes(const Model& model) {
   std::vector<double> sizes(model.bodies.size(), 0.0);
   const auto widen = [&](int body, double arm) {
-    if (body != kGround) sizes[at(body)] = std::max(sizes[at(body)], arm);
+    if (body != kGround) sizes[index(body)] = std::max(sizes[index(body)], arm);
   };
   const auto place = [&](int body, const Vector3& s) -> Vector3 {
     if (body == kGround) return s;
-    return model.bodies[at(body)].position + model.bodies[at(body)].orientation * s;
+    return model.bodies[index(body)].position + model.bodies[index(body)].orientation * s;
   };
   for (const Row& row : model.rows) {
     if (!has_points(row.type)) continue;
@@ -49,8 +46,8 @@ std::vector<double> body_sizes(const Model& model) {
   }
   for (const Row& row : model.rows) {  // a body that turns about its centre
     if (row.i == kGround || row.j == kGround) continue;
-    if (sizes[at(row.i)] == 0) sizes[at(row.i)] = sizes[at(row.j)];
-    if (sizes[at(row.j)] == 0) sizes[at(row.j)] = sizes[at(row.i)];
+    if (sizes[index(row.i)] == 0) sizes[index(row.i)] = sizes[index(row.j)];
+    if (sizes[index(row.j)] == 0) sizes[index(row.j)] = sizes[index(row.i)];
   }
   const double largest = sizes.empty() ? 0 : *std::ranges::max_element(sizes);
   for (double& size : sizes)
@@ -61,18 +58,18 @@ std::vector<double> body_sizes(const Model& model) {
 RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
     : model_(std::move(model)),
       rows_(std::move(rows)),
-      problem_(find_formulation("rA")->make(model_, all_but(model_->rows.size(), rows_))),
+      problem_(intrinsic_formulation().make(model_, all_but(model_->rows.size(), rows_))),
       sizes_(body_sizes(*model_)),
-      q_(at(problem_->nq())),
-      v_(at(problem_->nv())),
+      q_(index(problem_->nq())),
+      v_(index(problem_->nv())),
       lengths_(rows_.size()) {
   check(layout_.build(problem_->pattern(MatrixKind::kinematic)).ok(), "an assembled matrix fits 32-bit indices");
-  values_.resize(at(layout_.nonzeros()));
+  values_.resize(index(layout_.nonzeros()));
   std::vector<Eigen::Triplet<double>> entries;
   const auto visit = [&](auto&& entry) {
     for (int j = 0; j < problem_->nv(); ++j)
-      for (int k = layout_.start[at(j)]; k < layout_.start[at(j + 1)]; ++k)
-        if (layout_.row[at(k)] < problem_->nc()) entry(k, layout_.row[at(k)], j);
+      for (int k = layout_.start[index(j)]; k < layout_.start[index(j + 1)]; ++k)
+        if (layout_.row[index(k)] < problem_->nc()) entry(k, layout_.row[index(k)], j);
   };
   visit([&](int, int row, int j) { entries.emplace_back(j, row, 1.0); });
   Gt_.resize(problem_->nv(), problem_->nc());
@@ -80,7 +77,7 @@ RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
   place_.assign(values_.size(), -1);
   // Columns j are visited ascending: the entries of a row of G come in the order of its column of Gᵀ.
   std::vector<int> next(Gt_.outerIndexPtr(), Gt_.outerIndexPtr() + Gt_.cols());
-  visit([&](int k, int row, int) { place_[at(k)] = next[at(row)]++; });
+  visit([&](int k, int row, int) { place_[index(k)] = next[index(row)]++; });
 }
 
 void RowSpace::stand(double t, std::span<const BodyState> states) {
@@ -94,12 +91,12 @@ void RowSpace::stand(double t, std::span<const BodyState> states) {
   for (int k = 0; k < Gt_.outerSize(); ++k) {
     double sum = 0;
     for (Eigen::SparseMatrix<double>::InnerIterator it(Gt_, k); it; ++it) {
-      if (it.row() % 6 >= 3) it.valueRef() /= sizes_[at(static_cast<int>(it.row()) / 6)];
+      if (it.row() % 6 >= 3) it.valueRef() /= sizes_[index(static_cast<int>(it.row()) / 6)];
       sum += it.value() * it.value();
     }
-    const double rounding = rounding_of(model_->rows[at(rows_[at(k)])], states);
-    lengths_[at(k)] = std::max(std::sqrt(sum), rounding);
-    const double by = sum > rounding * rounding ? 1 / lengths_[at(k)] : 0;
+    const double rounding = rounding_of(model_->rows[index(rows_[index(k)])], states);
+    lengths_[index(k)] = std::max(std::sqrt(sum), rounding);
+    const double by = sum > rounding * rounding ? 1 / lengths_[index(k)] : 0;
     for (Eigen::SparseMatrix<double>::InnerIterator it(Gt_, k); it; ++it) it.valueRef() *= by;
   }
 }
@@ -108,14 +105,14 @@ void RowSpace::stand(double t, std::span<const BodyState> states) {
 // are parallel, the distance of points that coincide.
 double RowSpace::rounding_of(const Row& row, std::span<const BodyState> states) const {
   const auto place = [&](int body, const Vector3& s) {
-    return s.norm() + (body == kGround ? 0.0 : states[at(body)].r.norm());
+    return s.norm() + (body == kGround ? 0.0 : states[index(body)].r.norm());
   };
   switch (row.type) {
     case RowType::DP1:
     case RowType::angle: {
       double size = 0;
       for (const int body : {row.i, row.j})
-        if (body != kGround) size = std::max(size, 1 / sizes_[at(body)]);
+        if (body != kGround) size = std::max(size, 1 / sizes_[index(body)]);
       return kDependent * row.a_i.norm() * row.a_j.norm() * size;
     }
     case RowType::D:
@@ -134,10 +131,10 @@ void RowSpace::distances(std::span<double> out) const {
 }
 
 double RowSpace::size_of_row(std::size_t k) const {
-  const Row& row = model_->rows[at(rows_[k])];
+  const Row& row = model_->rows[index(rows_[k])];
   double size = 0;
   for (const int body : {row.i, row.j})
-    if (body != kGround) size = std::max(size, sizes_[at(body)]);
+    if (body != kGround) size = std::max(size, sizes_[index(body)]);
   return size;
 }
 

@@ -48,7 +48,8 @@ Status fixed_steps(SteppedState& x, const TimeGrid& grid, State& state, const Ob
     ++statistics.steps;
     if (!discrete && !grid.sampled(n)) continue;
     Problem& problem = stand(t);
-    if (discrete && problem.accept(t, span(x.q), span(x.v), x.a())) x.stand(problem, t);
+    bool rewritten = false;
+    if (status = accept(problem, x, rewritten); !status.ok()) break;
     if (grid.sampled(n)) {
       clock.lap(Phase::other);
       sample(observe, problem, x, statistics);
