@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <numeric>
 
 #include "core/index.h"
 #include "linsolve/lists.h"
@@ -13,8 +14,12 @@ constexpr double kClearly = 1e-2;  // what of a unit row has to be left beside t
 
 }  // namespace
 
-std::vector<int> loop_rows(const Model& model, const RowSpace& space) {
-  const std::vector<int>& rows = space.rows();
+std::vector<int> loop_rows(const std::shared_ptr<const Model>& shared, double t, std::span<const BodyState> states) {
+  const Model& model = *shared;
+  std::vector<int> rows(model.rows.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  RowSpace space(shared, rows);
+  space.stand(t, states);
   const int bodies = static_cast<int>(model.bodies.size());
   const auto row = [&](int k) -> const Row& { return model.rows[index(rows[index(k)])]; };
   const Lists rows_on = Lists::collect(bodies, [&](auto&& emit) {

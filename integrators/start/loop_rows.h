@@ -11,7 +11,7 @@
 
 namespace poinsot {
 
-// Of the space's rows, which stand at a position: the model's numbers, ascending.
-std::vector<int> loop_rows(const Model& model, const RowSpace& space);
+// The model's numbers, ascending.
+std::vector<int> loop_rows(const std::shared_ptr<const Model>& model, double t, std::span<const BodyState> states);
 
 }  // namespace poinsot

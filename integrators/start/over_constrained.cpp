@@ -16,21 +16,13 @@ namespace {
 constexpr double kTurn = 0.4;   // rad that a body turns before the choice is looked at again
 constexpr double kLost = 1e-5;  // of a body's size: far above what steps leave, far below what opens to the eye
 
-std::vector<int> rows_of_loops(const std::shared_ptr<const Model>& model, std::span<const BodyState> states) {
-  std::vector<int> all(model->rows.size());
-  for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<int>(k);
-  RowSpace space(model, std::move(all));
-  space.stand(0, states);
-  return loop_rows(*model, space);
-}
-
 }  // namespace
 
 OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model,
                                  std::vector<int> aside, std::span<const BodyState> states, std::string linear_solver)
     : linear_solver_(std::move(linear_solver)),
       choice_(std::make_shared<Choice>(
-          Choice{RowChoice(model, rows_of_loops(model, states), std::move(aside)), 0, {states.begin(), states.end()}})),
+          Choice{RowChoice(model, loop_rows(model, 0, states), std::move(aside)), 0, {states.begin(), states.end()}})),
       kept_(std::move(kept)),
       now_(states.begin(), states.end()) {
   choice_->rows.look(0, states);

@@ -59,21 +59,16 @@ class Examination {
     const int rows = static_cast<int>(model_->rows.size());
     result_.variables = 6 * static_cast<int>(model_->bodies.size());
     result_.rank = result_.rank_here = rows;
-    std::vector<int> all(model_->rows.size());
-    std::iota(all.begin(), all.end(), 0);
-    {
-      RowSpace space(model_, std::move(all));
-      space.stand(0, states_);
-      std::vector<int> loops = loop_rows(*model_, space);
-      if (loops.empty()) return std::move(result_);
-      space_.emplace(model_, std::move(loops));
-    }
+    std::vector<int> loops = loop_rows(model_, 0, states_);
+    if (loops.empty()) return std::move(result_);
+    space_.emplace(model_, std::move(loops));
     space_->stand(0, states_);
     NullSpace here = null_space(space_->columns(), kIndependent);
     if (here.columns.empty()) return std::move(result_);
     const std::vector<int> surely = dependent_columns(space_->columns(), kDependent);
+    const std::vector<int> by_order = of_model(here.columns);
     without_ = chosen(here);
-    look_beside(std::move(here), surely);
+    look_beside(surely, by_order);
     return std::move(result_);
   }
 
@@ -98,23 +93,29 @@ class Examination {
     double off = 0;  // m
   };
 
-  void look_beside(NullSpace&& here, const std::vector<int>& surely) {
-    const std::size_t suspects = here.columns.size();
+  // `surely`: columns that depend on others, by order of the scene; `by_order`: rows that may.
+  void look_beside(const std::vector<int>& surely, const std::vector<int>& by_order) {
+    const std::size_t suspects = by_order.size();
     const Sparse columns = space_->columns();
     unit_ = with_unit_masses(*model_, sizes_);
-    std::unique_ptr<Problem> problem = intrinsic_formulation().make(unit_, without_);
-    Place start;
-    start.q.resize(index(problem->nq())), start.v.resize(index(problem->nv()));
-    check(problem->from_bodies(states_, start.q, start.v).ok(), "rA represents every orientation");
-    bool regular = put_back(*problem, start, true);
-    if (regular) find_conflicts(*problem, start, surely);
+    Trial trial = begin(without_);
+    if (trial.regular) find_conflicts(trial, without_);
+    if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
+    if (!result_.conflicts.empty()) {  // told as a reader of the scene meets them: what contradicts rows before it
+      std::vector<Conflict> as_chosen = std::exchange(result_.conflicts, {});
+      Trial other = begin(by_order);
+      if (other.regular) find_conflicts(other, by_order);
+      if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
+    }
+    Problem& problem = *trial.problem;
+    const Place& start = trial.start;
     std::optional<Place> best, along;
-    if (regular && result_.conflicts.empty()) {
-      along = beside_along_velocities(*problem, start);
+    if (trial.regular && result_.conflicts.empty()) {
+      along = beside_along_velocities(problem, start);
       best = along;
       const int directions = static_cast<int>(space_->rows().size()) > kManyRows ? 1 : 2;
       for (int k = 0; k < directions && (!best || best->dependent > 0); ++k) {
-        std::optional<Place> place = beside_at_random(*problem, start, k + 1);
+        std::optional<Place> place = beside_at_random(problem, start, k + 1);
         if (place && (!best || place->dependent < best->dependent)) best = std::move(place);
       }
     }
@@ -129,6 +130,22 @@ class Examination {
       if (along && !along->holds && surely.size() == suspects)
         result_.conflicts.push_back({along->worst, Conflict::Level::later, along->off, along->t});
     }
+  }
+
+  // The given state, put onto the rows that are not left out.
+  struct Trial {
+    std::unique_ptr<Problem> problem;
+    Place start;
+    bool regular = false;
+  };
+  Trial begin(const std::vector<int>& without) const {
+    Trial trial;
+    trial.problem = intrinsic_formulation().make(unit_, without);
+    Place& start = trial.start;
+    start.q.resize(index(trial.problem->nq())), start.v.resize(index(trial.problem->nv()));
+    check(trial.problem->from_bodies(states_, start.q, start.v).ok(), "every orientation has coordinates");
+    trial.regular = put_back(*trial.problem, start, true);
+    return trial;
   }
 
   // Onto the problem's rows, positions first.
@@ -221,14 +238,16 @@ class Examination {
   }
 
   // The rows left out, where the others hold.
-  void find_conflicts(Problem& problem, const Place& start, const std::vector<int>& surely) {
+  void find_conflicts(Trial& trial, const std::vector<int>& without) {
+    Problem& problem = *trial.problem;
+    const Place& start = trial.start;
     std::vector<BodyState> states(states_.size());
     const std::vector<double> none(start.v.size(), 0.0);
     problem.set_position(0, start.q);
     problem.set_velocity(start.v);
     problem.to_bodies(none, states);
     space_->stand(0, states);
-    off_at_start_.resize(space_->rows().size());
+    off_at_start_.assign(space_->rows().size(), 0.0);
     space_->distances(off_at_start_);
     for (double& x : off_at_start_) x = std::abs(x);
     const std::unique_ptr<Problem> whole = intrinsic_formulation().make(model_, {});
@@ -237,11 +256,10 @@ class Examination {
     whole->set_velocity(start.v);
     whole->velocity_residual(rate);
     whole->nu(nu);
-    if (surely.empty()) return;
     const double speed = extent(start.v);
     for (std::size_t k = 0; k < off_at_start_.size(); ++k) {
       const int row = space_->rows()[k];
-      if (!std::ranges::binary_search(without_, row)) continue;
+      if (!std::ranges::binary_search(without, row)) continue;
       const double size = space_->size_of_row(k), length = space_->lengths()[k];
       const double rate_off = std::abs(rate[index(row)]) / length;
       if (off_at_start_[k] > kContradicts * size)

@@ -4,6 +4,7 @@
 
 #include "core/index.h"
 #include "integrators/stepping/consistent.h"
+#include "integrators/stepping/vectors.h"
 
 namespace poinsot {
 namespace {

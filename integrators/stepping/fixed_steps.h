@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "integrators/stepping/accept.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/time_grid.h"
 #include "integrators/stepping/vectors.h"
