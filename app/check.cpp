@@ -43,36 +43,43 @@ void print_header(const Model& model) {
 void print_constraints(const SceneCheck& found) {
   const Model& model = *found.model;
   const RankAnalysis& analysis = found.rank;
-  const std::vector<Conflict>& conflicts = found.conflicts;
+  const std::vector<Conflict>& conflicts = analysis.conflicts;
   fmt::print("degrees of freedom: {}\n", analysis.degrees_of_freedom());
   if (analysis.singular_position())
     fmt::print("  the initial pose is a singular position: {} independent rows here, {} beside it\n",
                analysis.rank_here, analysis.rank);
+  for (const Dependency& d : analysis.singular)
+    fmt::print("  {} is singular here: {}\n", describe_row(model, d.row),
+               d.others.empty() ? "its gradient vanishes" : "it follows from " + groups_text(model, d.others));
   const std::size_t redundant = analysis.dependent.size() - conflicts.size();
   fmt::print("redundant constraints: {}\n", redundant == 0 ? "none" : count(redundant, "row"));
   if (!analysis.named)
     fmt::print("  {} dependent rows in a mechanism so connected: what each follows from is not worked out\n",
                analysis.dependent.size());
   const auto from = [&](const Dependency& d) { return analysis.named ? groups_text(model, d.others) : "other rows"; };
-  const auto follows = [&](const Dependency& d) {
-    return d.others.empty() && analysis.named ? "says nothing at this position" : "follows from " + from(d);
-  };
   // Both lists are by row.
   auto conflict = conflicts.begin();
   for (const Dependency& d : analysis.dependent) {
     if (conflict != conflicts.end() && conflict->row == d.row)
       ++conflict;
     else
-      fmt::print("  {} {}\n", describe_row(model, d.row), follows(d));
+      fmt::print("  {} follows from {}\n", describe_row(model, d.row), from(d));
   }
   fmt::print("conflicting constraints: {}\n", conflicts.empty() ? "none" : count(conflicts.size(), "row"));
   conflict = conflicts.begin();
   for (const Dependency& d : analysis.dependent) {
     if (conflict == conflicts.end() || conflict->row != d.row) continue;
-    fmt::print("  {} contradicts {}: off by {:.3g} ({}) where those hold\n", describe_row(model, d.row), from(d),
-               conflict->by, conflict->position ? "position" : "velocity");
+    fmt::print("  {} contradicts {}: off by {} where those hold\n", describe_row(model, d.row), from(d),
+               describe(*conflict));
     ++conflict;
   }
+}
+
+void print_doubt(const SceneCheck& found) {
+  const RankAnalysis& analysis = found.rank;
+  if (analysis.doubtful < 0) return;
+  fmt::print("neither dependent nor clearly independent: {}, of which {:.0e} is left beside the others\n",
+             describe_row(*found.model, analysis.doubtful), analysis.doubt);
 }
 
 void print_state(const SceneCheck& found) {
@@ -101,8 +108,9 @@ int run_check(const std::string& file) {
   const SceneCheck found = check_scene(read_scene(file));
   print_header(*found.model);
   print_constraints(found);
+  print_doubt(found);
   print_state(found);
-  if (!found.conflicts.empty()) {
+  if (!found.rank.conflicts.empty()) {
     print_error(fmt::format("{}: the constraints conflict; remove or correct one of those named", file));
     return kWrongInput;
   }

@@ -48,7 +48,7 @@ class Standing {
   Standing(const Scene& scene, const FormulationEntry& formulation)
       : model_(std::make_shared<const Model>(compile(scene))) {
     const InitialState start = find_initial_state(model_, Settings());
-    problem = formulation.make(model_, start.dropped);
+    problem = formulation.make(model_, start.rank.aside);
     State state(*problem);
     good = start.status.ok() && problem->from_bodies(start.bodies, span(state.q), span(state.v)).ok();
     q.assign(state.q.begin(), state.q.end());

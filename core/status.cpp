@@ -16,6 +16,10 @@ std::string_view name(Failure failure) {
       return "not_finite";
     case Failure::inconsistent_state:
       return "inconsistent_state";
+    case Failure::constraint_lost:
+      return "constraint_lost";
+    case Failure::singular_position:
+      return "singular_position";
     case Failure::step_size_too_small:
       return "step_size_too_small";
     case Failure::refused:

@@ -13,6 +13,8 @@ enum class Failure {
   orientation_singularity,  // the orientation coordinates do not determine the rates
   not_finite,               // a NaN or an infinity came up
   inconsistent_state,       // the state violates the constraints and may not or cannot be projected onto them
+  constraint_lost,          // a row that followed from the others does not hold any more
+  singular_position,        // the mechanism starts where its constraints depend on one another, and no branch is chosen
   step_size_too_small,      // error control asks for steps that do not advance the time
   refused,                  // the chosen linear solver does not take this system
 };

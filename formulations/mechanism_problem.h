@@ -30,6 +30,12 @@ class MechanismProblem final : public Problem {
     copy->mechanism_.c.twist = mechanism_.c.twist;
     return copy;
   }
+  std::unique_ptr<Problem> clone_without(std::span<const int> dropped) const override {
+    auto copy =
+        std::make_unique<MechanismProblem>(std::make_shared<const Elements>(mechanism_.c.elements->model, dropped));
+    copy->mechanism_.c.twist = mechanism_.c.twist;
+    return copy;
+  }
   std::string_view formulation() const override { return F::name; }
   const Model& model() const override { return *mechanism_.c.elements->model; }
   const std::vector<int>& model_rows() const override { return mechanism_.c.elements->model_row; }
@@ -145,20 +151,21 @@ class MechanismProblem final : public Problem {
   bool has_discrete_state() const override {
     return F::space == CoordinateSpace::charts || !mechanism_.c.twist.empty();
   }
-  bool accept(double, std::span<double> q, std::span<double> v, std::span<double> a) override {
+  Status accept(double, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double>,
+                bool& rewritten) override {
     auto& c = mechanism_.c;
     for (std::size_t k = 0; k < c.twist.size(); ++k) {
       c.twist[k] = Torsion<F, double>::angle(c, c.elements->torsions[k], c.twist[k]);
     }
-    bool changed = false;
+    rewritten = false;
     if constexpr (F::space == CoordinateSpace::charts) {
       for (int b = 0; b < bodies_; ++b) {
         const std::size_t k = static_cast<std::size_t>(b);
-        changed |= F::rechart(mechanism_.c.at[k], mechanism_.c.rate[k], q.data() + b * M::kQ + 3,
-                              v.data() + b * M::kV + 3, a.data() + b * M::kV + 3);
+        rewritten |= F::rechart(mechanism_.c.at[k], mechanism_.c.rate[k], q.data() + b * M::kQ + 3,
+                                v.data() + b * M::kV + 3, a.data() + b * M::kV + 3);
       }
     }
-    return changed;
+    return {};
   }
 
   void reaction(int group, std::span<const double> lambda, Vector3& force, Vector3& moment) const override {

@@ -48,11 +48,15 @@ class Problem {
  public:
   virtual ~Problem() = default;
   virtual std::unique_ptr<Problem> clone() const = 0;  // same system, own workspace
+  // The same bodies and forces, discrete state included, with other rows: those of the model listed take no part.
+  virtual std::unique_ptr<Problem> clone_without(std::span<const int> dropped) const = 0;
 
   virtual std::string_view formulation() const = 0;
   virtual const Model& model() const = 0;
   // The model's row of each row that takes part (dependent ones are left out), without rp's normalization rows.
   virtual const std::vector<int>& model_rows() const = 0;
+  // Counts how often accept() has exchanged rows for others: their number stays, patterns are to be asked for anew.
+  virtual int revision() const { return 0; }
   int bodies() const { return bodies_; }
   int nq() const { return nq_; }
   int nv() const { return nv_; }
@@ -96,10 +100,17 @@ class Problem {
 
   // Whether accept() has anything to do.
   virtual bool has_discrete_state() const = 0;
-  // The step to (t, q, v) is accepted. What is discrete is brought up to date: turns of torsion springs, the body-fixed
-  // frames of reps. May rewrite q, v and a (not what they mean); returns true when it did, and then set_position and
-  // set_velocity are due again.
-  virtual bool accept(double t, std::span<double> q, std::span<double> v, std::span<double> a) = 0;
+  // The step to (t, q, v) is accepted, and the problem stands there. What is discrete is brought up to date: turns of
+  // torsion springs, the body-fixed frames of reps, the choice among rows that depend on one another. May rewrite q, v,
+  // a and λ (not what they mean) and says so; then set_position and set_velocity are due again. Fails where rows left
+  // out do not follow from the others any more.
+  virtual Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a,
+                        std::span<double> lambda, bool& rewritten) = 0;
+  // Largest |Φ| and |G v − ν| of rows that are left out because they follow from the others, when last accepted.
+  struct LeftOut {
+    double position = 0, velocity = 0;
+  };
+  virtual LeftOut left_out() const { return {}; }
 
   // Force (N, global) and moment about point_j of the group (N m, global) on body j by the rows of a group.
   virtual void reaction(int group, std::span<const double> lambda, Vector3& force, Vector3& moment) const = 0;

@@ -32,12 +32,12 @@ struct EqualSteps {
       : model(std::make_shared<const Model>(compile(scene))),
         start(find_initial_state(model, Settings{})),
         systems(settings.linear()) {
-    problem = formulations().require(settings.formulation).make(model, start.dropped);
+    problem = formulations().require(settings.formulation).make(model, start.rank.aside);
     stepper = make(*problem, systems, statistics, clock);
     State first(*problem);
     check(find_first_state(start, settings, *problem, first).ok(), "the start is regular");
     check(stepper->prepare().ok(), "the pattern can be analysed");
-    stepper->start(first);
+    check(stepper->start(first).ok(), "the start is regular");
   }
 
   // `steps` steps to time `end`; a sample after every `every` of them.
@@ -45,7 +45,7 @@ struct EqualSteps {
     for (int n = 1; n <= steps; ++n) {
       if (Status status = try_step(*stepper, end * n / steps); !status.ok()) return status;
       if (Status status = stepper->complete(); !status.ok()) return status;
-      stepper->settle();
+      if (Status status = stepper->settle(); !status.ok()) return status;
       if (n % every != 0) continue;
       const State& at = stepper->state();
       problem->set_position(at.t, span(at.q));

@@ -12,6 +12,7 @@
 #include "integrators/settings_reader.h"
 #include "integrators/start/first_state.h"
 #include "integrators/start/initial_state.h"
+#include "integrators/start/over_constrained.h"
 #include "integrators/start/singular_position.h"
 #include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
@@ -67,10 +68,13 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   InitialState start = find_initial_state(model, settings);
   outcome.status = start.status;
   outcome.notices = std::move(start.notices);
-  outcome.reactions_undetermined = !start.dropped.empty();
+  outcome.reactions_undetermined = !start.rank.aside.empty();
   if (!outcome.status.ok()) return outcome;
 
-  const std::unique_ptr<Problem> problem = formulation.make(model, start.dropped);
+  std::unique_ptr<Problem> problem = formulation.make(model, start.rank.aside);
+  if (!start.rank.aside.empty())
+    problem =
+        std::make_unique<OverConstrained>(std::move(problem), model, start.rank.aside, start.bodies, settings.linear());
   if (settings.analysis == Analysis::kinematics) refuse_free_motion(*problem);
   State state(*problem);
   outcome.status = find_first_state(start, settings, *problem, state);
@@ -81,7 +85,7 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   const Failure failure = outcome.status.failure;
   if (settings.analysis == Analysis::dynamics &&
       (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {
-    const int rows = static_cast<int>(model->rows.size() - start.dropped.size());
+    const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
     const std::string why = near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
     if (!why.empty()) outcome.status.message += "; " + why;
   }

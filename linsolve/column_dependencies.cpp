@@ -81,12 +81,12 @@ std::map<int, SparseEntries> echelon(std::vector<SparseEntries> vectors) {
 }
 
 // Null vectors of A, by the last column of each.
-struct NullSpace {
+struct Echelon {
   std::map<int, SparseEntries> by_last;
   std::vector<int> dependent;  // instead, where the vectors are not needed or would be too long
   bool complete = true;
 
-  NullSpace(const Sparse& A, double tolerance, bool vectors_needed) {
+  Echelon(const Sparse& A, double tolerance, bool vectors_needed) {
     std::vector<int> entries(static_cast<std::size_t>(A.rows()), 0), wide(entries.size(), -1);
     for (int k = 0; k < A.outerSize(); ++k)
       for (Sparse::InnerIterator it(A, k); it; ++it) ++entries[static_cast<std::size_t>(it.row())];
@@ -120,7 +120,7 @@ struct NullSpace {
 }  // namespace
 
 ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
-  NullSpace space(A, tolerance, true);
+  Echelon space(A, tolerance, true);
   ColumnDependencies found;
   found.named = space.complete;
   for (const int column : space.dependent) found.columns.push_back({column, {}});
@@ -143,7 +143,59 @@ ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
 }
 
 std::vector<int> dependent_columns(const Sparse& A, double tolerance) {
-  return NullSpace(A, tolerance, false).dependent;
+  return Echelon(A, tolerance, false).dependent;
+}
+
+NullSpace null_space(const Sparse& A, double tolerance) {
+  Echelon space(A, tolerance, true);
+  NullSpace found{std::move(space.dependent), {}};
+  for (auto& [column, z] : space.by_last) found.vectors.push_back(std::move(z));
+  return found;
+}
+
+std::vector<int> separate(std::vector<SparseEntries>&& vectors) {
+  constexpr std::size_t kMostCombined = 2'000'000;  // entries: a second's work
+  constexpr double kFlat = 1.5;                     // an entry this large takes the place of the pivot
+  constexpr int kPasses = 20;
+  std::size_t size = 0;
+  for (const SparseEntries& z : vectors) size += z.size();
+  std::vector<int> pivots;
+  for (const SparseEntries& z : vectors) pivots.push_back(z.back().first);
+  if (size > kMostCombined) return pivots;
+
+  std::map<int, std::vector<std::size_t>> having;  // by column: vectors that have or had it
+  for (std::size_t k = 0; k < vectors.size(); ++k)
+    for (const auto& [column, value] : vectors[k]) having[column].push_back(k);
+  const auto find = [](const SparseEntries& z, int column) {
+    const auto it = std::ranges::lower_bound(z, column, {}, &std::pair<int, double>::first);
+    return it != z.end() && it->first == column ? it->second : 0.0;
+  };
+  const auto pivot_on = [&](std::size_t k, int column, double value) {
+    for (auto& entry : vectors[k]) entry.second /= value;
+    for (const std::size_t other : std::vector<std::size_t>(having[column])) {
+      const double factor = other == k ? 0 : find(vectors[other], column);
+      if (factor == 0) continue;
+      vectors[other] = subtract(vectors[other], factor, vectors[k], column);
+      for (const auto& [c, v] : vectors[k])
+        if (c != column) having[c].push_back(other);
+    }
+    having[column] = {k};
+    pivots[k] = column;
+  };
+  for (int pass = 0; pass < kPasses; ++pass) {
+    bool any = false;
+    for (std::size_t k = 0; k < vectors.size(); ++k) {
+      // Among equals the last: what a scene lists later is what it says twice.
+      const auto best = std::ranges::max_element(
+          vectors[k], [](const auto& x, const auto& y) { return 0.999 * std::abs(x.second) < std::abs(y.second); });
+      const auto [column, value] = *best;
+      if (pass > 0 && std::abs(value) <= kFlat) continue;
+      pivot_on(k, column, value);
+      any = true;
+    }
+    if (!any) break;
+  }
+  return pivots;
 }
 
 }  // namespace poinsot

@@ -13,6 +13,8 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
+#include "linsolve/front_qr.h"
+
 namespace poinsot {
 
 struct ColumnDependency {
@@ -32,5 +34,19 @@ ColumnDependencies column_dependencies(const Eigen::SparseMatrix<double>& A, dou
 
 // As many columns, ascending, without which the others are independent; not always those named above. Needs far less.
 std::vector<int> dependent_columns(const Eigen::SparseMatrix<double>& A, double tolerance);
+
+// The null space of A: a vector for each column that depends on others. `columns` are as many, ascending, without which
+// the others are independent; past kMostNamed there are no vectors.
+struct NullSpace {
+  std::vector<int> columns;
+  std::vector<SparseEntries> vectors;
+};
+NullSpace null_space(const Eigen::SparseMatrix<double>& A, double tolerance);
+
+// Combines null vectors until each has a column of its own, where it is 1 and all others are 0, and no entry is much
+// larger than that: what is left without those columns is nearly as independent as it can be (the columns span nearly
+// the largest volume; C.-T. Pan, On the existence and computation of rank-revealing LU factorizations, 2000). Returns
+// the columns, by vector. Vectors that are too long together to be combined keep the column they end with.
+std::vector<int> separate(std::vector<SparseEntries>&& vectors);
 
 }  // namespace poinsot

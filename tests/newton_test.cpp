@@ -204,7 +204,7 @@ TEST_P(Newton, StepsAllocateNothing) {
         settings.linear_solver = name;
         if (compiled->name.find("Andrews") == 0) settings.step = 1e-5, settings.end = 4e-4, settings.tolerance = 0.1;
         const InitialState start = find_initial_state(compiled, settings);
-        const auto problem = formulations().require(formulation()).make(compiled, start.dropped);
+        const auto problem = formulations().require(formulation()).make(compiled, start.rank.aside);
         if (settings.analysis == Analysis::kinematics && problem->nv() != problem->nc()) continue;
         State state(*problem);
         ASSERT_TRUE(find_first_state(start, settings, *problem, state).ok());

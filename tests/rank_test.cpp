@@ -18,7 +18,7 @@ using ::testing::IsEmpty;
 
 RankAnalysis analyze(const Scene& scene) {
   const auto model = std::make_shared<const Model>(compile(scene));
-  return analyze_rank(model, given_state(*model));
+  return analyze_rank(model, given_state(*model), RankNames::all);
 }
 
 Scene free_bodies(int count) {

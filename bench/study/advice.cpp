@@ -15,7 +15,7 @@ bool without_freedom(const Scene& scene) {
   const auto model = std::make_shared<const Model>(compile(scene));
   const auto pfaffian = [](const Row& row) { return row.type == RowType::pfaffian; };
   return std::none_of(model->rows.begin(), model->rows.end(), pfaffian) &&
-         analyze_rank(model, given_state(*model)).degrees_of_freedom() == 0;
+         analyze_rank(model, given_state(*model), RankNames::none).degrees_of_freedom() == 0;
 }
 
 }  // namespace

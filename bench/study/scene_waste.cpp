@@ -25,7 +25,7 @@ std::string listed(const std::vector<std::string>& names) {
 std::vector<std::string> scene_waste(const Scene& scene, const Motion& motion) {
   std::vector<std::string> sentences;
   const auto model = std::make_shared<const Model>(compile(scene));
-  const RankAnalysis rank = analyze_rank(model, given_state(*model));
+  const RankAnalysis rank = analyze_rank(model, given_state(*model), RankNames::all);
   if (const std::vector<int> dependent = rank.dependent_rows(); !dependent.empty()) {
     std::vector<std::string> names;
     for (const int row : dependent) names.push_back(describe_row(*model, row));

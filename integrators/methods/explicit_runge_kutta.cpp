@@ -39,7 +39,7 @@ class ExplicitRungeKutta final : public Integrator {
     ControlledPair method(pair_, run.problem, run.systems, run.settings.rtol, run.settings.absolute_tolerance(),
                           run.statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
-    method.start(run.state);
+    if (Status status = method.start(run.state); !status.ok()) return status;
     return controlled_run(method, pair_.rule, run, clock);
   }
 

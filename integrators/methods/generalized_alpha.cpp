@@ -84,6 +84,7 @@ class GeneralizedAlpha : public FixedSteps {
 
   // In other coordinates v̈ is another, and what the state carries along belonged to the old ones.
   Status resume() override {
+    velocity_rows_ = velocity_rows(problem_);
     aside_.setZero();
     problem_.velocity_residual(span(aside_, nv_, nc_));
     aside_ = -aside_;

@@ -21,6 +21,10 @@ class HalfImplicit final : public FixedSteps {
         rows_(nc_) {}
 
   Status prepare() override { return ends_.prepare(); }
+  Status resume() override {
+    velocity_rows_ = velocity_rows(ends_.begin().problem);
+    return {};
+  }
   Problem& stand() override { return ends_.begin().problem; }  // it does after every step
 
   Status step(double t) override {
@@ -59,7 +63,7 @@ class HalfImplicit final : public FixedSteps {
   StepEnds ends_;
   NewtonLoop newton_;
   Broyden broyden_;
-  const std::vector<int> velocity_rows_;
+  std::vector<int> velocity_rows_;
   Vector dq_, rows_;
 };
 

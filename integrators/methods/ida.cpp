@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/check.h"
+#include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/sample_times.h"
@@ -70,7 +72,7 @@ class Session {
         problem_(run.problem),
         settings_(run.settings),
         statistics_(run.statistics),
-        form_(problem_),
+        form_(std::in_place, problem_),
         system_(problem_, run.systems.add(Workload::solves), statistics_, clock_),
         consistent_(problem_, run.systems.add(), statistics_, clock_),
         sizes_(2 * static_cast<std::size_t>(problem_.nv())),
@@ -80,9 +82,9 @@ class Session {
     SUNContext context = nullptr;
     check(SUNContext_Create(nullptr, &context) == 0, "SUNDIALS gives a context");
     context_.reset(context);
-    y_.reset(N_VNew_Serial(form_.size(), context));
-    y_dot_.reset(N_VNew_Serial(form_.size(), context));
-    inner_.reset(N_VNew_Serial(form_.size(), context));
+    y_.reset(N_VNew_Serial(form_->size(), context));
+    y_dot_.reset(N_VNew_Serial(form_->size(), context));
+    inner_.reset(N_VNew_Serial(form_->size(), context));
     matrix_.reset(SUNMatNewEmpty(context));
     linear_.reset(SUNLinSolNewEmpty(context));
     ida_.reset(IDACreate(context));
@@ -98,9 +100,9 @@ class Session {
   }
 
   Status prepare() {
-    if (Status status = system_.prepare(form_.pattern(), form_.unknowns()); !status.ok()) return status;
+    if (Status status = system_.prepare(form_->pattern(), form_->unknowns()); !status.ok()) return status;
     if (Status status = consistent_.prepare(); !status.ok()) return status;
-    form_.start(at_, values(y_.get()), values(y_dot_.get()));
+    form_->start(at_, values(y_.get()), values(y_dot_.get()));
     void* ida = ida_.get();
     const auto done = [](int flag) { check(flag == IDA_SUCCESS, "IDA accepts what it is given"); };
     done(IDAInit(ida, residual, 0, y_.get(), y_dot_.get()));
@@ -142,7 +144,6 @@ class Session {
       IDAGetLastStep(ida_.get(), &h);
       if (creeping.tries(t, h)) return step_too_small(t, h, {});
       creeping.completed(h);
-      if (problem_.has_discrete_state()) accept(t);
       for (; settings_.every > 0 && times.next() < t; times.pass()) {
         if (Status status = stand_at(times.next()); !status.ok()) return status;
         give_out();
@@ -152,6 +153,8 @@ class Session {
         if (Status status = stand_at(t); !status.ok()) return status;
         give_out();
       }
+      if (!problem_.has_discrete_state() || t >= settings_.end) continue;
+      if (Status status = accept(t); !status.ok()) return status;
     }
     return {};
   }
@@ -166,9 +169,7 @@ class Session {
     }
     if (share_ == 1) return step_too_small(t, h, linear_status_);
     share_ = 1;
-    count();
-    form_.start(at_, values(y_.get()), values(y_dot_.get()));
-    check(IDAReInit(ida_.get(), t, y_.get(), y_dot_.get()) == IDA_SUCCESS, "IDA starts anew");
+    start_anew(t);
     return {};
   }
 
@@ -186,21 +187,30 @@ class Session {
     check(IDAGetDky(ida_.get(), t, 0, inner_.get()) == IDA_SUCCESS, "the time lies within IDA's last step");
     const std::span<const double> y = values(inner_.get());
     next_.t = t;
-    std::ranges::copy(form_.q(y), next_.q.begin());
-    std::ranges::copy(form_.v(y), next_.v.begin());
+    std::ranges::copy(form_->q(y), next_.q.begin());
+    std::ranges::copy(form_->v(y), next_.v.begin());
     if (Status status = consistent_.complete(next_); !status.ok()) return status;
     std::swap(at_, next_);
     return {};
   }
 
-  // Turns of torsion springs; no formulation IDA is used with rewrites its coordinates.
-  void accept(double t) {
-    const std::span<double> y = values(y_.get());
-    const std::size_t nv = static_cast<std::size_t>(problem_.nv());
-    problem_.set_position(t, form_.q(y));
-    problem_.set_velocity(form_.v(y));
-    const bool rewritten = problem_.accept(t, y.first(nv), y.subspan(nv, nv), values(y_dot_.get()).subspan(nv, nv));
-    check(!rewritten, "coordinates of a vector space stay what they are");
+  // Turns of torsion springs, the choice among redundant rows; no formulation IDA is used with rewrites its
+  // coordinates.
+  Status accept(double t) {
+    if (Status status = stand_at(t); !status.ok()) return status;
+    bool rewritten = false;
+    if (Status status = poinsot::accept(problem_, at_, rewritten); !status.ok() || !rewritten) return status;
+    form_.emplace(problem_);
+    if (Status status = system_.prepare(form_->pattern(), form_->unknowns()); !status.ok()) return status;
+    start_anew(t);
+    return {};
+  }
+
+  // From the last point: what IDA remembers of the motion is gone.
+  void start_anew(double t) {
+    count();
+    form_->start(at_, values(y_.get()), values(y_dot_.get()));
+    check(IDAReInit(ida_.get(), t, y_.get(), y_dot_.get()) == IDA_SUCCESS, "IDA starts anew");
   }
 
   void give_out() {
@@ -216,14 +226,14 @@ class Session {
   }
   static int residual(double t, N_Vector y, N_Vector y_dot, N_Vector F, void* user) {
     const std::span<double> out = values(F);
-    of(user).form_.residual(t, values(y), values(y_dot), out);
+    of(user).form_->residual(t, values(y), values(y_dot), out);
     return std::ranges::all_of(out, [](double x) { return std::isfinite(x); }) ? 0 : 1;
   }
   static int jacobian(double t, double alpha, N_Vector y, N_Vector y_dot, N_Vector, SUNMatrix, void* user, N_Vector,
                       N_Vector, N_Vector) {
     Session& session = of(user);
     session.linear_status_ = session.system_.refresh(t, [&](std::span<const int> slots, std::span<double> matrix) {
-      session.form_.assemble(t, alpha, values(y), values(y_dot), slots, matrix);
+      session.form_->assemble(t, alpha, values(y), values(y_dot), slots, matrix);
     });
     return session.linear_status_.ok() ? 0 : 1;
   }
@@ -240,7 +250,7 @@ class Session {
   static int weights(N_Vector y, N_Vector w, void* user) {
     Session& session = of(user);
     const std::span<double> out = values(w);
-    component_sizes(session.problem_, session.form_.q(values(y)), session.form_.v(values(y)), session.sizes_now_);
+    component_sizes(session.problem_, session.form_->q(values(y)), session.form_->v(values(y)), session.sizes_now_);
     const double mean = std::sqrt(static_cast<double>(out.size()) / static_cast<double>(session.sizes_.size()));
     std::ranges::fill(out, 0.0);
     for (std::size_t k = 0; k < session.sizes_.size(); ++k) {
@@ -257,7 +267,7 @@ class Session {
   const Settings& settings_;
   Statistics& statistics_;
   PhaseClock clock_;
-  StabilizedIndex2 form_;
+  std::optional<StabilizedIndex2> form_;  // anew for other rows
   TimedSystem system_;
   Consistent consistent_;
   std::vector<double> sizes_, sizes_now_;

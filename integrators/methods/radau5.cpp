@@ -28,7 +28,7 @@ class Radau5 final : public Integrator {
     ControlledRadau method(run.problem, run.systems, settings.rtol, settings.absolute_tolerance(), run.statistics,
                            clock);
     if (Status status = method.prepare(); !status.ok()) return status;
-    method.start(run.state);
+    if (Status status = method.start(run.state); !status.ok()) return status;
     return controlled_run(method, kRule, run, clock);
   }
 };

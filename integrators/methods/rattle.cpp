@@ -47,8 +47,11 @@ class Rattle final : public FixedSteps {
   }
 
   Status accept(Problem& problem) override {
-    if (!problem.accept(x_.t, span(x_.q), span(x_.v), span(rhs_, 0, nv_))) return {};
+    bool rewritten = false;
+    Status status = problem.accept(x_.t, span(x_.q), span(x_.v), span(rhs_, 0, nv_), span(rhs_, nv_, nc_), rewritten);
+    if (!status.ok() || !rewritten) return status;
     z_ = rhs_;
+    velocity_rows_ = velocity_rows(problem);
     place(problem);
     return factor(ends_.begin(), x_.t);
   }
@@ -138,7 +141,7 @@ class Rattle final : public FixedSteps {
   StepEnds ends_;
   NewtonLoop newton_;
   Broyden broyden_;
-  const std::vector<int> velocity_rows_;
+  std::vector<int> velocity_rows_;
   Vector z_;  // unknowns of the first half; x_.z is the (a, λ) given out
   Vector u_, dq_, e_, momentum_, rows_, rhs_, zeros_;
 };

@@ -33,25 +33,26 @@ class Assembler {
     result_.bodies = given_;
     before_ = violation(model_, given_);
     refuse_if_far();
-    result_.status = project();
-    if (result_.status.failure == Failure::singular_matrix) {
-      set_dependent_rows_aside();
-      if (!result_.dropped.empty()) result_.status = project();
+    result_.rank = analyze_rank(model_, given_, RankNames::none);
+    refuse_conflicts();
+    tell_rank();
+    if (result_.rank.singular_position() && !result_.rank.moves_on) {
+      result_.status = stuck();
+      return std::move(result_);
     }
+    result_.status = project();
     if (result_.status.failure == Failure::inconsistent_state) {
       throw InputError(
           fmt::format("the constraints cannot be satisfied together near the given pose; the largest "
                       "violation is that of {}; `poinsot check` names conflicting constraints",
                       describe_row(*model_, before_.position_row)));
     }
-    if (result_.status.ok()) {
-      refuse_conflicts();
-      tell_what_moved();
-    }
+    if (result_.status.ok()) tell_what_moved();
     return std::move(result_);
   }
 
  private:
+  const std::vector<int>& kept_out() const { return result_.rank.aside_here; }
   bool off_position() const { return before_.position > kSatisfied; }
   bool off_velocity() const { return before_.velocity > kSatisfied; }
 
@@ -72,9 +73,10 @@ class Assembler {
     }
   }
 
-  // Position and velocity where they are off; in any case one factorization, which tells a singular system.
+  // Position and velocity where they are off.
   Status project() {
-    const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, result_.dropped);
+    if (!off_position() && !off_velocity()) return {};
+    const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, kept_out());
     std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
     check(problem->from_bodies(given_, q, v).ok(), "rA represents every orientation");
     Consistent consistent(*problem, settings_.linear());
@@ -84,50 +86,69 @@ class Assembler {
     problem->set_position(0, q);
     problem->set_velocity(v);
     // a moved pose moves G, and the velocities with it
-    if (off_velocity() || off_position()) {
-      if (Status status = consistent.project_velocity(0, v); !status.ok()) return status;
-    }
-    std::vector<double> z(v.size() + static_cast<std::size_t>(problem->nc()));
-    if (Status status = consistent.accelerations(0, z); !status.ok()) return status;
-    if (off_velocity() || off_position()) {
-      problem->to_bodies(std::span(z).first(v.size()), result_.bodies);
-    } else {
-      result_.z = std::move(z);
-    }
+    if (Status status = consistent.project_velocity(0, v); !status.ok()) return status;
+    problem->to_bodies(std::vector<double>(v.size(), 0.0), result_.bodies);
     return {};
   }
 
-  void set_dependent_rows_aside() {
-    const RankAnalysis analysis = analyze_rank(model_, given_);
-    result_.dropped = analysis.dependent_rows();
-    if (analysis.singular_position()) {
-      result_.notices.push_back(
-          fmt::format("the initial pose is a singular position of the mechanism: {} independent "
-                      "constraint rows here, {} beside it",
-                      analysis.rank_here, analysis.rank));
-    }
-    if (result_.dropped.empty()) return;
-    std::string names;
-    for (std::size_t k = 0; k < result_.dropped.size() && k < 6; ++k) {
-      names += (k ? ", " : "") + describe_row(*model_, result_.dropped[k]);
-    }
-    if (result_.dropped.size() > 6) names += ", ...";
-    result_.notices.push_back(fmt::format("{} of {} constraint rows depend on the others and are set aside: {}",
-                                          result_.dropped.size(), model_->rows.size(), names));
+  // The first few rows, and what there is to say of each.
+  template <class List, class Say>
+  std::string listed(const List& all, Say&& say) const {
+    constexpr std::size_t kMost = 6;
+    std::string text;
+    for (std::size_t k = 0; k < all.size() && k < kMost; ++k) text += (k ? ", " : "") + say(all[k]);
+    return all.size() > kMost ? text + ", ..." : text;
+  }
+  std::string names(const std::vector<int>& rows) const {
+    return listed(rows, [&](int row) { return describe_row(*model_, row); });
+  }
+  std::string names(const std::vector<Dependency>& rows) const {
+    return listed(rows, [&](const Dependency& d) { return describe_row(*model_, d.row); });
   }
 
-  // Rows set aside must hold where the others do.
+  void tell_rank() {
+    const RankAnalysis& rank = result_.rank;
+    if (!rank.aside.empty())
+      result_.notices.push_back(
+          fmt::format("{} of {} constraint rows are redundant, they follow from the others; set "
+                      "aside, to begin with: {}",
+                      rank.aside.size(), model_->rows.size(), names(rank.aside)));
+    if (rank.singular_position() && rank.moves_on)
+      result_.notices.push_back(
+          fmt::format("the initial pose is a singular position of the mechanism: singular here: {}; the run follows "
+                      "the branch that the initial velocities lead to",
+                      names(rank.singular)));
+    if (rank.doubtful >= 0)
+      result_.notices.push_back(fmt::format(
+          "{} is a combination of the other constraints but for {:.0e} of its length; it is kept as independent, and "
+          "reactions against it are large: the mechanism is that near to moving, or to being constrained once less",
+          describe_row(*model_, rank.doubtful), rank.doubt));
+    if (rank.degrees_of_freedom() == 0 && !model_->bodies.empty() &&
+        std::ranges::all_of(model_->rows, [](const Row& row) { return row.f.is_constant(); }))
+      result_.notices.push_back("the mechanism has no degree of freedom and no driver: it cannot move");
+  }
+
+  Status stuck() const {
+    const RankAnalysis& rank = result_.rank;
+    return {Failure::singular_position, 0,
+            fmt::format("the initial pose is a singular position of the mechanism, and the initial velocities do not "
+                        "lead away from it: singular here: {}; {}; start beside it, or with a velocity along the "
+                        "branch that is meant",
+                        names(rank.singular),
+                        rank.singular.front().others.empty() && rank.singular.size() == 1
+                            ? "its gradient vanishes, so that it constrains nothing here"
+                            : "what the constraints leave free here and what they leave free beside it differ")};
+  }
+
+  // Redundant rows must hold where the others do.
   void refuse_conflicts() const {
-    if (result_.dropped.empty()) return;
-    const Violation after = violation(model_, result_.bodies);
-    const double limit = 1e-6 * size_of(given_);
-    if (after.position <= limit && after.velocity <= limit) return;
-    const bool position = after.position > limit;
+    if (result_.rank.conflicts.empty()) return;
+    const auto size = [](const Conflict& c) { return c.by; };
+    const Conflict& worst = *std::ranges::max_element(result_.rank.conflicts, {}, size);
     throw InputError(
-        fmt::format("the constraints conflict: with the others satisfied, {} is still violated by {:.3g} "
-                    "({}); `poinsot check` names what it depends on",
-                    describe_row(*model_, position ? after.position_row : after.velocity_row),
-                    position ? after.position : after.velocity, position ? "position" : "velocity"));
+        fmt::format("the constraints conflict: with the others satisfied, {} is still violated by {}; `poinsot check` "
+                    "names what it depends on",
+                    describe_row(*model_, worst.row), describe(worst)));
   }
 
   void tell_what_moved() {

@@ -1,4 +1,4 @@
-// From the state a scene gives to one a run can start from: dependent rows set aside, positions and velocities on the
+// From the state a scene gives to one a run can start from: redundant rows set aside, positions and velocities on the
 // constraints, and told what was done.
 //
 // A state that satisfies the constraints is left untouched to the last bit. Others are projected mass-orthogonally,
@@ -14,15 +14,15 @@
 #include "core/model.h"
 #include "core/status.h"
 #include "integrators/settings.h"
+#include "integrators/start/rank.h"
 
 namespace poinsot {
 
 struct InitialState {
   Status status;
   std::vector<BodyState> bodies;
-  std::vector<int> dropped;  // model rows that depend on others and agree with them, sorted
+  RankAnalysis rank;
   std::vector<std::string> notices;
-  std::vector<double> z;  // (a, λ) in rA, at the bodies as given; empty where they were moved
 };
 
 // Throws InputError where the scene asks for what cannot be: conflicting constraints, a pose far from the constraints,

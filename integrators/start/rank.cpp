@@ -1,15 +1,20 @@
 #include "integrators/start/rank.h"
 
-#include <Eigen/SparseCore>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <random>
 #include <utility>
 
 #include "core/check.h"
-#include "formulations/gradient.h"
+#include "core/index.h"
 #include "formulations/registry.h"
 #include "integrators/settings.h"
+#include "integrators/start/loop_rows.h"
+#include "integrators/start/row_space.h"
 #include "integrators/stepping/consistent.h"
 #include "linsolve/column_dependencies.h"
 
@@ -18,91 +23,323 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-// Columns have unit length: what is left of a dependent one is rounding, far below this. A row that keeps less than
-// this of its length is not told from a dependent one.
-constexpr double kRankTolerance = 1e-9;
+// Beside: bodies move by this part of their size. A row that is singular where they stood has that much of its length
+// free there, give or take the shape of the mechanism; what follows from others but for the second order of the move,
+// where some row does not hold, has the square of it.
+constexpr double kMove = 1e-3;
+constexpr double kFreeBeside = 3e-5;
+constexpr double kPulledBack = 0.3;  // of the move that has to be left after the projection
+// Parts of a body's size: a row that holds beside is off by no more than the solution of the others, one that does not
+// by some kMove² = 1e-6; one that contradicts the others by what the scene says.
+constexpr double kHolds = 1e-9, kContradicts = 1e-6;
+constexpr double kShortWhile = 1e-3;      // s, where nothing moves yet
+constexpr std::size_t kMostChosen = 200;  // dependent rows: the time grows with their square
+constexpr int kManyRows = 20'000;         // of loops: one random direction is looked at in the place of two
 
-// What the terms have of which the row's gradient is made, where they can cancel altogether: the cross product of
-// directions that are parallel, the distance of points that coincide. 0 for rows that cannot vanish.
-double terms_of_gradient(const Row& row, std::span<const BodyState> states) {
-  const auto place = [&](int body) { return body == kGround ? 0.0 : states[static_cast<std::size_t>(body)].r.norm(); };
-  switch (row.type) {
-    case RowType::DP1:
-    case RowType::angle:
-      return row.a_i.norm() * row.a_j.norm();
-    case RowType::D: {
-      const double s = std::max(row.s_i.norm(), row.s_j.norm());
-      return 2 * (place(row.i) + place(row.j) + 2 * s) * std::max(1.0, s);
-    }
-    case RowType::DP2:
-    case RowType::CD:
-    case RowType::pfaffian:
-      return 0;
+// Bodies of unit mass that turn as hard as they move: projections are the shortest ways.
+std::shared_ptr<const Model> with_unit_masses(const Model& model, std::span<const double> sizes) {
+  auto unit = std::make_shared<Model>(model);
+  for (std::size_t b = 0; b < sizes.size(); ++b) {
+    unit->bodies[b].mass = 1;
+    unit->bodies[b].inertia = sizes[b] * sizes[b] * Matrix3::Identity();
   }
-  return 0;
+  return unit;
 }
 
-// Gᵀ at (t, q) with unit columns, in rA: its variations are regular everywhere. A column of nothing but rounding is 0.
-Sparse transposed_gradient(Problem& problem, std::span<const double> q, std::span<const BodyState> states) {
-  const std::vector<double> at_rest(static_cast<std::size_t>(problem.nv()), 0.0);
-  problem.set_position(0, q);
-  problem.set_velocity(at_rest);
-  const std::vector<Eigen::Triplet<double>> entries = gradient(problem);
-  Sparse G(problem.nc(), problem.nv());
-  G.setFromTriplets(entries.begin(), entries.end());
-  Sparse Gt = G.transpose();
-  const std::vector<Row>& rows = problem.model().rows;
-  for (Eigen::Index k = 0; k < Gt.cols(); ++k) {
-    const double norm = Gt.col(k).norm();
-    const double terms = terms_of_gradient(rows[static_cast<std::size_t>(k)], states);
-    Gt.col(k) *= norm > kRankTolerance * terms ? 1 / norm : 0.0;
-  }
-  return Gt;
+std::vector<int> united(std::vector<int> a, const std::vector<int>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  std::ranges::sort(a);
+  a.erase(std::unique(a.begin(), a.end()), a.end());
+  return a;
 }
 
-// A small free motion from q, projected back onto the constraints: those that are independent there, and the others
-// have to follow. Bodies of unit mass and inertia, so that the moves are the shortest. False where there is none.
-bool neighbour(Problem& problem, const std::vector<int>& dependent, std::span<const BodyState> states,
-               std::vector<double>& q) {
-  constexpr double kStep = 1e-2;
-  auto model = std::make_shared<Model>(problem.model());
-  for (Body& body : model->bodies) body.mass = 1, body.inertia.setIdentity();
-  const auto make = [&](const std::vector<int>& without) { return intrinsic_formulation().make(model, without); };
+class Examination {
+ public:
+  Examination(std::shared_ptr<const Model> model, std::span<const BodyState> states, RankNames names)
+      : model_(std::move(model)), states_(states.begin(), states.end()), names_(names), sizes_(body_sizes(*model_)) {}
 
-  const std::unique_ptr<Problem> here = make(dependent);
-  std::vector<double> at_rest(static_cast<std::size_t>(here->nv()), 0.0);
-  here->set_position(0, q);
-  here->set_velocity(at_rest);
-  std::vector<double> move(static_cast<std::size_t>(here->nv() + here->nc()), 0.0);
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal;
-  for (std::size_t k = 0; k < at_rest.size(); ++k) move[k] = normal(random);
-  Consistent consistent(*here, LinearChoice());
-  if (!consistent.factor(0).ok() || !consistent.solve(0, move).ok()) return false;
-  move.resize(at_rest.size());
-  double length = 0;
-  for (const double x : move) length = std::hypot(length, x);
-  if (!(length >= 1e-6)) return false;
-  for (double& x : move) x *= kStep / length;
-  std::vector<double> beside(q.size());
-  here->retract(q, move, beside);
-  const auto distance = [&] {
-    double sum = 0;
-    for (std::size_t k = 0; k < q.size(); ++k) sum = std::hypot(sum, beside[k] - q[k]);
-    return sum;
+  RankAnalysis run() {
+    const int rows = static_cast<int>(model_->rows.size());
+    result_.variables = 6 * static_cast<int>(model_->bodies.size());
+    result_.rank = result_.rank_here = rows;
+    std::vector<int> loops = loop_rows(model_, 0, states_);
+    if (loops.empty()) return std::move(result_);
+    space_.emplace(model_, std::move(loops));
+    space_->stand(0, states_);
+    const std::size_t suspects = dependent_columns(space_->columns(), kIndependent).size();
+    if (suspects == 0) return std::move(result_);
+    without_ = chosen(space_->columns(), kIndependent);
+    look_beside(suspects);
+    return std::move(result_);
+  }
+
+ private:
+  // Rows of the model without which the others are as independent as can be; beyond kMostChosen, just independent.
+  std::vector<int> chosen(const Sparse& columns, double tolerance) const {
+    return of_model(choose(columns, tolerance));
+  }
+  static std::vector<int> choose(const Sparse& columns, double tolerance) {
+    std::vector<int> plain = dependent_columns(columns, tolerance);
+    if (plain.size() > kMostChosen) return plain;
+    return separate(null_space(columns, tolerance).vectors);
+  }
+  std::vector<int> of_model(std::vector<int> columns) const {
+    for (int& column : columns) column = space_->rows()[index(column)];
+    std::ranges::sort(columns);
+    return columns;
+  }
+
+  struct Place {
+    double t = 0;
+    std::vector<double> q, v;
+    Sparse columns;
+    std::size_t dependent = 0;
+    bool holds = false;
+    int worst = -1;  // the row that is off most, of those left out
+    double off = 0;  // m
   };
-  const double moved = distance();
 
-  const std::unique_ptr<Problem> there =
-      make(dependent_columns(transposed_gradient(problem, beside, states), kRankTolerance));
-  if (!Consistent(*there, LinearChoice()).project_position(0, beside).ok()) return false;
-  if (distance() < 0.5 * moved) return false;  // the constraints take it back where it was
-  problem.set_position(0, beside);
-  std::vector<double> Phi(static_cast<std::size_t>(problem.nc()));
-  problem.position_residual(Phi);
-  q = std::move(beside);
-  return std::all_of(Phi.begin(), Phi.end(), [](double x) { return std::abs(x) < 1e-8; });
-}
+  // `suspects`: how many rows may be dependent.
+  void look_beside(std::size_t suspects) {
+    const Sparse columns = space_->columns();
+    const std::vector<int> surely = dependent_columns(columns, kDependent);
+    unit_ = with_unit_masses(*model_, sizes_);
+    Trial trial = begin(without_);
+    if (trial.regular) find_conflicts(trial, without_);
+    if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
+    if (!result_.conflicts.empty()) {  // told as a reader of the scene meets them: what contradicts rows before it
+      std::vector<Conflict> as_chosen = std::exchange(result_.conflicts, {});
+      const std::vector<int> by_order = of_model(null_space(columns, kIndependent).columns);
+      Trial other = begin(by_order);
+      if (other.regular) find_conflicts(other, by_order);
+      if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
+    }
+    Problem& problem = *trial.problem;
+    const Place& start = trial.start;
+    std::optional<Place> best, along;
+    if (trial.regular && result_.conflicts.empty()) {
+      along = beside_along_velocities(problem, start);
+      best = along;
+      const int directions = static_cast<int>(space_->rows().size()) > kManyRows ? 1 : 2;
+      for (int k = 0; k < directions && (!best || best->dependent > 0); ++k) {
+        std::optional<Place> place = beside_at_random(problem, start, k + 1);
+        if (place && (!best || place->dependent < best->dependent)) best = std::move(place);
+      }
+    }
+    if (best && best->dependent < suspects) {
+      tell_redundant(best->columns, kFreeBeside);
+      tell_singular(columns);
+      result_.moves_on = along && leads_on(start, *along);
+      if (along) result_.time_beside = along->t;
+    } else {
+      if (surely.size() < suspects) tell_doubt(columns, surely);
+      tell_redundant(columns, kDependent);
+      if (along && !along->holds && surely.size() == suspects)
+        result_.conflicts.push_back({along->worst, Conflict::Level::later, along->off, along->t});
+    }
+  }
+
+  // The given state, put onto the rows that are not left out.
+  struct Trial {
+    std::unique_ptr<Problem> problem;
+    Place start;
+    bool regular = false;
+  };
+  Trial begin(const std::vector<int>& without) const {
+    Trial trial;
+    trial.problem = intrinsic_formulation().make(unit_, without);
+    Place& start = trial.start;
+    start.q.resize(index(trial.problem->nq())), start.v.resize(index(trial.problem->nv()));
+    check(trial.problem->from_bodies(states_, start.q, start.v).ok(), "every orientation has coordinates");
+    trial.regular = put_back(*trial.problem, start, true);
+    return trial;
+  }
+
+  // Onto the problem's rows, positions first.
+  static bool put_back(Problem& problem, Place& place, bool velocities) {
+    Consistent consistent(problem, LinearChoice{});
+    if (!consistent.project_position(place.t, place.q).ok()) return false;
+    if (!velocities) return true;
+    problem.set_position(place.t, place.q);
+    problem.set_velocity(place.v);
+    return consistent.project_velocity(place.t, place.v).ok();
+  }
+
+  // Largest move of a body by dq, in its size.
+  double extent(std::span<const double> dq) const {
+    double largest = 0;
+    for (std::size_t b = 0; b < sizes_.size(); ++b)
+      for (std::size_t k = 0; k < 6; ++k)
+        largest = std::max(largest, std::abs(dq[6 * b + k]) / (k < 3 ? sizes_[b] : 1.0));
+    return largest;
+  }
+  double distance(std::span<const double> q, std::span<const double> from) const {
+    double largest = 0;
+    const std::size_t per_body = q.size() / sizes_.size();
+    for (std::size_t k = 0; k < q.size(); ++k)
+      largest = std::max(largest, std::abs(q[k] - from[k]) / (k % per_body < 3 ? sizes_[k / per_body] : 1.0));
+    return largest;
+  }
+
+  std::optional<Place> beside_along_velocities(Problem& problem, const Place& start) {
+    const double speed = extent(start.v);
+    const bool driven = std::ranges::any_of(model_->rows, [](const Row& row) { return !row.f.is_constant(); });
+    if (speed == 0 && !driven) return {};
+    Place place = start;
+    place.t = speed > 0 ? std::min(kMove / speed, 1.0) : kShortWhile;
+    std::vector<double> dq = start.v;
+    for (double& x : dq) x *= place.t;
+    return settle(problem, start, std::move(place), dq, speed > 0 && kMove / speed <= 1.0);
+  }
+
+  std::optional<Place> beside_at_random(Problem& problem, const Place& start, int seed) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    std::normal_distribution<double> normal;
+    std::vector<double> move(index(problem.nv() + problem.nc()), 0.0);
+    for (std::size_t b = 0; b < sizes_.size(); ++b)
+      for (std::size_t k = 0; k < 6; ++k) move[6 * b + k] = sizes_[b] * (k < 3 ? 1 : sizes_[b]) * normal(random);
+    const double asked = extent(std::span<const double>(move).first(start.v.size()));
+    const std::vector<double> at_rest(start.v.size(), 0.0);
+    problem.set_position(0, start.q);
+    problem.set_velocity(at_rest);
+    Consistent consistent(problem, LinearChoice{});
+    if (!consistent.factor(0).ok() || !consistent.solve(0, move).ok()) return {};
+    move.resize(start.v.size());
+    const double length = extent(move);
+    if (!(length > 1e-6 * asked)) return {};  // it cannot move
+    for (double& x : move) x *= kMove / length;
+    return settle(problem, start, start, move, true);
+  }
+
+  // Moves by dq, puts the mechanism back onto the problem's rows, and looks at all of them.
+  std::optional<Place> settle(Problem& problem, const Place& start, Place place, std::span<const double> dq,
+                              bool must_move) {
+    problem.retract(start.q, dq, place.q);
+    const double moved = distance(place.q, start.q);
+    if (!put_back(problem, place, false)) return {};
+    if (must_move && distance(place.q, start.q) < kPulledBack * moved) return {};
+    look(problem, place);
+    return place;
+  }
+
+  void look(Problem& problem, Place& place) {
+    std::vector<BodyState> states(states_.size());
+    problem.set_position(place.t, place.q);
+    problem.set_velocity(place.v);
+    const std::vector<double> none(place.v.size(), 0.0);
+    problem.to_bodies(none, states);
+    space_->stand(place.t, states);
+    place.columns = space_->columns();
+    place.dependent = dependent_columns(place.columns, kFreeBeside).size();
+    std::vector<double> off(space_->rows().size());
+    space_->distances(off);
+    place.holds = true;
+    for (std::size_t k = 0; k < off.size(); ++k) {
+      const double allowed = kHolds * space_->size_of_row(k) + 3 * off_at_start_[k];
+      if (std::abs(off[k]) <= allowed) continue;
+      place.holds = false;
+      if (std::abs(off[k]) <= place.off) continue;
+      place.off = std::abs(off[k]);
+      place.worst = space_->rows()[k];
+    }
+  }
+
+  // The rows left out, where the others hold.
+  void find_conflicts(Trial& trial, const std::vector<int>& without) {
+    Problem& problem = *trial.problem;
+    const Place& start = trial.start;
+    std::vector<BodyState> states(states_.size());
+    const std::vector<double> none(start.v.size(), 0.0);
+    problem.set_position(0, start.q);
+    problem.set_velocity(start.v);
+    problem.to_bodies(none, states);
+    space_->stand(0, states);
+    off_at_start_.assign(space_->rows().size(), 0.0);
+    space_->distances(off_at_start_);
+    for (double& x : off_at_start_) x = std::abs(x);
+    const std::unique_ptr<Problem> whole = intrinsic_formulation().make(model_, {});
+    std::vector<double> rate(index(whole->nc())), nu(rate.size());
+    whole->set_position(0, start.q);
+    whole->set_velocity(start.v);
+    whole->velocity_residual(rate);
+    whole->nu(nu);
+    const double speed = extent(start.v);
+    for (std::size_t k = 0; k < off_at_start_.size(); ++k) {
+      const int row = space_->rows()[k];
+      if (!std::ranges::binary_search(without, row)) continue;
+      const double size = space_->size_of_row(k), length = space_->lengths()[k];
+      const double rate_off = std::abs(rate[index(row)]) / length;
+      if (off_at_start_[k] > kContradicts * size)
+        result_.conflicts.push_back({row, Conflict::Level::position, off_at_start_[k], 0});
+      else if (rate_off > kContradicts * std::max({speed * size, std::abs(nu[index(row)]) / length, kHolds * size}))
+        result_.conflicts.push_back({row, Conflict::Level::velocity, rate_off, 0});
+    }
+  }
+
+  void tell_redundant(const Sparse& columns, double tolerance) {
+    if (names_ == RankNames::all) {
+      ColumnDependencies found = column_dependencies(columns, tolerance);
+      result_.named = found.named;
+      for (ColumnDependency& d : found.columns)
+        result_.dependent.push_back({space_->rows()[index(d.column)], of_model(std::move(d.others))});
+    }
+    result_.aside = result_.aside_here = chosen(columns, tolerance);
+    result_.rank = static_cast<int>(model_->rows.size() - result_.aside.size());
+    result_.rank_here = result_.rank;
+  }
+
+  // Of the rows that are kept, those that are no more than combinations of others at the given position.
+  void tell_singular(const Sparse& columns) {
+    std::vector<Eigen::Triplet<double>> entries;
+    std::vector<int> kept;
+    for (int k = 0; k < columns.outerSize(); ++k) {
+      if (std::ranges::binary_search(result_.aside, space_->rows()[index(k)])) continue;
+      for (Sparse::InnerIterator it(columns, k); it; ++it)
+        entries.emplace_back(static_cast<int>(it.row()), static_cast<int>(kept.size()), it.value());
+      kept.push_back(k);
+    }
+    Sparse part(columns.rows(), static_cast<Eigen::Index>(kept.size()));
+    part.setFromTriplets(entries.begin(), entries.end());
+    const auto whole = [&](std::vector<int> some) {
+      for (int& k : some) k = kept[index(k)];
+      return of_model(std::move(some));
+    };
+    for (ColumnDependency& d : column_dependencies(part, kIndependent).columns)
+      result_.singular.push_back({space_->rows()[index(kept[index(d.column)])], whole(std::move(d.others))});
+    result_.aside_here = united(result_.aside, whole(choose(part, kIndependent)));
+    result_.rank_here = result_.rank - static_cast<int>(result_.singular.size());
+  }
+
+  void tell_doubt(const Sparse& columns, const std::vector<int>& surely) {
+    result_.doubt = kIndependent;
+    for (const int column : dependent_columns(columns, kIndependent))
+      if (!std::ranges::binary_search(surely, column)) result_.doubtful = space_->rows()[index(column)];
+    for (double part = kIndependent / 10; part > kDependent; part /= 10)
+      if (dependent_columns(columns, part).size() > surely.size()) result_.doubt = part;
+  }
+
+  // Whether the mechanism, moved on along its velocities, comes to a position where all rows hold and are independent.
+  bool leads_on(const Place& start, const Place& along) {
+    if (extent(start.v) == 0) return false;
+    const std::unique_ptr<Problem> problem = intrinsic_formulation().make(unit_, result_.aside);
+    Place place = along;
+    if (!along.holds) {
+      if (!put_back(*problem, place, false)) return false;
+      if (distance(place.q, start.q) < kPulledBack * kMove) return false;
+      look(*problem, place);
+    }
+    return place.holds && place.dependent == result_.aside.size();
+  }
+
+  std::shared_ptr<const Model> model_, unit_;
+  std::vector<BodyState> states_;
+  RankNames names_;
+  std::vector<double> sizes_;
+  std::optional<RowSpace> space_;
+  std::vector<int> without_;  // model rows: the others are independent at the given position
+  std::vector<double> off_at_start_;
+  RankAnalysis result_;
+};
 
 }  // namespace
 
@@ -112,29 +349,21 @@ std::vector<int> RankAnalysis::dependent_rows() const {
   return rows;
 }
 
-RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states) {
-  const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model, {});
-  std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
-  check(problem->from_bodies(states, q, v).ok(), "rA represents every orientation");
+std::string describe(const Conflict& conflict) {
+  switch (conflict.level) {
+    case Conflict::Level::position:
+      return fmt::format("{:.3g} m (position)", conflict.by);
+    case Conflict::Level::velocity:
+      return fmt::format("{:.3g} m/s (velocity)", conflict.by);
+    case Conflict::Level::later:
+      return fmt::format("{:.3g} m (position, at t = {:.3g} s)", conflict.by, conflict.time);
+  }
+  return {};
+}
 
-  RankAnalysis analysis;
-  analysis.variables = problem->nv();
-  const auto name = [&](const Sparse& Gt) {
-    ColumnDependencies found = column_dependencies(Gt, kRankTolerance);
-    analysis.dependent.clear();
-    for (ColumnDependency& d : found.columns) analysis.dependent.push_back({d.column, std::move(d.others)});
-    analysis.named = found.named;
-    analysis.rank = problem->nc() - static_cast<int>(analysis.dependent.size());
-  };
-  name(transposed_gradient(*problem, q, states));
-  analysis.rank_here = analysis.rank;
-  // Only mechanisms that can move have neighbours.
-  if (analysis.dependent.empty() || analysis.degrees_of_freedom() == 0 ||
-      !neighbour(*problem, analysis.dependent_rows(), states, q))
-    return analysis;
-  const Sparse beside = transposed_gradient(*problem, q, states);
-  if (dependent_columns(beside, kRankTolerance).size() < analysis.dependent.size()) name(beside);
-  return analysis;
+RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states,
+                          RankNames names) {
+  return Examination(model, states, names).run();
 }
 
 }  // namespace poinsot

@@ -1,13 +1,18 @@
-// Which constraint rows depend on others: the columns of Gᵀ that are combinations of earlier ones.
+// Which constraint rows follow from others, which are singular where the mechanism stands, and which contradict.
 //
-// A row is dependent when its gradient is a combination of earlier rows' gradients, in the model's order, at the given
-// position; so is one whose gradient is nothing but the rounding of what it is made of. Where that is so only
-// at the given position (a mechanism that lies flat), a neighbouring position of higher rank decides, and the given one
-// is called singular. The cost grows with the number of rows (linsolve/column_dependencies.h).
+// A row is redundant when it follows from the others: its gradient is a combination of theirs, and where they are kept
+// it holds by itself, here and at positions beside. Those positions are looked at: the mechanism is moved a little
+// along its velocities and along random directions its constraints leave free, time going on where drivers ask for it,
+// and put back onto the independent rows. A row that has become independent there, or does not hold any more, is
+// singular here: its gradient is a combination of the others' (or vanishes) at the given position only.
+//
+// Rank is decided on unit vectors in lengths of bodies (integrators/start/row_space.h), and among the rows of loops
+// only (loop_rows.h). The cost grows with the number of rows (linsolve/column_dependencies.h).
 #pragma once
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/body_state.h"
@@ -20,17 +25,43 @@ struct Dependency {
   std::vector<int> others;  // model rows it is a combination of
 };
 
+// A redundant row that does not hold where those hold that it follows from.
+struct Conflict {
+  enum class Level { position, velocity, later };
+  int row;
+  Level level;
+  double by;    // m or m/s that the bodies are off it; `later`: m, at `time`
+  double time;  // s
+};
+
+std::string describe(const Conflict& conflict);  // "0.002 m (position)"
+
 struct RankAnalysis {
   int variables = 0;                  // 6 per body
-  int rank = 0;                       // of G, at the given or a neighbouring position, whichever is higher
-  int rank_here = 0;                  // at the given position
-  std::vector<Dependency> dependent;  // by row
-  bool named = true;                  // false: too many to say what each depends on; `others` are empty
+  int rank = 0;                       // of G but for singular positions: rows that are not redundant
+  int rank_here = 0;                  // of G at the given position
+  std::vector<Dependency> dependent;  // redundant rows, by row: each follows from rows before it; see RankNames
+  std::vector<Dependency> singular;   // rows that are no more than combinations of others here
+  // As many rows as are redundant, ascending, chosen so that the others are as independent as can be.
+  std::vector<int> aside;
+  // Rows that are singular here and rows to be set aside: without them G has full rank at the given position.
+  std::vector<int> aside_here;
+  std::vector<Conflict> conflicts;  // by row
+  bool named = true;                // false: too many to say what each depends on; `others` are empty
+  bool moves_on = true;             // singular: whether the velocities lead away from the singular position
+  double time_beside = 0;           // s: after which they have, by a thousandth of the bodies' sizes
+  double doubt = 0;   // the largest part below kIndependent that is left of a row beside the others; 0: there is none
+  int doubtful = -1;  // the row
+
   int degrees_of_freedom() const { return variables - rank; }
   bool singular_position() const { return rank_here < rank; }
   std::vector<int> dependent_rows() const;
 };
 
-RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states);
+// Whether `dependent` is worked out, which can take far longer than all else, or `aside` is all that is needed.
+enum class RankNames { none, all };
+
+RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states,
+                          RankNames names);
 
 }  // namespace poinsot

@@ -1,54 +1,100 @@
 #include "integrators/start/reactions.h"
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
 
-#include "formulations/gradient.h"
+#include "core/index.h"
 #include "formulations/registry.h"
+#include "integrators/start/loop_rows.h"
 
 namespace poinsot {
 namespace {
 
-// Gᵀ of the rows without rp's normalization, dense: mechanisms with dependent rows are small.
-Eigen::MatrixXd transposed_gradient(Problem& problem) {
-  Eigen::MatrixXd Gt = Eigen::MatrixXd::Zero(problem.nv(), problem.nc());
-  for (const auto& entry : gradient(problem)) Gt(entry.col(), entry.row()) += entry.value();
-  return Gt;
-}
+constexpr double kNoLoad = 1e-7;  // of the largest reaction of a null vector: none
 
-// Pivots below this, of the largest, are those of dependent rows. Rows depend on one another where the constraints
-// hold; in a computed state they do but for an integrator's tolerance.
-constexpr double kDependent = 1e-8;
+std::vector<int> rows_left_out(const Problem& problem) {
+  std::vector<int> all(problem.model().rows.size()), out;
+  std::iota(all.begin(), all.end(), 0);
+  std::ranges::set_difference(all, problem.model_rows(), std::back_inserter(out));
+  return out;
+}
 
 }  // namespace
 
 Reactions::Reactions(const Problem& problem) : lambda_(problem.model().rows.size()) {
   if (problem.model_rows().size() == lambda_.size()) return;
-  const auto model = std::make_shared<const Model>(problem.model());
-  whole_ = intrinsic_formulation().make(model, {});
-  q_.resize(static_cast<std::size_t>(whole_->nq()));
-  v_.resize(static_cast<std::size_t>(whole_->nv()));
+  whole_ = intrinsic_formulation().make(std::make_shared<const Model>(problem.model()), {});
+  q_.resize(index(whole_->nq()));
+  v_.resize(index(whole_->nv()));
+  states_.resize(index(problem.bodies()));
 }
 
 void Reactions::update(const Sample& sample) {
   problem_ = &sample.problem;
-  const std::vector<int>& rows = problem_->model_rows();
   if (!whole_) {
     std::copy_n(sample.lambda.begin(), lambda_.size(), lambda_.begin());
     return;
   }
-  std::vector<BodyState> states(static_cast<std::size_t>(problem_->bodies()));
-  problem_->to_bodies(sample.a, states);
-  if (!whole_->from_bodies(states, q_, v_).ok()) return;
+  problem_->to_bodies(sample.a, states_);
+  if (!whole_->from_bodies(states_, q_, v_).ok()) return;
   whole_->set_position(sample.t, q_);
   whole_->set_velocity(v_);
-  const Eigen::MatrixXd Gt = transposed_gradient(*whole_);
-  Eigen::VectorXd determined = Eigen::VectorXd::Zero(Gt.cols());
-  for (std::size_t k = 0; k < rows.size(); ++k) determined[rows[k]] = sample.lambda[k];
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(kDependent);
-  decomposition.compute(Gt);
-  const Eigen::VectorXd least = decomposition.solve(Gt * determined);
-  std::copy(least.begin(), least.end(), lambda_.begin());
+  if (!choice_ || revision_ != problem_->revision()) {
+    revision_ = problem_->revision();
+    const auto model = std::make_shared<const Model>(problem_->model());
+    choice_.emplace(model, loop_rows(model, sample.t, states_), rows_left_out(*problem_));
+  }
+  std::ranges::fill(lambda_, 0.0);
+  const std::vector<int>& rows = problem_->model_rows();
+  for (std::size_t k = 0; k < rows.size(); ++k) lambda_[index(rows[k])] = sample.lambda[k];
+  const std::vector<SparseEntries> null_vectors = choice_->null_vectors(sample.t, states_);
+  if (null_vectors.empty()) return;  // in a singular position: as they are
+  make_least(null_vectors);
+  if (determined_.empty()) find_determined(null_vectors);
+}
+
+void Reactions::make_least(const std::vector<SparseEntries>& null_vectors) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < null_vectors.size(); ++k)
+    for (const auto& [row, value] : null_vectors[k]) entries.emplace_back(row, static_cast<int>(k), value);
+  Eigen::SparseMatrix<double> N(static_cast<Eigen::Index>(lambda_.size()),
+                                static_cast<Eigen::Index>(null_vectors.size()));
+  N.setFromTriplets(entries.begin(), entries.end());
+  Eigen::Map<Eigen::VectorXd> lambda(lambda_.data(), N.rows());
+  const Eigen::SparseMatrix<double> square = N.transpose() * N;
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(square);
+  for (int pass = 0; pass < 2; ++pass) {  // the second takes out the rounding of the first
+    const Eigen::VectorXd part = factors.solve(N.transpose() * lambda);
+    lambda -= N * part;
+  }
+}
+
+void Reactions::find_determined(const std::vector<SparseEntries>& null_vectors) {
+  const Model& model = problem_->model();
+  determined_.assign(model.groups.size(), 1);
+  std::vector<double> alone(lambda_.size(), 0.0);
+  for (const SparseEntries& z : null_vectors) {
+    std::vector<std::pair<double, int>> loads;  // of the groups it has rows of
+    for (const auto& [row, value] : z) {
+      alone[index(row)] = value;
+      const int group = model.rows[index(row)].group;
+      if (loads.empty() || loads.back().second != group) loads.emplace_back(0, group);
+    }
+    double largest = 0;
+    for (auto& [load, group] : loads) {
+      Vector3 force, moment;
+      whole_->reaction(group, alone, force, moment);
+      load = std::max(force.norm(), moment.norm());
+      largest = std::max(largest, load);
+    }
+    for (const auto& [load, group] : loads)
+      if (load > kNoLoad * largest) determined_[index(group)] = 0;
+    for (const auto& [row, value] : z) alone[index(row)] = 0;
+  }
 }
 
 void Reactions::of_group(int group, Vector3& force, Vector3& moment) const {

@@ -1,35 +1,53 @@
-// Multipliers and joint reactions of a sample, by the scene's names, also where dependent rows leave them undetermined.
+// Multipliers and joint reactions of a sample, by the scene's names, also where redundant rows leave them undetermined.
 //
 //   std::optional<Reactions> reactions;               // outside the observer
 //   if (!reactions) reactions.emplace(sample.problem);
 //   reactions->update(sample);
 //   reactions->of_group(group, force, moment);        // of sample.problem.model().groups: constraints, joints, drivers
 //
-// Where rows were set aside, every λ with Gᵀλ equal to the computed generalized reaction is right; given is the one of
-// least norm over all rows, by a complete orthogonal decomposition of Gᵀ.
+// Where rows were set aside, every λ with Gᵀλ equal to the computed generalized reaction is right. They differ by null
+// vectors of Gᵀ, one for each row set aside (row_choice.h); with these as the columns of N, given is the least one,
+//
+//   λ − N (NᵀN)⁻¹ Nᵀ λ
+//
+// A reaction is determined where no null vector loads its joint. The cost grows linearly with the mechanism for a given
+// number of redundant rows.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "integrators/integrator.h"
+#include "integrators/start/row_choice.h"
 
 namespace poinsot {
 
 class Reactions {
  public:
+  // The problem stands at a sample.
   explicit Reactions(const Problem& problem);
 
   void update(const Sample& sample);
   double lambda(int model_row) const { return lambda_[static_cast<std::size_t>(model_row)]; }
   // Force (N, global) and moment about the group's point (N m, global) on body j.
   void of_group(int group, Vector3& force, Vector3& moment) const;
+  // Whether the equations of motion determine the reaction of a group, or multipliers that mean nothing else to the
+  // motion could be others.
+  bool determined(int group) const { return determined_.empty() || determined_[static_cast<std::size_t>(group)]; }
 
  private:
-  std::unique_ptr<Problem> whole_;  // with the rows that were set aside; null where there are none
-  std::vector<double> q_, v_;       // where it stands
+  void make_least(const std::vector<SparseEntries>& null_vectors);
+  void find_determined(const std::vector<SparseEntries>& null_vectors);
+
+  std::unique_ptr<Problem> whole_;   // with the rows that were set aside; null where there are none
+  std::optional<RowChoice> choice_;  // of the rows the problem keeps
+  int revision_ = 0;                 // of these
+  std::vector<double> q_, v_;        // where it stands
+  std::vector<BodyState> states_;
   const Problem* problem_ = nullptr;
   std::vector<double> lambda_;
+  std::vector<char> determined_;  // by group; empty: all
 };
 
 }  // namespace poinsot

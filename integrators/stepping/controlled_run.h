@@ -54,7 +54,7 @@ Status controlled_steps(Method& method, const StepRule& rule, const Settings& se
       if (status = method.interpolate(times.next()); !status.ok()) return status;
       give_out(method.interpolated());
     }
-    method.settle();
+    if (status = method.settle(); !status.ok()) return status;
     if (settings.every == 0 || times.next() == to) {
       times.pass();
       give_out(method.state());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrators/stepping/accept.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
@@ -34,21 +35,19 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
   r_.setZero(2 * nv, static_cast<Eigen::Index>(3 + pair.dense.size()));
 }
 
-void ExplicitStepper::start(const State& state) {
+Status ExplicitStepper::start(const State& state) {
   state_ = state;
   elsewhere_ = true;
-  settle();
+  return settle();
 }
 
-void ExplicitStepper::settle() {
-  if (elsewhere_ || problem_.has_discrete_state()) {
-    consistent_.stand(state_);
-    if (problem_.has_discrete_state() && problem_.accept(state_.t, span(state_.q), span(state_.v), state_.a())) {
-      consistent_.stand(state_);
-    }
-  }
+Status ExplicitStepper::settle() {
+  if (elsewhere_ || problem_.has_discrete_state()) consistent_.stand(state_);
   elsewhere_ = false;
+  bool rewritten = false;
+  if (Status status = accept(problem_, state_, rewritten); !status.ok()) return status;
   component_sizes(problem_, span(state_.q), span(state_.v), span(sizes_));
+  return {};
 }
 
 void ExplicitStepper::advance(double h, Terms terms, Vector& y) const {

@@ -31,7 +31,7 @@ class ExplicitStepper {
 
   Status prepare() { return consistent_.prepare(); }
   // From a consistent state. The problem stands there afterwards.
-  void start(const State& state);
+  Status start(const State& state);
 
   // Hairer's automatic choice; one evaluation.
   Status first_step(double end, double& h);
@@ -45,7 +45,7 @@ class ExplicitStepper {
   // step is so long that the polynomial is too far off the constraints, a shorter step from where that one began.
   Status interpolate(double t);
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
-  void settle();
+  Status settle();
 
   const State& state() const { return state_; }
   const State& interpolated() const { return sample_; }

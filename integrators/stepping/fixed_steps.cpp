@@ -1,5 +1,7 @@
 #include "integrators/stepping/fixed_steps.h"
 
+#include "integrators/stepping/accept.h"
+
 namespace poinsot {
 
 FixedSteps::FixedSteps(const Run& run)
@@ -64,11 +66,7 @@ Problem& FixedSteps::stand() {
 }
 
 Status FixedSteps::accept(Problem& problem) {
-  if (problem.accept(x_.t, span(x_.q), span(x_.v), x_.a())) {
-    place(problem);
-    rewritten_ = true;
-  }
-  return {};
+  return poinsot::accept(problem, x_, rewritten_);
 }
 
 }  // namespace poinsot

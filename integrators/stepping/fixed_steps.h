@@ -33,7 +33,7 @@ class FixedSteps {
   virtual Problem& stand();
   // Brings the discrete state up to date; `problem` stands at x_ before and after.
   virtual Status accept(Problem& problem);
-  // Before the step that follows an accept() which has rewritten the coordinates.
+  // Before the step that follows an accept() which has rewritten coordinates or rows.
   virtual Status resume() { return {}; }
   // Finds the (a, λ) of a sample, where steps do not.
   virtual Status complete() { return {}; }

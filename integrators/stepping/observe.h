@@ -19,6 +19,9 @@ inline void sample(const Observer& observe, const Problem& problem, const State&
   for (double x : r) statistics.violation.position = std::max(statistics.violation.position, std::abs(x));
   problem.velocity_residual(r);
   for (double x : r) statistics.violation.velocity = std::max(statistics.violation.velocity, std::abs(x));
+  const Problem::LeftOut left_out = problem.left_out();
+  statistics.violation.position = std::max(statistics.violation.position, left_out.position);
+  statistics.violation.velocity = std::max(statistics.violation.velocity, left_out.velocity);
   if (observe) observe({at.t, problem, span(at.q), span(at.v), at.a(), at.lambda()});
 }
 

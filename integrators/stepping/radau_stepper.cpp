@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "integrators/stepping/accept.h"
 #include "integrators/stepping/step_control.h"
 #include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
@@ -130,21 +131,29 @@ void RadauStepper::write_filter(const Linearized& linear, double h, int nv, Sink
                      });
 }
 
-void RadauStepper::start(const State& state) {
+Status RadauStepper::start(const State& state) {
   state_ = state;
   h_before_ = step_.h = 0;
-  settle();
+  return settle();
 }
 
-void RadauStepper::settle() {
+Status RadauStepper::settle() {
   consistent_.stand(state_);
-  if (problem_.has_discrete_state() && problem_.accept(state_.t, span(state_.q), span(state_.v), state_.a())) {
-    consistent_.stand(state_);
-    h_before_ = step_.h = 0;  // the stages are those of other coordinates
+  bool rewritten = false;
+  const int revision = problem_.revision();
+  if (Status status = accept(problem_, state_, rewritten); !status.ok()) return status;
+  if (rewritten) {
+    h_before_ = step_.h = 0;  // the stages are those of other coordinates or rows
     convergence_ = 1;
+  }
+  if (problem_.revision() != revision) {
+    step_ = Linearized(problem_), within_ = Linearized(problem_);
+    in_solver_ = nullptr;
+    if (Status status = prepare(); !status.ok()) return status;
   }
   if (!fast_) step_.h = 0;
   component_sizes(problem_, span(state_.q), span(state_.v), span(sizes_));
+  return {};
 }
 
 double RadauStepper::first_step(double end) const {

@@ -38,7 +38,7 @@ class RadauStepper {
 
   Status prepare();
   // From a consistent state. The problem stands there afterwards.
-  void start(const State& state);
+  Status start(const State& state);
 
   // A step whose explicit Euler error is small; no evaluation.
   double first_step(double end) const;
@@ -51,7 +51,7 @@ class RadauStepper {
   // shorter step.
   Status interpolate(double t);
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
-  void settle();
+  Status settle();
 
   // Whether steps of the same length are worth their kept matrix.
   bool converges_fast() const { return fast_; }

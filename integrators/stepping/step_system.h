@@ -49,10 +49,17 @@ class StepSystem : public TimedSystem {
   StepSystem(Problem& problem, LinearSystem& linear, MatrixKind kind, Statistics& statistics, PhaseClock& clock)
       : TimedSystem(problem, linear, statistics, clock), problem_(problem), kind_(kind) {}
 
-  Status prepare() { return TimedSystem::prepare(problem_.pattern(kind_)); }
+  Status prepare() {
+    revision_ = problem_.revision();
+    return TimedSystem::prepare(problem_.pattern(kind_));
+  }
+  bool ready() const { return TimedSystem::ready() && revision_ == problem_.revision(); }
   // Assembles at the problem's point and factors.
   Status refresh(double t, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
                  std::span<const double> lambda) {
+    if (revision_ != problem_.revision()) {
+      if (Status status = prepare(); !status.ok()) return status;
+    }
     return TimedSystem::refresh(t, [&](std::span<const int> slots, std::span<double> values) {
       problem_.assemble(kind_, scale, dq, a, lambda, slots, values);
     });
@@ -61,6 +68,7 @@ class StepSystem : public TimedSystem {
  private:
   Problem& problem_;
   MatrixKind kind_;
+  int revision_ = 0;  // of the rows the pattern was analysed for
 };
 
 // What a linear solver's failure means for the mechanism: which body or constraint, what to try.

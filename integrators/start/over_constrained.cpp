@@ -1,0 +1,135 @@
+#include "integrators/start/over_constrained.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/index.h"
+#include "integrators/start/loop_rows.h"
+#include "integrators/stepping/consistent.h"
+
+namespace poinsot {
+namespace {
+
+constexpr double kTurn = 0.4;   // rad that a body turns before the choice is looked at again
+constexpr double kLost = 1e-5;  // of a body's size: far above what steps leave, far below what opens to the eye
+
+}  // namespace
+
+OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model,
+                                 std::vector<int> aside, std::span<const BodyState> states, LinearChoice linear)
+    : linear_(std::move(linear)),
+      choice_(std::make_shared<Choice>(
+          Choice{RowChoice(model, loop_rows(model, 0, states), std::move(aside)), 0, {states.begin(), states.end()}})),
+      kept_(std::move(kept)),
+      now_(states.begin(), states.end()) {
+  choice_->rows.look(0, states);
+  bodies_ = kept_->bodies();
+  nq_ = kept_->nq(), nv_ = kept_->nv(), nc_ = kept_->nc();
+  watch();
+}
+
+OverConstrained::OverConstrained(const OverConstrained& other)
+    : Problem(other),
+      linear_(other.linear_),
+      choice_(other.choice_),
+      kept_revision_(other.kept_revision_),
+      kept_(other.kept_->clone()),
+      left_out_(other.left_out_),
+      now_(other.now_) {
+  watch();
+}
+
+std::unique_ptr<Problem> OverConstrained::clone() const {
+  return std::unique_ptr<Problem>(new OverConstrained(*this));
+}
+
+void OverConstrained::keep() {
+  kept_ = kept_->clone_without(choice_->rows.aside());
+  kept_revision_ = choice_->revision;
+  watch();
+}
+
+void OverConstrained::watch() {
+  aside_ = kept_->clone_without(kept_->model_rows());
+  residual_.resize(index(aside_->nc()));
+  allowed_.clear();
+  for (const int row : aside_->model_rows()) allowed_.push_back(kLost * choice_->rows.size_of(row));
+}
+
+void OverConstrained::set_position(double t, std::span<const double> q) {
+  if (kept_revision_ != choice_->revision) keep();
+  kept_->set_position(t, q);
+}
+
+Status OverConstrained::measure(double t, std::span<const double> q, std::span<const double> v) {
+  aside_->set_position(t, q);
+  aside_->set_velocity(v);
+  aside_->position_residual(residual_);
+  left_out_ = {};
+  std::size_t worst = 0;
+  double most = 0;
+  for (std::size_t k = 0; k < allowed_.size(); ++k) {
+    const double off = std::abs(residual_[k]);
+    left_out_.position = std::max(left_out_.position, off);
+    if (off / allowed_[k] <= most) continue;
+    most = off / allowed_[k];
+    worst = k;
+  }
+  const double off = std::abs(residual_[worst]);
+  aside_->velocity_residual(residual_);
+  for (std::size_t k = 0; k < allowed_.size(); ++k)
+    left_out_.velocity = std::max(left_out_.velocity, std::abs(residual_[k]));
+  if (!(most > 1)) return {};
+  return {Failure::constraint_lost, t,
+          fmt::format("at t = {:.9g} s {} is violated by {:.3g}: it followed from the other constraints where the run "
+                      "began and was set aside, and does not hold with them any more; the constraints contradict one "
+                      "another here, or the step is too large to keep them",
+                      t, describe_row(model(), aside_->model_rows()[worst]), off)};
+}
+
+bool OverConstrained::turned() const {
+  // |A − B|² = 8 sin²(angle/2)
+  const double limit = 8 * std::pow(std::sin(kTurn / 2), 2);
+  for (std::size_t b = 0; b < now_.size(); ++b)
+    if ((now_[b].A - choice_->at[b].A).squaredNorm() > limit) return true;
+  return false;
+}
+
+Status OverConstrained::accept(double t, std::span<double> q, std::span<double> v, std::span<double> a,
+                               std::span<double> lambda, bool& rewritten) {
+  if (Status status = kept_->accept(t, q, v, a, lambda, rewritten); !status.ok()) return status;
+  if (Status status = measure(t, q, v); !status.ok()) return status;
+  if (rewritten) {
+    kept_->set_position(t, q);
+    kept_->set_velocity(v);
+  }
+  kept_->to_bodies(a, now_);
+  if (!turned()) return {};
+  choice_->at = now_;
+  if (!choice_->rows.renew(t, now_)) return {};
+  rewritten = true;
+  return exchange(t, q, v, lambda);
+}
+
+// Other rows, and the multipliers that are the same forces.
+Status OverConstrained::exchange(double t, std::span<const double> q, std::span<const double> v,
+                                 std::span<double> lambda) {
+  std::vector<double> forces(index(nv_ + nc_), 0.0);
+  const bool wanted = !lambda.empty();  // kinematics may do without
+  if (wanted) kept_->constraint_forces(lambda, std::span(forces).first(index(nv_)));
+  ++choice_->revision;
+  keep();
+  kept_->set_position(t, q);
+  kept_->set_velocity(v);
+  if (!wanted) return {};
+  Consistent consistent(*kept_, linear_);
+  if (Status status = consistent.factor(t); !status.ok()) return status;
+  if (Status status = consistent.solve(t, forces); !status.ok()) return status;
+  std::ranges::copy(std::span(forces).subspan(index(nv_)), lambda.begin());
+  return {};
+}
+
+}  // namespace poinsot

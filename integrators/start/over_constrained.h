@@ -1,0 +1,103 @@
+// A problem with redundant rows: kept are rows that determine the motion, the others are set aside and watched.
+//
+// After every accepted step the rows set aside are measured. Where one of them does not hold any more the run stops and
+// names it: it followed from the others where the run began only. And when the mechanism has turned by some angle the
+// choice is looked at again (integrators/start/row_choice.h): as the directions in which the mechanism is constrained
+// too often turn with it, rows that were a good choice become singular. Then other rows take the place of those kept,
+// with the multipliers that mean the same reactions; revision() counts that up, and linear systems are analysed anew.
+//
+// Scenes without redundant rows have none of this.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formulations/problem.h"
+#include "integrators/start/row_choice.h"
+#include "linsolve/linear_system.h"
+
+namespace poinsot {
+
+class OverConstrained final : public Problem {
+ public:
+  // `kept` is the model's problem without the rows `aside`, which are redundant at `states`. `linear`: for the
+  // multipliers of rows that are exchanged.
+  OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model, std::vector<int> aside,
+                  std::span<const BodyState> states, LinearChoice linear);
+
+  std::unique_ptr<Problem> clone() const override;
+  std::unique_ptr<Problem> clone_without(std::span<const int> dropped) const override {
+    return kept_->clone_without(dropped);
+  }
+  int revision() const override { return choice_->revision; }
+
+  std::string_view formulation() const override { return kept_->formulation(); }
+  const Model& model() const override { return kept_->model(); }
+  const std::vector<int>& model_rows() const override { return kept_->model_rows(); }
+  Status from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const override {
+    return kept_->from_bodies(states, q, v);
+  }
+  void to_bodies(std::span<const double> a, std::span<BodyState> states) const override { kept_->to_bodies(a, states); }
+  void retract(std::span<const double> q, std::span<const double> dq, std::span<double> q_out) const override {
+    kept_->retract(q, dq, q_out);
+  }
+  void set_position(double t, std::span<const double> q) override;
+  void set_velocity(std::span<const double> v) override { kept_->set_velocity(v); }
+  void position_residual(std::span<double> Phi) const override { kept_->position_residual(Phi); }
+  void velocity_residual(std::span<double> r) const override { kept_->velocity_residual(r); }
+  void nu(std::span<double> out) const override { kept_->nu(out); }
+  void gamma(std::span<double> out) override { kept_->gamma(out); }
+  void momentum(std::span<const double> v_in, std::span<double> out) const override { kept_->momentum(v_in, out); }
+  void constraint_forces(std::span<const double> lambda, std::span<double> out) override {
+    kept_->constraint_forces(lambda, out);
+  }
+  void equations_of_motion(std::span<const double> a, std::span<const double> lambda, std::span<double> out) override {
+    kept_->equations_of_motion(a, lambda, out);
+  }
+  void step_residual(const StepScale& scale, std::span<const double> a, std::span<const double> lambda,
+                     std::span<double> out) override {
+    kept_->step_residual(scale, a, lambda, out);
+  }
+  Pattern pattern(MatrixKind kind) const override { return kept_->pattern(kind); }
+  void assemble(MatrixKind kind, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
+                std::span<const double> lambda, std::span<const int> slots, std::span<double> values) override {
+    kept_->assemble(kind, scale, dq, a, lambda, slots, values);
+  }
+  void lower(std::span<const double> dq, std::span<double> z) const override { kept_->lower(dq, z); }
+  void reaction(int group, std::span<const double> lambda, Vector3& force, Vector3& moment) const override {
+    kept_->reaction(group, lambda, force, moment);
+  }
+  double energy() const override { return kept_->energy(); }
+  std::string describe_unknown(int k) const override { return kept_->describe_unknown(k); }
+
+  bool has_discrete_state() const override { return true; }
+  Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double> lambda,
+                bool& rewritten) override;
+  LeftOut left_out() const override { return left_out_; }
+
+ private:
+  // Shared by the clones of one run: all of them keep the same rows.
+  struct Choice {
+    RowChoice rows;
+    int revision = 0;
+    std::vector<BodyState> at;  // where it was last looked at
+  };
+
+  OverConstrained(const OverConstrained& other);
+  void keep();
+  void watch();
+  Status measure(double t, std::span<const double> q, std::span<const double> v);
+  bool turned() const;
+  Status exchange(double t, std::span<const double> q, std::span<const double> v, std::span<double> lambda);
+
+  LinearChoice linear_;
+  std::shared_ptr<Choice> choice_;
+  int kept_revision_ = 0;
+  std::unique_ptr<Problem> kept_, aside_;  // the same bodies with the rows kept, and with those set aside
+  LeftOut left_out_;
+  std::vector<double> residual_, allowed_;
+  std::vector<BodyState> now_;
+};
+
+}  // namespace poinsot

@@ -1,0 +1,141 @@
+#include "integrators/start/row_space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/check.h"
+#include "core/index.h"
+#include "formulations/registry.h"
+
+namespace poinsot {
+namespace {
+
+std::vector<int> all_but(std::size_t count, const std::vector<int>& rows) {
+  std::vector<int> others;
+  auto next = rows.begin();
+  for (int k = 0; k < static_cast<int>(count); ++k) {
+    if (next != rows.end() && *next == k)
+      ++next;
+    else
+      others.push_back(k);
+  }
+  return others;
+}
+
+bool has_points(RowType type) {
+  return type == RowType::DP2 || type == RowType::D || type == RowType::CD || type == RowType::pfaffian;
+}
+
+}  // namespace
+
+std::vector<double> body_sizes(const Model& model) {
+  std::vector<double> sizes(model.bodies.size(), 0.0);
+  const auto widen = [&](int body, double arm) {
+    if (body != kGround) sizes[index(body)] = std::max(sizes[index(body)], arm);
+  };
+  const auto place = [&](int body, const Vector3& s) -> Vector3 {
+    if (body == kGround) return s;
+    return model.bodies[index(body)].position + model.bodies[index(body)].orientation * s;
+  };
+  for (const Row& row : model.rows) {
+    if (!has_points(row.type)) continue;
+    widen(row.i, row.s_i.norm());
+    widen(row.j, row.s_j.norm());
+    if (row.type == RowType::DP2) widen(row.i, (place(row.j, row.s_j) - place(row.i, row.s_i)).norm());
+  }
+  for (const Row& row : model.rows) {  // a body that turns about its centre
+    if (row.i == kGround || row.j == kGround) continue;
+    if (sizes[index(row.i)] == 0) sizes[index(row.i)] = sizes[index(row.j)];
+    if (sizes[index(row.j)] == 0) sizes[index(row.j)] = sizes[index(row.i)];
+  }
+  const double largest = sizes.empty() ? 0 : *std::ranges::max_element(sizes);
+  for (double& size : sizes)
+    if (size == 0) size = largest > 0 ? largest : 1;
+  return sizes;
+}
+
+RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
+    : model_(std::move(model)),
+      rows_(std::move(rows)),
+      problem_(intrinsic_formulation().make(model_, all_but(model_->rows.size(), rows_))),
+      sizes_(body_sizes(*model_)),
+      q_(index(problem_->nq())),
+      v_(index(problem_->nv())),
+      lengths_(rows_.size()) {
+  check(layout_.build(problem_->pattern(MatrixKind::kinematic)).ok(), "an assembled matrix fits 32-bit indices");
+  values_.resize(index(layout_.nonzeros()));
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto visit = [&](auto&& entry) {
+    for (int j = 0; j < problem_->nv(); ++j)
+      for (int k = layout_.start[index(j)]; k < layout_.start[index(j + 1)]; ++k)
+        if (layout_.row[index(k)] < problem_->nc()) entry(k, layout_.row[index(k)], j);
+  };
+  visit([&](int, int row, int j) { entries.emplace_back(j, row, 1.0); });
+  Gt_.resize(problem_->nv(), problem_->nc());
+  Gt_.setFromTriplets(entries.begin(), entries.end());
+  place_.assign(values_.size(), -1);
+  // Columns j are visited ascending: the entries of a row of G come in the order of its column of Gᵀ.
+  std::vector<int> next(Gt_.outerIndexPtr(), Gt_.outerIndexPtr() + Gt_.cols());
+  visit([&](int k, int row, int) { place_[index(k)] = next[index(row)]++; });
+}
+
+void RowSpace::stand(double t, std::span<const BodyState> states) {
+  check(problem_->from_bodies(states, q_, v_).ok(), "rA represents every orientation");
+  std::ranges::fill(v_, 0.0);
+  problem_->set_position(t, q_);
+  problem_->set_velocity(v_);
+  problem_->assemble(MatrixKind::kinematic, {}, {}, {}, {}, layout_.slots, values_);
+  for (std::size_t k = 0; k < values_.size(); ++k)
+    if (place_[k] >= 0) Gt_.valuePtr()[place_[k]] = values_[k];
+  for (int k = 0; k < Gt_.outerSize(); ++k) {
+    double sum = 0;
+    for (Eigen::SparseMatrix<double>::InnerIterator it(Gt_, k); it; ++it) {
+      if (it.row() % 6 >= 3) it.valueRef() /= sizes_[index(static_cast<int>(it.row()) / 6)];
+      sum += it.value() * it.value();
+    }
+    const double rounding = rounding_of(model_->rows[index(rows_[index(k)])], states);
+    lengths_[index(k)] = std::max(std::sqrt(sum), rounding);
+    const double by = sum > rounding * rounding ? 1 / lengths_[index(k)] : 0;
+    for (Eigen::SparseMatrix<double>::InnerIterator it(Gt_, k); it; ++it) it.valueRef() *= by;
+  }
+}
+
+// Where a gradient can cancel altogether, kDependent of the terms it is made of: the cross product of directions that
+// are parallel, the distance of points that coincide.
+double RowSpace::rounding_of(const Row& row, std::span<const BodyState> states) const {
+  const auto place = [&](int body, const Vector3& s) {
+    return s.norm() + (body == kGround ? 0.0 : states[index(body)].r.norm());
+  };
+  switch (row.type) {
+    case RowType::DP1:
+    case RowType::angle: {
+      double size = 0;
+      for (const int body : {row.i, row.j})
+        if (body != kGround) size = std::max(size, 1 / sizes_[index(body)]);
+      return kDependent * row.a_i.norm() * row.a_j.norm() * size;
+    }
+    case RowType::D:
+      return kDependent * 2 * (place(row.i, row.s_i) + place(row.j, row.s_j));
+    case RowType::DP2:
+    case RowType::CD:
+    case RowType::pfaffian:
+      return 0;
+  }
+  return 0;
+}
+
+void RowSpace::distances(std::span<double> out) const {
+  problem_->position_residual(out);
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] /= lengths_[k];
+}
+
+double RowSpace::size_of_row(std::size_t k) const {
+  const Row& row = model_->rows[index(rows_[k])];
+  double size = 0;
+  for (const int body : {row.i, row.j})
+    if (body != kGround) size = std::max(size, sizes_[index(body)]);
+  return size;
+}
+
+}  // namespace poinsot

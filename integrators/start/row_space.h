@@ -1,0 +1,59 @@
+// The gradients of constraint rows as vectors of unit length, whatever the units of the rows: what decides about rank.
+//
+// A body turns by an angle and moves by a length; its turn counts as what it moves at the body's size, the longest arm
+// at which a row acts on it. In these coordinates a row of G has a length ‖g‖, and Φ/‖g‖ is the distance in metres that
+// the bodies are off the constraint. A row is dependent where so little of its unit vector is left beside the others'
+// as kDependent; it is as good as independent from kIndependent on. What lies between is said.
+//
+// In rA, whose variations are regular everywhere: rank does not depend on the formulation.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/body_state.h"
+#include "formulations/problem.h"
+#include "linsolve/csc_layout.h"
+
+namespace poinsot {
+
+inline constexpr double kDependent = 1e-9, kIndependent = 1e-5;
+
+// m, by body: the longest arm of a row on it; bodies without one take that of the bodies they share rows with.
+std::vector<double> body_sizes(const Model& model);
+
+class RowSpace {
+ public:
+  // `rows` of the model, ascending.
+  RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows);
+
+  // At rest.
+  void stand(double t, std::span<const BodyState> states);
+
+  const std::vector<int>& rows() const { return rows_; }
+  int variables() const { return problem_->nv(); }
+  // Gᵀ, a column of unit length for each row; 0 where the gradient is nothing but rounding.
+  const Eigen::SparseMatrix<double>& columns() const { return Gt_; }
+  // ‖g‖ by row; of a row that vanishes, that of its terms.
+  std::span<const double> lengths() const { return lengths_; }
+  // Φ/‖g‖, m.
+  void distances(std::span<double> out) const;
+  // m: of the larger of its bodies.
+  double size_of_row(std::size_t k) const;
+
+ private:
+  double rounding_of(const Row& row, std::span<const BodyState> states) const;
+
+  std::shared_ptr<const Model> model_;
+  std::vector<int> rows_;
+  std::unique_ptr<Problem> problem_;
+  std::vector<double> sizes_;
+  std::vector<double> q_, v_, values_, lengths_;
+  CscLayout layout_;
+  std::vector<int> place_;  // of the layout's entries among those of Gt_, −1 outside
+  Eigen::SparseMatrix<double> Gt_;
+};
+
+}  // namespace poinsot

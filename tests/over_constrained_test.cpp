@@ -1,0 +1,199 @@
+// Mechanisms with redundant constraints over whole motions: every formulation and integrator, however their frames lie
+// and wherever the hinge axes turn to, moves them as it moves the same mechanism written without redundancy.
+#include <gmock/gmock.h>
+
+#include "integrators/start/rank.h"
+#include "integrators/start/reactions.h"
+#include "tests/support/loops.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+struct Motion {
+  Outcome outcome;
+  std::vector<BodyState> end;
+  int exchanges = 0;
+};
+
+Motion move(const Scene& scene, const Settings& settings) {
+  Motion m;
+  m.outcome = simulate(scene, settings, [&](const Sample& sample) {
+    m.end.resize(static_cast<std::size_t>(sample.problem.bodies()));
+    sample.problem.to_bodies(sample.a, m.end);
+    m.exchanges = sample.problem.revision();
+  });
+  return m;
+}
+
+double apart(const Motion& a, const Motion& b) {
+  double largest = 0;
+  for (std::size_t k = 0; k < a.end.size(); ++k) {
+    largest = std::max(largest, (a.end[k].r - b.end[k].r).norm());
+    largest = std::max(largest, (a.end[k].rd - b.end[k].rd).norm());
+  }
+  return largest;
+}
+
+bool takes(const IntegratorEntry& integrator, const Settings& settings) {
+  if (integrator.analysis != Analysis::dynamics) return false;
+  try {
+    Settings nothing = settings;
+    nothing.end = nothing.step;
+    (void)simulate(loop({}), nothing, {});
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
+}
+
+class Loops : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Loops, MoveAsWithoutRedundancy) {
+  int compared = 0;
+  for (const IntegratorEntry& integrator : integrators()) {
+    Settings settings = dynamics(GetParam(), 2e-3, 1, 1);
+    settings.integrator = integrator.name;
+    settings.tolerance = 1e-8;
+    settings.rtol = 1e-8;
+    if (!takes(integrator, settings)) continue;
+    for (const Frames frames : {Frames::drawn, Frames::quarter_turns, Frames::random}) {
+      for (const bool carried : {false, true}) {
+        SCOPED_TRACE(fmt::format("{} {}, frames {}{}", integrator.name, GetParam(), static_cast<int>(frames),
+                                 carried ? ", carried" : ""));
+        const Motion with = move(loop({4, frames, carried, true}), settings);
+        const Motion without = move(loop({4, frames, carried, false}), settings);
+        ASSERT_TRUE(with.outcome.status.ok()) << with.outcome.status.message;
+        ASSERT_TRUE(without.outcome.status.ok()) << without.outcome.status.message;
+        // Fixed steps: the same solution of the same equations, but for generalized-alpha's restarts. Error control:
+        // the tolerance, grown over the motion.
+        const bool same = !integrator.controls_error && integrator.order < 2;
+        EXPECT_LT(apart(with, without), same ? 1e-7 : integrator.controls_error ? 2e-6 : 5e-3);
+        EXPECT_GT(with.exchanges, 0);
+        EXPECT_LT(with.outcome.statistics.violation.position, 1e-8);
+        ++compared;
+      }
+    }
+  }
+  EXPECT_GE(compared, 42);
+}
+
+TEST_P(Loops, OfManyLinks) {
+  for (const int links : {5, 6, 8}) {
+    for (const bool carried : {false, true}) {
+      Settings settings = dynamics(GetParam(), 1e-3, 1, 1);
+      settings.integrator = "dop853";
+      settings.rtol = 1e-9;
+      const Motion with = move(loop({links, Frames::quarter_turns, carried, true}), settings);
+      const Motion without = move(loop({links, Frames::quarter_turns, carried, false}), settings);
+      ASSERT_TRUE(with.outcome.status.ok()) << links << ' ' << with.outcome.status.message;
+      EXPECT_LT(apart(with, without), 2e-5) << links << carried;
+      EXPECT_LE(with.outcome.statistics.rejected_steps, without.outcome.statistics.rejected_steps + 1) << links;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Loops, ::testing::ValuesIn(formulation_names()),
+                         [](const auto& test) { return test.param; });
+
+// Other rows, other multipliers; the reactions given out are the least and know nothing of it.
+TEST(OverConstrained, ReactionsAreContinuousWhereRowsAreExchanged) {
+  Settings settings = dynamics("rA", 1e-3, 1, 0);
+  settings.tolerance = 1e-8;
+  std::optional<Reactions> reactions;
+  Vector3 force, moment, before = Vector3::Zero();
+  int revision = 0, exchanges = 0;
+  double usual = 0, across = 0;
+  const Outcome outcome = simulate(loop({4, Frames::random, true, true}), settings, [&](const Sample& sample) {
+    if (!reactions) reactions.emplace(sample.problem);
+    reactions->update(sample);
+    reactions->of_group(3, force, moment);
+    if (sample.t > 0.01) {
+      const double jump = (force - before).norm();
+      if (sample.problem.revision() == revision) {
+        usual = std::max(usual, jump);
+      } else {
+        across = std::max(across, jump);
+        ++exchanges;
+      }
+    }
+    revision = sample.problem.revision();
+    before = force;
+  });
+  ASSERT_TRUE(outcome.status.ok()) << outcome.status.message;
+  EXPECT_GT(exchanges, 0);
+  EXPECT_LT(across, 2 * usual);
+}
+
+TEST(OverConstrained, SaysWhichReactionsAreDetermined) {
+  Scene scene = loop({4, Frames::drawn, false, true});
+  Body& pendulum = scene.bodies.emplace_back(scene.bodies[0]);
+  pendulum.name = "pendulum";
+  pendulum.position = {5, 0, 0};
+  Joint& hinge = scene.joints.emplace_back(scene.joints[0]);
+  hinge.name = "hinge";
+  hinge.i = kGround, hinge.j = 3;
+  hinge.point = {5, 1, 0};
+  std::optional<Reactions> reactions;
+  (void)simulate(scene, dynamics("rA", 1e-3, 1e-3), [&](const Sample& sample) {
+    if (!reactions) reactions.emplace(sample.problem);
+    reactions->update(sample);
+  });
+  for (int group = 0; group < 4; ++group) EXPECT_FALSE(reactions->determined(group)) << group;
+  EXPECT_TRUE(reactions->determined(4));
+}
+
+// A driver set aside because it agrees with another one at the start, and later does not.
+TEST(OverConstrained, ARowThatDoesNotFollowAnyMoreStopsTheRun) {
+  Scene scene = scene_of("single_pendulum_free");
+  for (const char* angle : {"t", "t + t^3"}) {
+    Driver& driver = scene.drivers.emplace_back();
+    driver.name = angle;
+    driver.type = DriverType::angle;
+    driver.i = scene.joints[0].i, driver.j = scene.joints[0].j;
+    driver.axis = scene.joints[0].axis;
+    driver.value = Expression::parse(angle);
+  }
+  const Motion m = move(scene, dynamics("rA", 1e-3, 1));
+  EXPECT_EQ(m.outcome.status.failure, Failure::constraint_lost);
+  EXPECT_THAT(m.outcome.status.message, ::testing::HasSubstr("driver 't"));
+  EXPECT_GT(m.outcome.status.time, 0.01);
+  EXPECT_LT(m.outcome.status.time, 0.1);
+}
+
+TEST(OverConstrained, StartsThatLeadNowhereAreRefusedByName) {
+  for (const bool redundant : {true, false}) {
+    const Motion m = move(posts(1, 0, 0, redundant), dynamics("rA", 1e-3, 1));
+    EXPECT_EQ(m.outcome.status.failure, Failure::singular_position) << redundant;
+    EXPECT_THAT(m.outcome.status.message, ::testing::HasSubstr("singular here: joint 'joint4'")) << redundant;
+    EXPECT_TRUE(m.end.empty());
+  }
+}
+
+// Flat, and within rounding of flat, with a velocity: accelerations are those beside, not of order 1e16.
+TEST_P(Loops, StartInASingularPositionFollowsTheVelocities) {
+  for (const double angle : {0.0, 1e-13}) {
+    for (const bool redundant : {true, false}) {
+      Settings settings = dynamics(GetParam(), 1e-3, 0.2, 0.1);
+      settings.integrator = "dop853";
+      settings.rtol = 1e-9;
+      const Motion flat = move(posts(1, angle, -3, redundant), settings);
+      ASSERT_TRUE(flat.outcome.status.ok()) << flat.outcome.status.message;
+      EXPECT_THAT(flat.outcome.notices, ::testing::Contains(::testing::HasSubstr("singular position")));
+      // All posts swing alike: one pendulum of the posts' and the coupler's inertia.
+      const double J = 2 * (0.1 + 0.25) + 1, m = 2 * 0.5 + 1;
+      double phi = 0, w = -3;
+      const double h = 1e-5;
+      for (int n = 0; n < 20000; ++n) {  // midpoint
+        const double half = phi + 0.5 * h * w, w_half = w - 0.5 * h * m * 9.81 * std::cos(phi) / J;
+        w -= h * m * 9.81 * std::cos(half) / J;
+        phi += h * w_half;
+      }
+      const Vector3 at(0.5 * std::cos(phi), 0.5 * std::sin(phi), 0);
+      EXPECT_LT((flat.end[0].r - at).norm(), 1e-7) << angle << redundant;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace poinsot::test
