@@ -75,6 +75,14 @@ void print_constraints(const SceneCheck& found) {
   }
 }
 
+void print_undetermined(const SceneCheck& found) {
+  if (found.rank.undetermined.empty()) return;
+  std::vector<int> rows;
+  for (const int group : found.rank.undetermined)
+    rows.push_back(found.model->groups[static_cast<std::size_t>(group)].first_row);
+  fmt::print("reactions that redundant rows leave undetermined: {}\n", groups_text(*found.model, rows));
+}
+
 void print_doubt(const SceneCheck& found) {
   const RankAnalysis& analysis = found.rank;
   if (analysis.doubtful < 0) return;
@@ -108,6 +116,7 @@ int run_check(const std::string& file) {
   const SceneCheck found = check_scene(read_scene(file));
   print_header(*found.model);
   print_constraints(found);
+  print_undetermined(found);
   print_doubt(found);
   print_state(found);
   if (!found.rank.conflicts.empty()) {

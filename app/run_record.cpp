@@ -32,7 +32,8 @@ std::string to_json(const RunRecord& record) {
   json["message"] = message;
   if (failure != Failure::none) json["failure_time"] = time;
   json["notices"] = record.outcome.notices;
-  json["reactions_undetermined"] = record.outcome.reactions_undetermined;
+  json["reactions_undetermined"] = !record.outcome.undetermined_reactions.empty();
+  json["undetermined_reactions"] = record.outcome.undetermined_reactions;
   auto linear = nlohmann::ordered_json::array();
   for (const LinearWork& w : s.linear) {
     linear.push_back({{"solver", w.solver},

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/index.h"
 #include "core/input_error.h"
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
@@ -68,7 +69,8 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   InitialState start = find_initial_state(model, settings);
   outcome.status = start.status;
   outcome.notices = std::move(start.notices);
-  outcome.reactions_undetermined = !start.rank.aside.empty();
+  for (const int group : start.rank.undetermined)
+    outcome.undetermined_reactions.push_back(model->groups[index(group)].name);
   if (!outcome.status.ok()) return outcome;
 
   std::unique_ptr<Problem> problem = formulation.make(model, start.rank.aside);

@@ -28,7 +28,8 @@ struct Outcome {
   Status status;
   Statistics statistics;
   std::vector<std::string> notices;     // what the user should know of: projections, dependent rows, singular starts
-  bool reactions_undetermined = false;  // dependent rows: the reactions given are the minimum-norm ones
+  // Constraints, joints and drivers whose reactions redundant rows leave undetermined: those given are the least.
+  std::vector<std::string> undetermined_reactions;
 };
 
 // Throws InputError where settings or scene break a rule, or do not fit together (unknown name, kinematics with free

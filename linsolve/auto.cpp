@@ -13,8 +13,8 @@
 //
 // Where solves outnumber factorizations (jacobian "kept") the pick is the same: instructions of a whole step in rA,
 // klu's over block's, were 1.21 for the double pendulum, 1.41 and 1.00 for chains of 10 and 100, 1.72 for a ladder of
-// 30 (callgrind, `release` build of commit 71b95ac, SSE2). Times with wider vectors are not known there: klu's solves
-// wait less, and with "kept" it has been seen 3 to 21 % faster up to 100 bodies.
+// 30 (callgrind, `release` build of commit 71b95ac, SSE2). Times with wider vectors are another matter: there klu has
+// been seen 3 to 21 % faster with "kept" up to 100 bodies.
 #include "linsolve/back_ends.h"
 #include "linsolve/registry.h"
 

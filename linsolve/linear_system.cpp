@@ -54,7 +54,7 @@ LinearStatus LinearSystem::analyze(const Pattern& pattern) {
 
 LinearStatus LinearSystem::factor() {
   if (!jacobian_) return whole_->factor();
-  by_jacobian_ = jacobian_->carries_all();
+  by_jacobian_ = jacobian_->take_values();
   return by_jacobian_ ? jacobian_->factor() : factor_whole_instead();
 }
 

@@ -23,11 +23,10 @@ bool SquareJacobian::analyze(const Pattern& pattern) {
     const auto it = std::lower_bound(first, last, i);
     return it != last && *it == i ? static_cast<int>(it - layout_.row.begin()) : -1;
   };
-  velocity_of_.assign(index(n), -1);
-  std::vector<int> multiplier_of(index(n), -1);
+  std::vector<int> velocity_of(index(n), -1), multiplier_of(velocity_of);
   for (int k = 0; k < n; ++k) {
     if (find(k, k) >= 0) {
-      velocity_of_[index(k)] = static_cast<int>(velocities_.size());
+      velocity_of[index(k)] = static_cast<int>(velocities_.size());
       velocities_.push_back(k);
     } else {
       multiplier_of[index(k)] = static_cast<int>(multipliers_.size());
@@ -37,38 +36,47 @@ bool SquareJacobian::analyze(const Pattern& pattern) {
 
   Pattern g{n / 2, {}, std::vector<int>(index(n / 2), 0)};
   int entries_above = 0;
-  for (int j = 0; j < n; ++j)
+  for (int j = 0; j < n; ++j) {
+    if (velocity_of[index(j)] >= 0) k_start_.push_back(static_cast<int>(k_.size()));
     for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k) {
       const int i = layout_.row[index(k)];
-      if (velocity_of_[index(i)] >= 0) {
-        entries_above += velocity_of_[index(j)] < 0;
+      if (velocity_of[index(i)] >= 0) {
+        if (velocity_of[index(j)] >= 0)
+          k_.emplace_back(k, velocity_of[index(i)]);
+        else
+          ++entries_above;
         continue;
       }
-      if (velocity_of_[index(j)] < 0) return false;  // constraints that are coupled directly
+      if (velocity_of[index(j)] < 0) return false;  // constraints that are coupled directly
       const int above = find(j, i);
       if (above < 0) return false;
-      g.blocks.push_back({multiplier_of[index(i)], velocity_of_[index(j)], 1, 1});
-      g_.emplace_back(k, 0);
-      mirror_.emplace_back(k, above);
+      g.blocks.push_back({multiplier_of[index(i)], velocity_of[index(j)], 1, 1});
+      g_.push_back({k, above, 0});
     }
+  }
+  k_start_.push_back(static_cast<int>(k_.size()));
   if (entries_above != static_cast<int>(g_.size()) || !solver_->analyze(g, Workload::transposed).ok()) return false;
-  for (std::size_t k = 0; k < g_.size(); ++k) g_[k].second = solver_->slots()[k];
+  for (std::size_t k = 0; k < g_.size(); ++k) g_[k].solver = solver_->slots()[k];
   values_.assign(index(layout_.nonzeros()), 0);
   for (auto* v : {&v_, &f_}) v->assign(velocities_.size(), 0);
   return true;
 }
 
-bool SquareJacobian::carries_all() const {
+bool SquareJacobian::take_values() {
+  const double* from = values_.data();
+  double* to = solver_->values().data();
   bool equal = true;
-  for (const auto& [g, above] : mirror_) equal = equal && values_[index(g)] == values_[index(above)];
+  for (const Entry& entry : g_) {
+    const double value = from[entry.whole];
+    to[entry.solver] = value;
+    equal &= value == from[entry.above];
+  }
   return equal;
 }
 
 LinearStatus SquareJacobian::factor() {
   if (!all_finite(values_))  // K included
     return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
-  double* part_values = solver_->values().data();
-  for (const auto& [whole, part] : g_) part_values[part] = values_[index(whole)];
   LinearStatus status = solver_->factor();
   if (status.unknown >= 0) status.unknown = velocities_[index(status.unknown)];
   return status;
@@ -77,12 +85,12 @@ LinearStatus SquareJacobian::factor() {
 LinearStatus SquareJacobian::solve(std::span<double> b) {
   for (std::size_t k = 0; k < v_.size(); ++k) v_[k] = b[index(multipliers_[k])], f_[k] = b[index(velocities_[k])];
   if (LinearStatus status = solver_->solve(v_); !status.ok()) return status;
+  const double* values = values_.data();
+  double* f = f_.data();
   for (std::size_t c = 0; c < v_.size(); ++c) {
-    const int j = velocities_[c];
     const double v = v_[c];
-    b[index(j)] = v;
-    for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k)
-      if (const int r = velocity_of_[index(layout_.row[index(k)])]; r >= 0) f_[index(r)] -= values_[index(k)] * v;
+    b[index(velocities_[c])] = v;
+    for (int k = k_start_[c]; k < k_start_[c + 1]; ++k) f[k_[index(k)].second] -= values[k_[index(k)].first] * v;
   }
   if (LinearStatus status = solver_->solve_transposed(f_); !status.ok()) return status;
   for (std::size_t k = 0; k < v_.size(); ++k) b[index(multipliers_[k])] = f_[k];

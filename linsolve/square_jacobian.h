@@ -31,20 +31,25 @@ class SquareJacobian {
 
   std::span<const int> slots() const { return layout_.slots; }
   std::span<double> values() { return values_; }
-  bool carries_all() const;  // the values are symmetric in G and Gᵀ
-  // After carries_all(). The unknown of a failure is one of the whole system.
+  // Hands G to the solver; whether the block above it is Gᵀ.
+  bool take_values();
+  // After take_values() that said so. The unknown of a failure is one of the whole system.
   LinearStatus factor();
   LinearStatus solve(std::span<double> b);
   bool factored() const { return solver_->state() == LinearSolver::State::factored; }
   const LinearSolver& solver() const { return *solver_; }
 
  private:
+  struct Entry {               // of G
+    int whole, above, solver;  // its places in the whole, in the block above, in the solver's values
+  };
+
   CscLayout layout_;  // of the whole
   std::vector<double> values_;
   std::vector<int> velocities_, multipliers_;  // their places in the whole system, ascending
-  std::vector<int> velocity_of_;               // by unknown, −1 for a multiplier
-  std::vector<std::pair<int, int>> g_;         // entries of G: place in the whole, place in solver_
-  std::vector<std::pair<int, int>> mirror_;    // entries of G and Gᵀ that have to be equal
+  std::vector<Entry> g_;
+  std::vector<int> k_start_;            // K by columns: of column c from k_start_[c] on,
+  std::vector<std::pair<int, int>> k_;  // place in the whole, row
   std::unique_ptr<LinearSolver> solver_;
   std::vector<double> v_, f_;
 };

@@ -20,26 +20,31 @@ namespace {
 
 // The paper's settings.
 constexpr double kStep = 1e-3, kEnd = 3;
+constexpr const char* kWhole = "whole";  // of linsolve/linear_system.h's registry
 constexpr double kKinematicsTolerance = 1e-10, kDynamicsTolerance = 1e-3;
 
 std::vector<Cell> make_cells(std::span<const Scene> scenes, Analysis analysis, const TablesRequest& request,
-                             std::span<const std::string> solvers) {
+                             std::span<const LinearChoice> choices) {
   std::vector<Cell> cells;
   for (std::size_t m = 0; m < kMechanisms.size(); ++m) {
     if (analysis == Analysis::kinematics && !kMechanisms[m].driven) continue;
-    for (const std::string& solver : solvers)
+    for (const LinearChoice& choice : choices) {
+      // "whole" is another system only where there is G.
+      if (choice.system == kWhole && !kMechanisms[m].driven) continue;
       for (const auto& policy : jacobians())
         for (const FormulationEntry& formulation : formulations()) {
           Settings settings;
           settings.analysis = analysis;
           settings.formulation = formulation.name;
           settings.jacobian = policy.name;
-          settings.linear_solver = solver;
+          settings.linear_solver = choice.solver;
+          settings.linear_system = choice.system;
           settings.step = kStep;
           settings.end = request.end();
           settings.tolerance = analysis == Analysis::kinematics ? kKinematicsTolerance : kDynamicsTolerance;
           cells.push_back({kMechanisms[m].file, &scenes[m], settings, {}, {}, false});
         }
+    }
   }
   return cells;
 }
@@ -90,9 +95,12 @@ MeasuredTables measure_tables(const TablesRequest& request, int core, const Prog
   MeasuredTables result;
   Report& report = result.report;
   report = {"The paper's tables, regenerated", introduction(), {constraint_counts(scenes)}, foot(request, core)};
-  const std::vector<std::string> chosen{request.linear_solver};
-  std::vector<std::string> solvers;
-  for (const LinearSolverEntry& entry : linear_solvers()) solvers.emplace_back(entry.name);
+  const std::vector<LinearChoice> chosen{{request.linear_solver, Settings{}.linear_system}};
+  std::vector<LinearChoice> choices;
+  for (const LinearSolverEntry& entry : linear_solvers()) {
+    choices.push_back({std::string(entry.name), Settings{}.linear_system});
+    if (entry.takes_jacobian) choices.push_back({std::string(entry.name), kWhole});
+  }
 
   std::vector<Cell> all;
   for (const Analysis analysis : {Analysis::kinematics, Analysis::dynamics}) {
@@ -103,7 +111,7 @@ MeasuredTables measure_tables(const TablesRequest& request, int core, const Prog
     report.tables.push_back(against_original_table(cells, analysis, processor()));
     all.insert(all.end(), cells.begin(), cells.end());
   }
-  std::vector<Cell> cells = make_cells(scenes, Analysis::dynamics, request, solvers);
+  std::vector<Cell> cells = make_cells(scenes, Analysis::dynamics, request, choices);
   measure(cells, request.runs(), progress);
   report.tables.push_back(linear_solvers_table(cells));
   all.insert(all.end(), cells.begin(), cells.end());

@@ -14,8 +14,16 @@ namespace poinsot::paper {
 using namespace study;
 namespace {
 
-// Which linear solver needs the least time, for how many of the systems (mechanism, formulation, jacobian); returns the
-// number of systems.
+// "klu, G": the solver that factored most in a run, and which system.
+std::string factored(const Cell& cell) {
+  if (cell.runs.empty() || cell.runs.front().linear.empty()) return std::string(kNone);
+  const LinearWork& most = cell.runs.front().linear.front();
+  const std::string by = most.handed_over_by.empty() ? "" : fmt::format(", handed over by {}", most.handed_over_by);
+  return fmt::format("{}, {}{}", most.solver, most.system, by);
+}
+
+// Which linear solver on which system needs the least time, for how many of the systems (mechanism, formulation,
+// jacobian); returns the number of systems.
 int count_fastest(std::span<const Cell> cells, std::map<std::string, int>& wins) {
   using System = std::tuple<std::string_view, std::string, std::string>;
   std::map<System, const Cell*> fastest;
@@ -24,7 +32,7 @@ int count_fastest(std::span<const Cell> cells, std::map<std::string, int>& wins)
     const Cell*& best = fastest[{cell.name, cell.settings.formulation, cell.settings.jacobian}];
     if (!best || us_per_step(cell, total).median < us_per_step(*best, total).median) best = &cell;
   }
-  for (const auto& [system, cell] : fastest) ++wins[cell->settings.linear_solver];
+  for (const auto& [system, cell] : fastest) ++wins[factored(*cell)];
   return static_cast<int>(fastest.size());
 }
 
@@ -114,10 +122,12 @@ Table linear_solvers_table(std::span<const Cell> cells) {
   Table table{
       "linear_solvers",
       "Dynamics: all linear solvers, time of a step by phase, microseconds",
-      "Medians; the spread is the distance of the quartiles of the total. Refused: the solver does not take such "
-      "matrices.",
-      {"mechanism", "formulation", "jacobian", "linear solver", "total", "spread, %", "assembly", "factorization",
-       "solves", "the rest"},
+      "Medians; the spread is the distance of the quartiles of the total. Factored: by which solver, and which system, "
+      "G "
+      "alone where there is no degree of freedom or the whole matrix; compare solvers on the same system. Refused: the "
+      "solver does not take such matrices.",
+      {"mechanism", "formulation", "jacobian", "linear solver", "factored", "total", "spread, %", "assembly",
+       "factorization", "solves", "the rest"},
       {}};
   for (const Cell& cell : cells) {
     std::vector<std::string> row{std::string(mechanism_of(cell).title), cell.settings.formulation,
@@ -128,6 +138,7 @@ Table linear_solvers_table(std::span<const Cell> cells) {
       table.rows.push_back(std::move(row));
       continue;
     }
+    row.push_back(factored(cell));
     const Timing whole = us_per_step(cell, total);
     row.insert(row.end(), {number(whole.median, 3), number(100 * whole.spread, 1)});
     for (const Phase phase : {assembly, factor, solve, rest}) row.push_back(number(us_per_step(cell, phase).median, 3));
@@ -142,18 +153,19 @@ Table linear_solvers_table(std::span<const Cell> cells) {
 }
 
 Table raw_table(std::span<const Cell> cells) {
-  Table table{
-      "raw",
-      "Every repetition",
-      "",
-      {"analysis", "mechanism", "formulation", "jacobian", "linear_solver", "repetition", "steps", "newton_iterations",
-       "jacobian_evaluations", "factorizations", "solves", "total_s", "assembly_s", "factor_s", "solve_s", "other_s"},
-      {}};
+  Table table{"raw",
+              "Every repetition",
+              "",
+              {"analysis", "mechanism", "formulation", "jacobian", "linear_solver", "factored", "repetition", "steps",
+               "newton_iterations", "jacobian_evaluations", "factorizations", "solves", "total_s", "assembly_s",
+               "factor_s", "solve_s", "other_s"},
+              {}};
   for (const Cell& cell : cells)
     for (std::size_t r = 0; r < cell.runs.size(); ++r) {
       const Statistics& s = cell.runs[r];
       std::vector<std::string> row{std::string(analysis_name(cell.settings.analysis)), std::string(cell.name),
                                    cell.settings.formulation, cell.settings.jacobian, cell.settings.linear_solver};
+      row.push_back(factored(cell));
       row.push_back(std::to_string(r + 1));
       for (const std::int64_t count :
            {s.steps, s.newton_iterations, s.jacobian_evaluations, s.factorizations, s.solves})

@@ -14,6 +14,7 @@
 #include "formulations/registry.h"
 #include "integrators/settings.h"
 #include "integrators/start/loop_rows.h"
+#include "integrators/start/row_choice.h"
 #include "integrators/start/row_space.h"
 #include "integrators/stepping/consistent.h"
 #include "linsolve/column_dependencies.h"
@@ -32,9 +33,10 @@ constexpr double kPulledBack = 0.3;  // of the move that has to be left after th
 // Parts of a body's size: a row that holds beside is off by no more than the solution of the others, one that does not
 // by some kMove² = 1e-6; one that contradicts the others by what the scene says.
 constexpr double kHolds = 1e-9, kContradicts = 1e-6;
-constexpr double kShortWhile = 1e-3;      // s, where nothing moves yet
-constexpr std::size_t kMostChosen = 200;  // dependent rows: the time grows with their square
-constexpr int kManyRows = 20'000;         // of loops: one random direction is looked at in the place of two
+constexpr double kNoLoad = 1e-7;                       // of a null vector on unit rows
+constexpr double kShortWhile = 1e-3;                   // s, where nothing moves yet
+constexpr std::size_t kMostChosen = RowChoice::kMost;  // dependent rows: the time grows with their square
+constexpr int kManyRows = 20'000;  // of loops: one random direction is looked at in the place of two
 
 // Bodies of unit mass that turn as hard as they move: projections are the shortest ways.
 std::shared_ptr<const Model> with_unit_masses(const Model& model, std::span<const double> sizes) {
@@ -286,6 +288,33 @@ class Examination {
     result_.aside = result_.aside_here = chosen(columns, tolerance);
     result_.rank = static_cast<int>(model_->rows.size() - result_.aside.size());
     result_.rank_here = result_.rank;
+    tell_undetermined(columns, tolerance);
+  }
+
+  // A null vector loads a group where what its rows do to one of the bodies does not add up to nothing.
+  void tell_undetermined(const Sparse& columns, double tolerance) {
+    std::vector<char> loaded(model_->groups.size(), 0);
+    const auto row = [&](int column) -> const Row& { return model_->rows[index(space_->rows()[index(column)])]; };
+    if (result_.aside.size() > kMostChosen) {
+      for (int k = 0; k < columns.cols(); ++k) loaded[index(row(k).group)] = 1;
+    } else {
+      for (const SparseEntries& z : null_space(columns, tolerance).vectors) {
+        double largest = 0;
+        for (const auto& [column, value] : z) largest = std::max(largest, std::abs(value));
+        for (auto first = z.begin(); first != z.end();) {
+          const int group = row(first->first).group;
+          const Row& of = row(first->first);
+          const int body = of.j != kGround ? of.j : of.i;
+          Eigen::Matrix<double, 6, 1> load = Eigen::Matrix<double, 6, 1>::Zero();
+          for (; first != z.end() && row(first->first).group == group; ++first)
+            for (Sparse::InnerIterator it(columns, first->first); it; ++it)
+              if (it.row() / 6 == body) load[it.row() % 6] += first->second * it.value();
+          if (load.norm() > kNoLoad * largest) loaded[index(group)] = 1;
+        }
+      }
+    }
+    for (std::size_t g = 0; g < loaded.size(); ++g)
+      if (loaded[g]) result_.undetermined.push_back(static_cast<int>(g));
   }
 
   // Of the rows that are kept, those that are no more than combinations of others at the given position.

@@ -46,6 +46,9 @@ struct RankAnalysis {
   std::vector<int> aside;
   // Rows that are singular here and rows to be set aside: without them G has full rank at the given position.
   std::vector<int> aside_here;
+  // Groups of the model whose reactions the equations of motion do not determine: a combination of multipliers that
+  // moves nothing loads them. Of all groups with redundant rows nearby where there are very many redundant rows.
+  std::vector<int> undetermined;
   std::vector<Conflict> conflicts;  // by row
   bool named = true;                // false: too many to say what each depends on; `others` are empty
   bool moves_on = true;             // singular: whether the velocities lead away from the singular position

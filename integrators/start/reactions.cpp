@@ -14,8 +14,6 @@
 namespace poinsot {
 namespace {
 
-constexpr double kNoLoad = 1e-7;  // of the largest reaction of a null vector: none
-
 std::vector<int> rows_left_out(const Problem& problem) {
   std::vector<int> all(problem.model().rows.size()), out;
   std::iota(all.begin(), all.end(), 0);
@@ -52,9 +50,8 @@ void Reactions::update(const Sample& sample) {
   const std::vector<int>& rows = problem_->model_rows();
   for (std::size_t k = 0; k < rows.size(); ++k) lambda_[index(rows[k])] = sample.lambda[k];
   const std::vector<SparseEntries> null_vectors = choice_->null_vectors(sample.t, states_);
-  if (null_vectors.empty()) return;  // in a singular position: as they are
+  if (null_vectors.empty()) return;  // as they are
   make_least(null_vectors);
-  if (determined_.empty()) find_determined(null_vectors);
 }
 
 void Reactions::make_least(const std::vector<SparseEntries>& null_vectors) {
@@ -70,30 +67,6 @@ void Reactions::make_least(const std::vector<SparseEntries>& null_vectors) {
   for (int pass = 0; pass < 2; ++pass) {  // the second takes out the rounding of the first
     const Eigen::VectorXd part = factors.solve(N.transpose() * lambda);
     lambda -= N * part;
-  }
-}
-
-void Reactions::find_determined(const std::vector<SparseEntries>& null_vectors) {
-  const Model& model = problem_->model();
-  determined_.assign(model.groups.size(), 1);
-  std::vector<double> alone(lambda_.size(), 0.0);
-  for (const SparseEntries& z : null_vectors) {
-    std::vector<std::pair<double, int>> loads;  // of the groups it has rows of
-    for (const auto& [row, value] : z) {
-      alone[index(row)] = value;
-      const int group = model.rows[index(row)].group;
-      if (loads.empty() || loads.back().second != group) loads.emplace_back(0, group);
-    }
-    double largest = 0;
-    for (auto& [load, group] : loads) {
-      Vector3 force, moment;
-      whole_->reaction(group, alone, force, moment);
-      load = std::max(force.norm(), moment.norm());
-      largest = std::max(largest, load);
-    }
-    for (const auto& [load, group] : loads)
-      if (load > kNoLoad * largest) determined_[index(group)] = 0;
-    for (const auto& [row, value] : z) alone[index(row)] = 0;
   }
 }
 

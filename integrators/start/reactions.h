@@ -10,8 +10,9 @@
 //
 //   λ − N (NᵀN)⁻¹ Nᵀ λ
 //
-// A reaction is determined where no null vector loads its joint. The cost grows linearly with the mechanism for a given
-// number of redundant rows.
+// Where no null vector loads a joint its reaction is the only one (integrators/start/rank.h says which). The cost grows
+// linearly with the mechanism for a given number of redundant rows; beyond some hundred of them those of the rows kept
+// are given.
 #pragma once
 
 #include <memory>
@@ -32,13 +33,9 @@ class Reactions {
   double lambda(int model_row) const { return lambda_[static_cast<std::size_t>(model_row)]; }
   // Force (N, global) and moment about the group's point (N m, global) on body j.
   void of_group(int group, Vector3& force, Vector3& moment) const;
-  // Whether the equations of motion determine the reaction of a group, or multipliers that mean nothing else to the
-  // motion could be others.
-  bool determined(int group) const { return determined_.empty() || determined_[static_cast<std::size_t>(group)]; }
 
  private:
   void make_least(const std::vector<SparseEntries>& null_vectors);
-  void find_determined(const std::vector<SparseEntries>& null_vectors);
 
   std::unique_ptr<Problem> whole_;   // with the rows that were set aside; null where there are none
   std::optional<RowChoice> choice_;  // of the rows the problem keeps
@@ -47,7 +44,6 @@ class Reactions {
   std::vector<BodyState> states_;
   const Problem* problem_ = nullptr;
   std::vector<double> lambda_;
-  std::vector<char> determined_;  // by group; empty: all
 };
 
 }  // namespace poinsot

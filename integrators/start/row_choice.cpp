@@ -34,6 +34,7 @@ RowChoice::RowChoice(std::shared_ptr<const Model> model, std::vector<int> rows, 
 
 std::vector<SparseEntries> RowChoice::unit_null_vectors(double t, std::span<const BodyState> states) {
   space_.stand(t, states);
+  if (aside_.size() > kMost) return {};
   const Sparse& columns = space_.columns();
   std::vector<int> kept, left_out;
   for (int k = 0; k < columns.cols(); ++k)

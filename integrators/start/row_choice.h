@@ -6,7 +6,8 @@
 //
 //   c = argmin ‖G_Kᵀ c − g_d‖,   (G_K G_Kᵀ) c = G_K g_d, refined once
 //
-// e_d − Σ c_k e_k is a null vector of Gᵀ: reactions that balance one another.
+// e_d − Σ c_k e_k is a null vector of Gᵀ: reactions that balance one another. Time grows with the number of rows for
+// each row set aside; beyond kMost of these the choice is left as it is.
 #pragma once
 
 #include <memory>
@@ -20,6 +21,8 @@ namespace poinsot {
 
 class RowChoice {
  public:
+  static constexpr std::size_t kMost = 200;
+
   // `rows`: those of loops (loop_rows.h); `aside`: rows of the model among them without which they are independent.
   RowChoice(std::shared_ptr<const Model> model, std::vector<int> rows, std::vector<int> aside);
 
@@ -29,7 +32,8 @@ class RowChoice {
   bool renew(double t, std::span<const BodyState> states);
   // What Φ of a row is where the bodies are off it by their own size, at the position last looked at.
   double size_of(int row) const;
-  // Null vectors of Gᵀ by row of the model: one for each row set aside. Empty where the kept rows are not independent.
+  // Null vectors of Gᵀ by row of the model: one for each row set aside. Empty beyond kMost and where the
+  // kept rows are not independent.
   std::vector<SparseEntries> null_vectors(double t, std::span<const BodyState> states);
 
  private:
