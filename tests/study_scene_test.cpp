@@ -51,16 +51,16 @@ TEST(SceneCheck, tells_a_redundant_row_from_one_that_contradicts) {
 
   const study::SceneCheck position = study::check_scene(held("2.5"));
   EXPECT_FALSE(position.sound());
-  ASSERT_EQ(position.conflicts.size(), 1u);
-  EXPECT_EQ(position.conflicts[0].row, 1);
-  EXPECT_TRUE(position.conflicts[0].position);
-  EXPECT_NEAR(position.conflicts[0].by, 0.5, 1e-12);
+  ASSERT_EQ(position.rank.conflicts.size(), 1u);
+  EXPECT_EQ(position.rank.conflicts[0].row, 1);
+  EXPECT_EQ(position.rank.conflicts[0].level, Conflict::Level::position);
+  EXPECT_NEAR(position.rank.conflicts[0].by, 0.5, 1e-12);
   EXPECT_EQ(position.derivatives, 0u);  // nothing further is checked
 
   const study::SceneCheck velocity = study::check_scene(held("\"2 + 3*t\""));
-  ASSERT_EQ(velocity.conflicts.size(), 1u);
-  EXPECT_FALSE(velocity.conflicts[0].position);
-  EXPECT_NEAR(velocity.conflicts[0].by, 3, 1e-12);
+  ASSERT_EQ(velocity.rank.conflicts.size(), 1u);
+  EXPECT_EQ(velocity.rank.conflicts[0].level, Conflict::Level::velocity);
+  EXPECT_NEAR(velocity.rank.conflicts[0].by, 3, 1e-12);
 }
 
 TEST(SceneCheck, keeps_why_no_run_can_start) {

@@ -116,15 +116,14 @@ class Examination {
       if (other.regular) find_conflicts(other, by_order);
       if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
     }
-    Problem& problem = *trial.problem;
     const Place& start = trial.start;
     std::optional<Place> best, along;
     if (trial.regular && result_.conflicts.empty()) {
-      along = beside_along_velocities(problem, start);
+      along = beside_along_velocities(trial);
       best = along;
       const int directions = static_cast<int>(space_->rows().size()) > kManyRows ? 1 : 2;
       for (int k = 0; k < directions && (!best || best->dependent > 0); ++k) {
-        std::optional<Place> place = beside_at_random(problem, start, k + 1);
+        std::optional<Place> place = beside_at_random(trial, k + 1);
         if (place && (!best || place->dependent < best->dependent)) best = std::move(place);
       }
     }
@@ -144,28 +143,27 @@ class Examination {
   // The given state, put onto the rows that are not left out.
   struct Trial {
     std::unique_ptr<Problem> problem;
+    std::unique_ptr<Consistent> consistent;
     Place start;
     bool regular = false;
   };
   Trial begin(const std::vector<int>& without) const {
     Trial trial;
     trial.problem = intrinsic_formulation().make(unit_, without);
+    trial.consistent = std::make_unique<Consistent>(*trial.problem, LinearChoice{});
     Place& start = trial.start;
     start.q.resize(index(trial.problem->nq())), start.v.resize(index(trial.problem->nv()));
     check(trial.problem->from_bodies(states_, start.q, start.v).ok(), "every orientation has coordinates");
-    trial.regular = put_back(*trial.problem, start, true);
+    trial.regular = put_back(trial, start);
+    if (!trial.regular) return trial;
+    trial.problem->set_position(0, start.q);
+    trial.problem->set_velocity(start.v);
+    trial.regular = trial.consistent->project_velocity(0, start.v).ok();
     return trial;
   }
 
-  // Onto the problem's rows, positions first.
-  static bool put_back(Problem& problem, Place& place, bool velocities) {
-    Consistent consistent(problem, LinearChoice{});
-    if (!consistent.project_position(place.t, place.q).ok()) return false;
-    if (!velocities) return true;
-    problem.set_position(place.t, place.q);
-    problem.set_velocity(place.v);
-    return consistent.project_velocity(place.t, place.v).ok();
-  }
+  // Onto the trial's rows.
+  static bool put_back(Trial& trial, Place& place) { return trial.consistent->project_position(place.t, place.q).ok(); }
 
   // Largest move of a body by dq, in its size.
   double extent(std::span<const double> dq) const {
@@ -183,7 +181,8 @@ class Examination {
     return largest;
   }
 
-  std::optional<Place> beside_along_velocities(Problem& problem, const Place& start) {
+  std::optional<Place> beside_along_velocities(Trial& trial) {
+    const Place& start = trial.start;
     const double speed = extent(start.v);
     const bool driven = std::ranges::any_of(model_->rows, [](const Row& row) { return !row.f.is_constant(); });
     if (speed == 0 && !driven) return {};
@@ -191,10 +190,12 @@ class Examination {
     place.t = speed > 0 ? std::min(kMove / speed, 1.0) : kShortWhile;
     std::vector<double> dq = start.v;
     for (double& x : dq) x *= place.t;
-    return settle(problem, start, std::move(place), dq, speed > 0 && kMove / speed <= 1.0);
+    return settle(trial, std::move(place), dq, speed > 0 && kMove / speed <= 1.0);
   }
 
-  std::optional<Place> beside_at_random(Problem& problem, const Place& start, int seed) {
+  std::optional<Place> beside_at_random(Trial& trial, int seed) {
+    Problem& problem = *trial.problem;
+    const Place& start = trial.start;
     std::mt19937 random(static_cast<unsigned>(seed));
     std::normal_distribution<double> normal;
     std::vector<double> move(index(problem.nv() + problem.nc()), 0.0);
@@ -204,23 +205,22 @@ class Examination {
     const std::vector<double> at_rest(start.v.size(), 0.0);
     problem.set_position(0, start.q);
     problem.set_velocity(at_rest);
-    Consistent consistent(problem, LinearChoice{});
-    if (!consistent.factor(0).ok() || !consistent.solve(0, move).ok()) return {};
+    if (!trial.consistent->factor(0).ok() || !trial.consistent->solve(0, move).ok()) return {};
     move.resize(start.v.size());
     const double length = extent(move);
     if (!(length > 1e-6 * asked)) return {};  // it cannot move
     for (double& x : move) x *= kMove / length;
-    return settle(problem, start, start, move, true);
+    return settle(trial, start, move, true);
   }
 
   // Moves by dq, puts the mechanism back onto the problem's rows, and looks at all of them.
-  std::optional<Place> settle(Problem& problem, const Place& start, Place place, std::span<const double> dq,
-                              bool must_move) {
-    problem.retract(start.q, dq, place.q);
+  std::optional<Place> settle(Trial& trial, Place place, std::span<const double> dq, bool must_move) {
+    const Place& start = trial.start;
+    trial.problem->retract(start.q, dq, place.q);
     const double moved = distance(place.q, start.q);
-    if (!put_back(problem, place, false)) return {};
+    if (!put_back(trial, place)) return {};
     if (must_move && distance(place.q, start.q) < kPulledBack * moved) return {};
-    look(problem, place);
+    look(*trial.problem, place);
     return place;
   }
 
@@ -350,12 +350,14 @@ class Examination {
   // Whether the mechanism, moved on along its velocities, comes to a position where all rows hold and are independent.
   bool leads_on(const Place& start, const Place& along) {
     if (extent(start.v) == 0) return false;
-    const std::unique_ptr<Problem> problem = intrinsic_formulation().make(unit_, result_.aside);
     Place place = along;
     if (!along.holds) {
-      if (!put_back(*problem, place, false)) return false;
+      Trial trial;
+      trial.problem = intrinsic_formulation().make(unit_, result_.aside);
+      trial.consistent = std::make_unique<Consistent>(*trial.problem, LinearChoice{});
+      if (!put_back(trial, place)) return false;
       if (distance(place.q, start.q) < kPulledBack * kMove) return false;
-      look(*problem, place);
+      look(*trial.problem, place);
     }
     return place.holds && place.dependent == result_.aside.size();
   }
