@@ -178,7 +178,7 @@ TEST(Assembly, NamesConflictingPositions) {
   Scene scene = scene_of("free_body");
   scene.constraints = {row_of_x("at", "0"), row_of_x("elsewhere", "0.002")};
   EXPECT_EQ(refusal(scene),
-            "the constraints conflict: with the others satisfied, constraint 'elsewhere' is still violated by 0.002 "
+            "the constraints conflict: with the others satisfied, constraint 'elsewhere' is still violated by 0.002 m "
             "(position); `poinsot check` names what it depends on");
 }
 
@@ -186,7 +186,7 @@ TEST(Assembly, NamesConflictingVelocities) {
   Scene scene = scene_of("free_body");
   scene.constraints = {row_of_x("still", "0"), row_of_x("moving", "0.5*t")};
   EXPECT_EQ(refusal(scene),
-            "the constraints conflict: with the others satisfied, constraint 'moving' is still violated by 0.5 "
+            "the constraints conflict: with the others satisfied, constraint 'moving' is still violated by 0.5 m/s "
             "(velocity); `poinsot check` names what it depends on");
 }
 
@@ -199,9 +199,10 @@ TEST(Assembly, NamesADriverOfWhatCannotMove) {
   scene.joints = {weld};
   scene.drivers[0].name = "motor";
   scene.drivers[0].value = Expression::parse("2*t");
-  EXPECT_EQ(refusal(scene),
-            "the constraints conflict: with the others satisfied, driver 'motor' is still violated by 2 (velocity); "
-            "`poinsot check` names what it depends on");
+  EXPECT_EQ(
+      refusal(scene),
+      "the constraints conflict: with the others satisfied, driver 'motor' is still violated by 4 m/s (velocity); "
+      "`poinsot check` names what it depends on");
 }
 
 // A pendulum of 2 m asked to be 5 m away from a point of the ground.
@@ -219,9 +220,10 @@ Scene too_far(const Vector3& point) {
 
 // From its pivot: the row depends on the joint's, and conflicts.
 TEST(Assembly, NamesAConflictOfIndependentTypes) {
-  EXPECT_EQ(refusal(too_far({0, 0, 0}), Assembly::always),
-            "the constraints conflict: with the others satisfied, constraint 'far' is still violated by 21 (position); "
-            "`poinsot check` names what it depends on");
+  EXPECT_EQ(
+      refusal(too_far({0, 0, 0}), Assembly::always),
+      "the constraints conflict: with the others satisfied, constraint 'far' is still violated by 5.25 m (position); "
+      "`poinsot check` names what it depends on");
 }
 
 // The same from a point beside the pivot, where the rows are independent and have no common solution.

@@ -91,7 +91,7 @@ TEST_F(Check, ConflictingConstraintsByName) {
   EXPECT_EQ(torn.status, 2);
   EXPECT_EQ(torn.err, "poinsot: torn.json: the constraints conflict; remove or correct one of those named\n");
   expect_says(torn, {"redundant constraints: none\n", "conflicting constraints: 1 row\n",
-                     "constraint 'other' contradicts constraint 'first': off by 5 (position) where those hold\n"});
+                     "constraint 'other' contradicts constraint 'first': off by 1.25 m (position) where those hold\n"});
 
   write(
       "pulled.json",
@@ -99,7 +99,7 @@ TEST_F(Check, ConflictingConstraintsByName) {
                               {"type": "CD", "name": "pull", "bodies": ["ground", "rod"], "c": [1,0,0], "s_i": [1,0,0], "s_j": [0,0,0], "f": "t"})"));
   const Result pulled = poinsot({"check", "pulled.json"});
   EXPECT_EQ(pulled.status, 2);
-  expect_says(pulled, {"constraint 'pull' contradicts constraint 'still': off by 1 (velocity) where those hold\n"});
+  expect_says(pulled, {"constraint 'pull' contradicts constraint 'still': off by 1 m/s (velocity) where those hold\n"});
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST_F(Help, RunNamesEverySettingItsValuesAndItsDefault) {
 
 TEST_F(Help, ListHasALineForEveryEntryOfEveryRegistry) {
   const std::vector<std::string> list = lines(said({"list"}));
-  std::size_t expected = 4;
+  std::size_t expected = 5;
   const auto listed = [&](const char* title, const auto& table) {
     EXPECT_NE(std::find(list.begin(), list.end(), title), list.end()) << title;
     for (const auto& entry : table) {
@@ -64,6 +64,7 @@ TEST_F(Help, ListHasALineForEveryEntryOfEveryRegistry) {
   listed("formulations", formulations());
   listed("integrators", integrators());
   listed("linear solvers", linear_solvers());
+  listed("linear systems", linear_systems());
   listed("jacobians", jacobians());
   for (const IntegratorEntry& entry : integrators()) {
     for (const MethodParameter& parameter : entry.parameters) {

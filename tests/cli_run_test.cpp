@@ -23,8 +23,9 @@ TEST_F(Run, PrintsASummaryWithoutAnOutputFile) {
   const Result result = poinsot({"run", "pendulum.json", "--end", "0.1"});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.err, "");
-  for (const char* part : {"pendulum: dynamics, rA, implicit_euler, auto (block), h = 0.001 s", "t = 0.1 s", "rod",
-                           "100 steps", "Newton iterations", "assembly", "largest violation"})
+  for (const char* part :
+       {"pendulum: dynamics, rA, implicit_euler, auto, h = 0.001 s", "t = 0.1 s", "rod",
+        "block on the whole matrix: ", "100 steps", "Newton iterations", "assembly", "largest violation"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
   EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
 }

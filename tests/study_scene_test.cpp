@@ -54,13 +54,13 @@ TEST(SceneCheck, tells_a_redundant_row_from_one_that_contradicts) {
   ASSERT_EQ(position.rank.conflicts.size(), 1u);
   EXPECT_EQ(position.rank.conflicts[0].row, 1);
   EXPECT_EQ(position.rank.conflicts[0].level, Conflict::Level::position);
-  EXPECT_NEAR(position.rank.conflicts[0].by, 0.5, 1e-12);
-  EXPECT_EQ(position.derivatives, 0u);  // nothing further is checked
+  EXPECT_NEAR(position.rank.conflicts[0].by, 0.25, 1e-12);  // m: the row's direction is 2 long
+  EXPECT_EQ(position.derivatives, 0u);                      // nothing further is checked
 
   const study::SceneCheck velocity = study::check_scene(held("\"2 + 3*t\""));
   ASSERT_EQ(velocity.rank.conflicts.size(), 1u);
   EXPECT_EQ(velocity.rank.conflicts[0].level, Conflict::Level::velocity);
-  EXPECT_NEAR(velocity.rank.conflicts[0].by, 3, 1e-12);
+  EXPECT_NEAR(velocity.rank.conflicts[0].by, 1.5, 1e-12);
 }
 
 TEST(SceneCheck, keeps_why_no_run_can_start) {

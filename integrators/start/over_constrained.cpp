@@ -13,7 +13,7 @@
 namespace poinsot {
 namespace {
 
-constexpr double kTurn = 0.4;   // rad that a body turns before the choice is looked at again
+constexpr double kTurn = 0.15;  // rad that a body turns before the choice is looked at again (see row_choice.cpp)
 constexpr double kLost = 1e-5;  // of a body's size: far above what steps leave, far below what opens to the eye
 
 }  // namespace
