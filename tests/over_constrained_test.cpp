@@ -140,8 +140,9 @@ TEST(OverConstrained, SaysWhichReactionsAreDetermined) {
 
 // A driver set aside because it agrees with another one at the start, and later does not.
 TEST(OverConstrained, ARowThatDoesNotFollowAnyMoreStopsTheRun) {
-  Scene scene = scene_of("single_pendulum_free");
-  for (const char* angle : {"t", "t + t^3"}) {
+  Scene scene = scene_of("single_pendulum_joints");
+  scene.drivers.clear();
+  for (const char* angle : {"t", "t + t^5"}) {
     Driver& driver = scene.drivers.emplace_back();
     driver.name = angle;
     driver.type = DriverType::angle;
@@ -153,7 +154,7 @@ TEST(OverConstrained, ARowThatDoesNotFollowAnyMoreStopsTheRun) {
   EXPECT_EQ(m.outcome.status.failure, Failure::constraint_lost);
   EXPECT_THAT(m.outcome.status.message, ::testing::HasSubstr("driver 't"));
   EXPECT_GT(m.outcome.status.time, 0.01);
-  EXPECT_LT(m.outcome.status.time, 0.1);
+  EXPECT_LT(m.outcome.status.time, 0.2);
 }
 
 TEST(OverConstrained, StartsThatLeadNowhereAreRefusedByName) {
