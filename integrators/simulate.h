@@ -27,7 +27,7 @@ namespace poinsot {
 struct Outcome {
   Status status;
   Statistics statistics;
-  std::vector<std::string> notices;     // what the user should know of: projections, dependent rows, singular starts
+  std::vector<std::string> notices;  // what the user should know of: projections, dependent rows, singular starts
   // Constraints, joints and drivers whose reactions redundant rows leave undetermined: those given are the least.
   std::vector<std::string> undetermined_reactions;
 };
