@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/study/motion.h"
 #include "core/check.h"
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
@@ -98,9 +99,8 @@ inline Settings controlled(std::string_view integrator, std::string_view formula
   return s;
 }
 
-// Largest distance of each quantity over times, bodies and components, relative to its largest value.
-struct Distance {
-  double r = 0, A = 0, rd = 0, w = 0, rdd = 0, wd = 0;
+// How far two motions are apart at the same instants, by kind and relative to the second one: bench/study/motion.h.
+struct Distance : study::BodyDifference {
   double largest() const { return std::max({r, A, rd, w, rdd, wd}); }
 };
 
@@ -109,23 +109,24 @@ inline std::ostream& operator<<(std::ostream& out, const Distance& d) {
                             d.w, d.rdd, d.wd);
 }
 
+inline study::Motion motion_of(const std::vector<Snapshot>& samples) {
+  study::Motion motion;
+  for (const Snapshot& sample : samples) {
+    motion.t.push_back(sample.t);
+    motion.bodies.push_back(sample.bodies);
+  }
+  return motion;
+}
+
 inline Distance distance(const std::vector<Snapshot>& x, const std::vector<Snapshot>& reference) {
   check(x.size() == reference.size() && !x.empty(), "two motions have the same instants");
-  const auto of = [&](auto member) {
-    double apart = 0, size = 0;
-    for (std::size_t n = 0; n < x.size(); ++n) {
-      check(std::abs(x[n].t - reference[n].t) < 1e-12 * (1 + std::abs(x[n].t)), "two motions have the same instants");
-      for (std::size_t b = 0; b < x[n].bodies.size(); ++b) {
-        const auto &u = x[n].bodies[b].*member, &v = reference[n].bodies[b].*member;
-        const double here = (u - v).cwiseAbs().maxCoeff();
-        apart = std::isfinite(here) ? std::max(apart, here) : INFINITY;
-        size = std::max(size, v.cwiseAbs().maxCoeff());
-      }
-    }
-    return size > 0 ? apart / size : apart;
-  };
-  return {of(&BodyState::r), of(&BodyState::A),   of(&BodyState::rd),
-          of(&BodyState::w), of(&BodyState::rdd), of(&BodyState::wd)};
+  for (std::size_t n = 0; n < x.size(); ++n)
+    check(std::abs(x[n].t - reference[n].t) < 1e-12 * (1 + std::abs(x[n].t)), "two motions have the same instants");
+  const study::Motion from = motion_of(reference);
+  Distance d{study::body_difference(motion_of(x), from, study::body_sizes(from))};
+  for (double* part : {&d.r, &d.A, &d.rd, &d.w, &d.rdd, &d.wd})
+    if (std::isnan(*part)) *part = INFINITY;  // no maximum loses it
+  return d;
 }
 
 // The slope of log(error) over log(step), fitted and between every two neighbours, is `order` to `within`.
