@@ -69,7 +69,7 @@ int chart(const Options& options) {
   const int core = pin_to_one_core();
 
   int status = kDone;
-  std::vector<Chart> charts;
+  std::vector<SceneChart> charts;
   std::vector<Plot> plots;
   ProgressLine progress("scenes", !options.quiet);
   study::Progress told{0, static_cast<double>(scenes.size())};

@@ -7,7 +7,7 @@
 #include "formulations/registry.h"
 #include "integrators/start/initial_state.h"
 #include "linsolve/registry.h"
-#include "linsolve_systems.h"
+#include "tests/support/linear_solver_systems.h"
 
 namespace poinsot::test {
 namespace {

@@ -8,7 +8,7 @@
 #include "formulations/registry.h"
 #include "integrators/simulate.h"
 #include "linsolve/registry.h"
-#include "tests/linsolve_systems.h"
+#include "tests/support/linear_solver_systems.h"
 
 namespace poinsot::test {
 namespace {

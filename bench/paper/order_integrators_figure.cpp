@@ -16,16 +16,16 @@ namespace poinsot::paper {
 using namespace study;
 namespace {
 
-struct Mechanism {
+struct Case {
   const char* model;
   const char* title;
   bool driven;
   double end;  // s; free motion is compared while neighbouring motions stay neighbours
 };
-constexpr Mechanism kMechanisms[] = {{"single_pendulum", "single pendulum", true, 3},
-                                     {"slider_crank", "slider crank", true, 3},
-                                     {"four_link", "four link", true, 3},
-                                     {"double_pendulum", "double pendulum, set off", false, 1}};
+constexpr Case kMechanisms[] = {{"single_pendulum", "single pendulum", true, 3},
+                                {"slider_crank", "slider crank", true, 3},
+                                {"four_link", "four link", true, 3},
+                                {"double_pendulum", "double pendulum, set off", false, 1}};
 // The double pendulum is set off with this, projected onto its constraints: from rest the velocity errors of
 // half-implicit Euler cancel to second order.
 constexpr double kSpin = 1;  // rad/s about the body's z axis, the hinges'
@@ -55,7 +55,7 @@ Settings settings_of(const IntegratorEntry& method, std::string_view formulation
   return settings;
 }
 
-Scene scene_of(const Mechanism& mechanism, const FigureRequest& request) {
+Scene scene_of(const Case& mechanism, const FigureRequest& request) {
   Scene scene = request.scene(mechanism.model);
   if (!mechanism.driven)
     for (Body& body : scene.bodies) body.angular_velocity = {0, 0, kSpin};
@@ -81,7 +81,7 @@ Table empty_table() {
 }
 
 // Fits the curves of one method, quantity by quantity; a row of the table.
-std::vector<std::string> fit_row(std::span<Curve> curves, const Mechanism& mechanism, const IntegratorEntry& method,
+std::vector<std::string> fit_row(std::span<Curve> curves, const Case& mechanism, const IntegratorEntry& method,
                                  bool quick, Range& exponents) {
   const Window window = window_of(method.order, quick);
   std::vector<std::string> row{mechanism.title, curves[0].series, curves[0].variant, std::to_string(method.order)};
@@ -133,7 +133,7 @@ FigureResult order_integrators(const FigureRequest& request) {
   std::map<int, std::vector<Curve>> fitted;  // by order
   RunCounter counter(std::size(kMechanisms) * methods.size() * formulations().size() * steps.size(), request.progress);
   std::map<const IntegratorEntry*, Range> exponents;
-  for (const Mechanism& mechanism : kMechanisms) {
+  for (const Case& mechanism : kMechanisms) {
     const Scene scene = scene_of(mechanism, request);
     const Model model = compile(scene);
     const double end = request.quick ? 1 : mechanism.end;

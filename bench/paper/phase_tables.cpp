@@ -55,7 +55,7 @@ Table phases_table(std::span<const Cell> cells, Analysis analysis) {
           row.push_back(jacobian);
           row.push_back(number(whole.median, 3));
           row.push_back(number(100 * whole.spread, 1));
-          for (const Phase phase : {assembly, factor, solve, rest})
+          for (const PhaseSeconds phase : {assembly, factor, solve, rest})
             row.push_back(number(us_per_step(cell, phase).median, 3));
           row.push_back(number(iterations_per_step(cell), 2));
           if (cell.runs.empty()) return row.push_back(kNone);
@@ -71,7 +71,7 @@ Table phases_table(std::span<const Cell> cells, Analysis analysis) {
 }
 
 Table advantage_table(std::span<const Cell> cells, Analysis analysis) {
-  constexpr std::pair<std::string_view, Phase> phases[] = {
+  constexpr std::pair<std::string_view, PhaseSeconds> phases[] = {
       {"assembly", assembly}, {"factorization", factor}, {"solves", solve}, {"the rest", rest}};
   Table table{file_name(analysis, "advantage"),
               title(analysis, fmt::format("where the time goes that {} saves", kSubject)),
@@ -90,7 +90,7 @@ Table advantage_table(std::span<const Cell> cells, Analysis analysis) {
                const Cell* subject = find(cells, analysis, mechanism_of(cell), kSubject, jacobian);
                const bool missing = !subject || subject->runs.empty() || cell.runs.empty();
                row.push_back(jacobian);
-               const auto difference = [&](Phase phase) {
+               const auto difference = [&](PhaseSeconds phase) {
                  return us_per_step(cell, phase).median - us_per_step(*subject, phase).median;
                };
                row.push_back(missing ? kNone : fmt::format("{:.3f}", difference(total)));
@@ -141,7 +141,8 @@ Table linear_solvers_table(std::span<const Cell> cells) {
     row.push_back(factored(cell));
     const Timing whole = us_per_step(cell, total);
     row.insert(row.end(), {number(whole.median, 3), number(100 * whole.spread, 1)});
-    for (const Phase phase : {assembly, factor, solve, rest}) row.push_back(number(us_per_step(cell, phase).median, 3));
+    for (const PhaseSeconds phase : {assembly, factor, solve, rest})
+      row.push_back(number(us_per_step(cell, phase).median, 3));
     table.rows.push_back(std::move(row));
   }
   std::map<std::string, int> wins;
@@ -170,7 +171,8 @@ Table raw_table(std::span<const Cell> cells) {
       for (const std::int64_t count :
            {s.steps, s.newton_iterations, s.jacobian_evaluations, s.factorizations, s.solves})
         row.push_back(std::to_string(count));
-      for (const Phase phase : {total, assembly, factor, solve, rest}) row.push_back(fmt::format("{:.9f}", phase(s)));
+      for (const PhaseSeconds phase : {total, assembly, factor, solve, rest})
+        row.push_back(fmt::format("{:.9f}", phase(s)));
       table.rows.push_back(std::move(row));
     }
   return table;

@@ -16,9 +16,9 @@ struct Standing {
 };
 
 template <class Counts>
-Standing standing(std::vector<std::string> names, const std::vector<Chart>& charts, const Counts& counts) {
+Standing standing(std::vector<std::string> names, const std::vector<SceneChart>& charts, const Counts& counts) {
   Standing s{std::move(names), {}, {}};
-  for (const Chart& chart : charts) {
+  for (const SceneChart& chart : charts) {
     std::array<bool, kQuantities.size()> here{};
     for (const ChartRow& row : chart.rows)
       for (std::size_t k = 0; k < here.size() && counts(row); ++k) here[k] = here[k] || row.front[k];
@@ -29,11 +29,12 @@ Standing standing(std::vector<std::string> names, const std::vector<Chart>& char
 }
 
 // In the order of the integrators; those no chart has a row of are left out, they refuse all formulations asked for.
-std::vector<Standing> of_integrators(const std::vector<std::string>& integrators, const std::vector<Chart>& charts) {
+std::vector<Standing> of_integrators(const std::vector<std::string>& integrators,
+                                     const std::vector<SceneChart>& charts) {
   std::vector<Standing> all;
   for (const std::string& name : integrators) {
     const auto its = [&](const ChartRow& row) { return row.integrator == name; };
-    if (std::ranges::any_of(charts, [&](const Chart& chart) { return std::ranges::any_of(chart.rows, its); }))
+    if (std::ranges::any_of(charts, [&](const SceneChart& chart) { return std::ranges::any_of(chart.rows, its); }))
       all.push_back(standing({name}, charts, its));
   }
   return all;
@@ -44,10 +45,10 @@ std::vector<std::string> method_of(const ChartRow& row) {
 }
 
 // In the same order and with the same omission.
-std::vector<Standing> of_methods(const std::vector<std::string>& integrators, const std::vector<Chart>& charts) {
+std::vector<Standing> of_methods(const std::vector<std::string>& integrators, const std::vector<SceneChart>& charts) {
   std::vector<std::vector<std::string>> methods;
   for (const std::string& name : integrators)
-    for (const Chart& chart : charts)
+    for (const SceneChart& chart : charts)
       for (const ChartRow& row : chart.rows)
         if (row.integrator == name && std::ranges::find(methods, method_of(row)) == methods.end())
           methods.push_back(method_of(row));
@@ -73,7 +74,7 @@ Table table(std::string file, std::string title, std::vector<std::string> header
 
 }  // namespace
 
-Report fronts_report(const std::vector<std::string>& integrators, const std::vector<Chart>& charts,
+Report fronts_report(const std::vector<std::string>& integrators, const std::vector<SceneChart>& charts,
                      const std::vector<std::string>& foot) {
   Report report;
   report.title = "Fronts";
@@ -89,7 +90,7 @@ Report fronts_report(const std::vector<std::string>& integrators, const std::vec
   return report;
 }
 
-std::string fronts_summary(const std::vector<std::string>& integrators, const std::vector<Chart>& charts) {
+std::string fronts_summary(const std::vector<std::string>& integrators, const std::vector<SceneChart>& charts) {
   std::string text =
       fmt::format("on the front of so many of {} chart{}:\n{:44}", charts.size(), charts.size() == 1 ? "" : "s", "");
   for (const auto quantity : kQuantities) text += fmt::format("{:>14}", quantity);

@@ -9,7 +9,7 @@
 
 namespace poinsot::study {
 
-struct Chart {
+struct SceneChart {
   std::string scene;
   std::vector<ChartRow> rows;  // with their fronts
 };
@@ -17,10 +17,10 @@ struct Chart {
 // Tables by integrator and by method (integrator, formulation and linear solver): of each quantity, the number of
 // charts on whose front it stands, and the scenes of those it stands on with any. `integrators`: every one that was
 // asked for.
-Report fronts_report(const std::vector<std::string>& integrators, const std::vector<Chart>& charts,
+Report fronts_report(const std::vector<std::string>& integrators, const std::vector<SceneChart>& charts,
                      const std::vector<std::string>& foot);
 
 // The same in a few lines: a line for each method on a front, and the integrators that are on none.
-std::string fronts_summary(const std::vector<std::string>& integrators, const std::vector<Chart>& charts);
+std::string fronts_summary(const std::vector<std::string>& integrators, const std::vector<SceneChart>& charts);
 
 }  // namespace poinsot::study

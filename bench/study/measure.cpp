@@ -42,7 +42,7 @@ Timing timing(std::vector<double> values) {
   return {median, median > 0 ? (quantile(values, 0.75) - quantile(values, 0.25)) / median : 0};
 }
 
-Timing us_per_step(const Cell& cell, Phase phase) {
+Timing us_per_step(const Cell& cell, PhaseSeconds phase) {
   if (cell.runs.empty()) return {};
   std::vector<double> us;
   for (const Statistics& run : cell.runs) us.push_back(1e6 * phase(run) / static_cast<double>(run.steps));

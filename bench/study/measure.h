@@ -30,8 +30,8 @@ struct Timing {
 Timing timing(std::vector<double> values);
 
 // Microseconds of a phase for one step, over the repetitions.
-using Phase = double (*)(const Statistics&);  // seconds of a run
-Timing us_per_step(const Cell& cell, Phase phase);
+using PhaseSeconds = double (*)(const Statistics&);  // seconds of a run
+Timing us_per_step(const Cell& cell, PhaseSeconds phase);
 
 double total(const Statistics& s);
 double assembly(const Statistics& s);

@@ -6,7 +6,7 @@
 #include "linsolve/csc_layout.h"
 #include "linsolve/equilibration.h"
 #include "linsolve/registry.h"
-#include "tests/linsolve_systems.h"
+#include "tests/support/linear_solver_systems.h"
 
 namespace poinsot::test {
 
