@@ -33,6 +33,19 @@ using Matrix3 = Eigen::Matrix3d;
 
 inline constexpr int kGround = -1;
 
+enum class ShapeType { box, cylinder, capsule, sphere, polyline };
+
+// What a picture of the body shows, in its frame; no mass follows from it, and no motion.
+struct Shape {
+  ShapeType type = ShapeType::box;
+  Vector3 at = Vector3::Zero();     // m, the centre
+  Vector3 size = Vector3::Zero();   // m, edges along the body's axes: box
+  double radius = 0;                // m: cylinder, capsule, sphere
+  double length = 0;                // m: cylinder; capsule, without its caps
+  Vector3 axis = Vector3::UnitZ();  // of any length: cylinder, capsule
+  std::vector<Vector3> points;      // m: polyline
+};
+
 struct Body {
   std::string name;
   double mass = 0;                             // kg
@@ -41,6 +54,7 @@ struct Body {
   Matrix3 orientation = Matrix3::Identity();   // A; compile() takes the rotation nearest to what is given
   Vector3 velocity = Vector3::Zero();          // m/s, global
   Vector3 angular_velocity = Vector3::Zero();  // rad/s, body frame
+  std::optional<Shape> shape;
 };
 
 // DP1: a_i·a_j = f   DP2: a_i·d = f   D: d·d = f   CD: c·d = f, with d = r_j + A_j s_j − r_i − A_i s_i

@@ -37,11 +37,13 @@ void in_file(std::string_view file, Validate validate) {
 Scene parse_scene(std::string_view text, std::string_view file) {
   const JsonDocument document(text, file);
   const JsonValue root = document.root();
-  root.keys("a scene", {"scene", "name", "about", "gravity", "bodies", "constraints", "joints", "drivers", "forces"});
+  root.keys("a scene",
+            {"$schema", "scene", "name", "about", "gravity", "bodies", "constraints", "joints", "drivers", "forces"});
   const JsonValue version = root.required("scene");
   constexpr std::string_view kVersion = "1, the version of the format";
   if (version.is_string() || version.number(kVersion) != 1) version.expected(kVersion);
 
+  if (const auto schema = root.optional("$schema")) (void)schema->string();  // for editors
   Scene scene;
   if (const auto name = root.optional("name")) scene.name = name->string();
   if (const auto about = root.optional("about")) scene.about = about->string();
