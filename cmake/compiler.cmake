@@ -26,6 +26,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT POINSOT_SANITIZE)
                 large-unit-insns=100000 max-inline-insns-single=2000 max-inline-insns-auto=300)
     list(APPEND poinsot_kernel_options --param=${limit})
   endforeach()
+  # Below -O2 g++ 12 takes Eigen's evaluators for uninitialized once so much stands in one function.
+  list(APPEND poinsot_kernel_options -Wno-maybe-uninitialized)
 endif()
 if(POINSOT_SANITIZE)
   # What the address sanitizer finds as well is not checked twice: these four took two fifths of the compile time.
