@@ -132,7 +132,7 @@ int run_check(const std::string& file) {
   print_derivatives(found);
   if (found.sound()) return kDone;
   // Derivatives that are not finite are why the start fails where they are: they are named first.
-  print_error(found.wrong.empty()
+  print_error(found.wrong.empty() || found.start.status.failure == Failure::not_finite
                   ? found.start.status.message
                   : fmt::format("{}: derivatives are wrong or not finite at t = 0; try functions of time that have two "
                                 "derivatives there",

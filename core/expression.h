@@ -71,6 +71,11 @@ class Expression {
   }
 
   template <class T>  // double, long double
+  Jet2<T> along(const Arguments<Jet2<T>>& at) const {
+    return constant_ ? Jet2<T>{T(value_), T(0), T(0)} : run_tape<T>(parsed_->tape, at);
+  }
+
+  template <class T>  // double, long double
   LawValue<T> law(const Arguments<T>& at) const {
     if (constant_) return {T(value_), T(0), T(0)};
     const Jet2<T> t{at.t, T(0), T(0)}, x{at.x, T(1), T(0)}, v{at.v, T(0), T(0)};

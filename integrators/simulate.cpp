@@ -8,6 +8,7 @@
 #include "core/check.h"
 #include "core/index.h"
 #include "core/input_error.h"
+#include "core/model_faults.h"
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
@@ -55,6 +56,12 @@ void refuse_free_motion(const Problem& problem) {
   }
 }
 
+// A function without a finite value is why, whatever it looked like to the method that came upon it.
+void explain(Status& status, const Problem& problem) {
+  if (status.ok()) return;
+  if (const std::string fault = problem.fault(); !fault.empty()) status = no_value(status.time, fault);
+}
+
 }  // namespace
 
 Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe) {
@@ -81,9 +88,11 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   State state(*problem);
   outcome.status = find_first_state(start, settings, *problem, state);
   std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
+  explain(outcome.status, *problem);
   if (!outcome.status.ok()) return outcome;
   const Eigen::VectorXd q_start = state.q;
   outcome.status = integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics});
+  explain(outcome.status, *problem);
   const Failure failure = outcome.status.failure;
   if (settings.analysis == Analysis::dynamics &&
       (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {
