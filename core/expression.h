@@ -58,9 +58,9 @@ class Expression {
   // As parse, with the variables x, v and t.
   static Expression parse_law(std::string_view text, ExpressionNames* names = nullptr);
   static std::vector<std::string_view> function_names();
-  // Whether a scene may call something by it: letters, digits and _, and no name of the language. x and v are free:
-  // they are variables in laws alone.
-  static bool is_free_name(std::string_view name);
+  // What keeps a scene from calling something by it: "a function of expressions"; empty where nothing does. x and v are
+  // free: they are variables in laws alone.
+  static std::string_view why_no_name(std::string_view name);
 
   bool is_constant() const { return constant_; }
   std::string text() const;

@@ -280,11 +280,14 @@ std::vector<std::string_view> Expression::function_names() {
   return names;
 }
 
-bool Expression::is_free_name(std::string_view name) {
-  return !name.empty() && is_letter(name.front()) &&
-         std::ranges::all_of(name, [](char c) { return is_letter(c) || is_digit(c); }) && name != "t" &&
-         std::ranges::find(kConstants, name, &Constant::name) == std::end(kConstants) &&
-         std::ranges::find(kFunctions, name, &Function::name) == std::end(kFunctions);
+std::string_view Expression::why_no_name(std::string_view name) {
+  const bool begins = !name.empty() && is_letter(name.front());
+  if (!begins || !std::ranges::all_of(name, [](char c) { return is_letter(c) || is_digit(c); }))
+    return "no name that expressions can hold (letters, digits and _, a letter first)";
+  if (name == "t") return "the time in expressions";
+  if (std::ranges::find(kConstants, name, &Constant::name) != std::end(kConstants)) return "a constant of expressions";
+  if (std::ranges::find(kFunctions, name, &Function::name) != std::end(kFunctions)) return "a function of expressions";
+  return {};
 }
 
 }  // namespace poinsot

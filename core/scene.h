@@ -155,7 +155,7 @@ using Force = std::variant<PointForce, Torque, Spring, TorsionSpring, LinearDrag
 struct Parameter {
   std::string name;
   double value = 0;
-  bool set = false;  // from outside, in the place of the file's
+  bool set = false;  // from outside, in the place of the file's (core/scene_reader.h)
 };
 
 struct Scene {
@@ -169,7 +169,7 @@ struct Scene {
 
   // Of a scene that was read: what its expressions were read with, and the text that is this scene. Parameters that
   // were set stand in that text with what they were set to, tables with their points: it needs no other file.
-  std::vector<Parameter> parameters;  // in the order of the file
+  std::vector<Parameter> parameters;  // by name
   std::string source;                 // empty where it was not read
   std::vector<std::string> notices;   // what reading it came upon: names that nothing uses
 };

@@ -284,6 +284,8 @@ class Validation {
       finite(at, "s_i", d.s_i);
       finite(at, "s_j", d.s_j);
       finite(at, "length", d.value);
+      if (const double length = d.value.at(0.0).f; d.value.is_constant() && !(length > 0))
+        at.fail("length", fmt::format("found {}, expected a positive length", length));
     }
   }
 
@@ -304,22 +306,29 @@ class Validation {
     pair(at, f);
     finite(at, "s_i", f.s_i);
     finite(at, "s_j", f.s_j);
-    finite(at, "stiffness", f.stiffness);
-    finite(at, "damping", f.damping);
+    law(at, f);
     finite(at, "length", f.length);
     if (f.length < 0) at.fail("length", fmt::format("found {}, expected a number that is not negative", f.length));
   }
   void force(const Place& at, const TorsionSpring& f) const {
     pair(at, f);
     direction(at, "axis", f.axis);
-    finite(at, "stiffness", f.stiffness);
-    finite(at, "damping", f.damping);
+    law(at, f);
     finite(at, "angle", f.angle);
   }
   void force(const Place& at, const LinearDrag& f) const {
     moving(at, f.body);
     finite(at, "translational", f.translational);
     finite(at, "rotational", f.rotational);
+  }
+
+  template <class AnySpring>
+  static void law(const Place& at, const AnySpring& f) {
+    finite(at, "stiffness", f.stiffness);
+    finite(at, "damping", f.damping);
+    if (!f.law) return;
+    finite(at, "law", *f.law);
+    if (f.stiffness != 0 || f.damping != 0) at.fail("law", "found stiffness or damping beside it, expected it alone");
   }
 
   template <class Item>

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "core/check.h"
 #include "core/index.h"
 #include "core/input_error.h"
 #include "core/model_faults.h"
+#include "core/scene_doubts.h"
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
@@ -56,10 +58,16 @@ void refuse_free_motion(const Problem& problem) {
   }
 }
 
-// A function without a finite value is why, whatever it looked like to the method that came upon it.
+// A function without a finite value is why, or a number that overflows, whatever it looked like to the method that came
+// upon it.
 void explain(Status& status, const Problem& problem) {
   if (status.ok()) return;
-  if (const std::string fault = problem.fault(); !fault.empty()) status = no_value(status.time, fault);
+  if (const std::string fault = problem.fault(); !fault.empty()) {
+    status = no_value(status.time, fault);
+  } else if (const std::string why = overflowing(problem.model()); !why.empty()) {
+    status = {Failure::not_finite, status.time,
+              fmt::format("at t = {:.9g} s a number overflows: {}", status.time, why)};
+  }
 }
 
 }  // namespace
@@ -75,7 +83,9 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   Outcome outcome;
   InitialState start = find_initial_state(model, settings);
   outcome.status = start.status;
-  outcome.notices = std::move(start.notices);
+  outcome.notices = scene.notices;
+  std::ranges::move(scene_doubts(*model), std::back_inserter(outcome.notices));
+  std::ranges::move(start.notices, std::back_inserter(outcome.notices));
   for (const int group : start.rank.undetermined)
     outcome.undetermined_reactions.push_back(model->groups[index(group)].name);
   if (!outcome.status.ok()) return outcome;
