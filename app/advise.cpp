@@ -14,6 +14,7 @@
 #include "bench/study/startable_scene.h"
 #include "core/expression.h"
 #include "core/input_error.h"
+#include "core/printable.h"
 
 namespace poinsot::app {
 using namespace study;
@@ -23,6 +24,7 @@ constexpr std::size_t kListed = 6;  // further methods that reach the accuracy, 
 
 struct Options {
   std::string scene, end, of = "position", accuracy = "1e-6", cache = user_cache().string();
+  std::vector<std::string> set;
 };
 
 Asked asked(const Options& options) {
@@ -60,9 +62,11 @@ std::string shell_word(const std::string& text) {
   return quoted + "'";
 }
 
-std::string command_line(const std::string& scene, const Case& one) {
+std::string command_line(const Options& options, const Case& one) {
   const Settings& s = one.settings;
-  std::string line = fmt::format("poinsot run {} --formulation {}", shell_word(scene), s.formulation);
+  std::string line = fmt::format("poinsot run {}", shell_word(options.scene));
+  for (const std::string& set : options.set) line += fmt::format(" --set {}", shell_word(set));
+  line += fmt::format(" --formulation {}", s.formulation);
   line += s.analysis == Analysis::kinematics ? " --analysis kinematics" : fmt::format(" --integrator {}", s.integrator);
   line += fmt::format(" --linear-solver {}", s.linear_solver);
   if (one.parameter() == "rtol")
@@ -99,14 +103,14 @@ void print_advice(const Options& options, const Scene& scene, const Asked& asked
   const Candidate& best = found.reaching.empty() ? found.others.front() : found.reaching.front();
   const std::string wanted =
       fmt::format("{:g} in {} to t = {:g} s", asked.accuracy, fmt::join(of, ", "), best.one.settings.end);
-  fmt::print("{}: ", scene.name);
+  fmt::print("{}: ", printable(scene.name));
   if (found.reaching.empty())
     fmt::print("nothing reaches {}; the most accurate was {}, {}\n", wanted, best.one.method(),
                parameter_text(best.one));
   else
     fmt::print("{} costs least with {}, {}: {:.3g} ms\n", wanted, best.one.method(), parameter_text(best.one),
                1e3 * best.measured.seconds);
-  fmt::print("\n  {}\n", command_line(options.scene, best.one));
+  fmt::print("\n  {}\n", command_line(options, best.one));
 
   if (!found.reaching.empty()) print_table("errors of what reaches it, the cheapest of each method", found.reaching);
   if (!found.others.empty()) print_table("not reached, or only at many times the cost", found.others);
@@ -121,11 +125,11 @@ void print_advice(const Options& options, const Scene& scene, const Asked& asked
 
 int run_advise(const Options& options) {
   const Asked what = asked(options);
-  const Scene scene = read_startable_scene(options.scene);
+  const Scene scene = read_startable_scene(options.scene, values_set(options.set));
   require_multipliers(what, scene);
   const double end = end_time(options.end, scene);
   pin_to_one_core();
-  std::vector<std::string> notices;
+  std::vector<std::string> notices = scene.notices;
   const Advice advice = advise(scene, end, what, Cache(options.cache), notices);
   for (const std::string& notice : notices) print_notice(notice);
   if (advice.reference.given < 0) {
@@ -145,6 +149,7 @@ void add_advise(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("advise", "find the cheapest way to an accuracy on a scene, by trying");
   const auto options = std::make_shared<Options>();
   add_scene(*command, options->scene);
+  add_set(*command, options->set);
   command
       ->add_option("--accuracy", options->accuracy,
                    fmt::format("largest error, relative to the motion (default {})", options->accuracy))

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::vector<std::string> scenes;
+  std::vector<std::string> scenes, set;
   std::string out = "results", end, models, cache = user_cache().string();
   std::string formulations = all_names("formulation"), integrators = all_names("integrator"),
               linear_solvers = kUsualSolver;
@@ -63,7 +63,7 @@ int chart(const Options& options) {
   const std::vector<fs::path> files = scene_files(options);
   const SweepPlan plan = plan_of(options);
   std::vector<Scene> scenes;
-  for (const fs::path& file : files) scenes.push_back(read_startable_scene(file));
+  for (const fs::path& file : files) scenes.push_back(read_startable_scene(file, values_set(options.set)));
   if (!options.end.empty()) (void)end_time(options.end, scenes.front());  // a wrong one, before anything is written
   make_folder(options.out);
   const int core = pin_to_one_core();
@@ -75,7 +75,7 @@ int chart(const Options& options) {
   study::Progress told{0, static_cast<double>(scenes.size())};
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const double end = end_time(options.end, scenes[k]);
-    std::vector<std::string> said;
+    std::vector<std::string> said = scenes[k].notices;
     const Reference r = reference(scenes[k], {end, end / kOutputs, plan.digits}, Cache(options.cache), said);
     for (const std::string& notice : said) {
       progress.clear();
@@ -121,6 +121,7 @@ void add_chart(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("chart", "measure speed against accuracy of all methods, and draw it");
   const auto options = std::make_shared<Options>();
   command->add_option("scenes", options->scenes, "scene files")->type_name("SCENE");
+  add_set(*command, options->set);
   command->add_flag("--all", options->all, "the models that came with the program, too");
   add_models(*command, options->models);
   add_out_folder(*command, options->out, "a CSV, SVG and PNG for each scene, and of several a summary of the fronts");

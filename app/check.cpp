@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "app/terminal.h"
 #include "bench/study/scene_check.h"
+#include "core/printable.h"
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
 
@@ -36,8 +38,26 @@ std::string groups_text(const Model& model, std::span<const int> rows) {
 void print_header(const Model& model) {
   const std::size_t forces = model.point_forces.size() + model.torques.size() + model.springs.size() +
                              model.torsions.size() + model.drags.size();
-  fmt::print("{}: {} {}, {}, {}\n", model.name, model.bodies.size(), model.bodies.size() == 1 ? "body" : "bodies",
-             count(model.rows.size(), "constraint row"), count(forces, "force"));
+  fmt::print("{}: {} {}, {}, {}\n", printable(model.name), model.bodies.size(),
+             model.bodies.size() == 1 ? "body" : "bodies", count(model.rows.size(), "constraint row"),
+             count(forces, "force"));
+}
+
+void print_measures(const SceneCheck& found) {
+  const Vector3 &x = found.extent, &g = found.model->gravity;
+  fmt::print("mass: {:.6g} kg; extent: {:.4g} x {:.4g} x {:.4g} m; gravity: {}\n", found.mass, x.x(), x.y(), x.z(),
+             g.isZero(0) ? "none" : fmt::format("[{:g}, {:g}, {:g}] m/s2", g.x(), g.y(), g.z()));
+}
+
+// Of the first joints; in a scene of thousands nobody reads them all.
+void print_joints(const Model& model) {
+  constexpr int most = 20;
+  int joints = 0;
+  for (const Group& group : model.groups) {
+    if (group.kind != GroupKind::joint || ++joints > most) continue;
+    fmt::print("joint '{}' leaves free: {}\n", group.name, left_free(group));
+  }
+  if (joints > most) fmt::print("... and {} more joints\n", joints - most);
 }
 
 void print_constraints(const SceneCheck& found) {
@@ -112,9 +132,12 @@ void print_derivatives(const SceneCheck& found) {
     fmt::print("  {}: {}: {} is off by {:.3g}\n", formulation, derivative.name, derivative.what, derivative.error);
 }
 
-int run_check(const std::string& file) {
-  const SceneCheck found = check_scene(read_scene(file));
+int run_check(const std::string& file, const ParameterValues& set) {
+  const SceneCheck found = check_scene(read_scene(file, set));
+  for (const std::string& notice : found.notices) print_notice(notice);
   print_header(*found.model);
+  print_measures(found);
+  print_joints(*found.model);
   print_constraints(found);
   print_undetermined(found);
   print_doubt(found);
@@ -132,7 +155,7 @@ int run_check(const std::string& file) {
   print_derivatives(found);
   if (found.sound()) return kDone;
   // Derivatives that are not finite are why the start fails where they are: they are named first.
-  print_error(found.wrong.empty()
+  print_error(found.wrong.empty() || found.start.status.failure == Failure::not_finite
                   ? found.start.status.message
                   : fmt::format("{}: derivatives are wrong or not finite at t = 0; try functions of time that have two "
                                 "derivatives there",
@@ -146,8 +169,10 @@ void add_check(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "check", "degrees of freedom, redundant and conflicting constraints, initial state, derivatives");
   const auto file = std::make_shared<std::string>();
-  command->add_option("scene", *file, "scene file")->required()->type_name("SCENE");
-  command->callback([file, &status] { status = run_check(*file); });
+  const auto set = std::make_shared<std::vector<std::string>>();
+  add_scene(*command, *file);
+  add_set(*command, *set);
+  command->callback([file, set, &status] { status = run_check(*file, values_set(*set)); });
 }
 
 }  // namespace poinsot::app

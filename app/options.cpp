@@ -21,6 +21,25 @@ void add_scene(CLI::App& command, std::string& file) {
   command.add_option("scene", file, "scene file")->required()->type_name("SCENE");
 }
 
+void add_set(CLI::App& command, std::vector<std::string>& given) {
+  command.add_option("--set", given, "another value of a parameter of the scene; may come several times")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+}
+
+ParameterValues values_set(const std::vector<std::string>& given) {
+  ParameterValues values;
+  for (const std::string& one : given) {
+    const std::size_t equals = one.find('=');
+    if (equals == one.npos || equals == 0 || equals + 1 == one.size())
+      throw InputError(fmt::format("--set: found '{}', expected NAME=VALUE", one));
+    const std::string name = one.substr(0, equals);
+    if (!values.emplace(name, one.substr(equals + 1)).second)
+      throw InputError(fmt::format("--set: found '{}' twice, expected it once", name));
+  }
+  return values;
+}
+
 void add_end(CLI::App& command, std::string& end) {
   command.add_option("--end", end, "end time, s (default: until the quickest body has turned through some 15 rad)")
       ->type_name("X");

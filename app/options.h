@@ -6,11 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene.h"
+#include "core/scene_reader.h"
 
 namespace poinsot::app {
 
 void add_scene(CLI::App& command, std::string& file);
+// --set NAME=VALUE, for every command that takes scenes; what it gave, for read_scene(). Throws InputError.
+void add_set(CLI::App& command, std::vector<std::string>& given);
+ParameterValues values_set(const std::vector<std::string>& given);
 void add_end(CLI::App& command, std::string& end);
 // The value of --end: natural_end() of bench/study where it is not given. Throws InputError.
 double end_time(const std::string& given, const Scene& scene);

@@ -12,6 +12,7 @@
 #include "bench/study/reference.h"
 #include "bench/study/startable_scene.h"
 #include "core/input_error.h"
+#include "core/printable.h"
 #include "integrators/settings_reader.h"
 
 namespace poinsot::app {
@@ -23,6 +24,7 @@ constexpr int kRows = 100;  // of the trajectory, where --every does not say
 
 struct Options {
   std::string scene, out, end, every, cache = user_cache().string();
+  std::vector<std::string> set;
   int digits = ReferenceSettings{}.digits;
   bool quiet = false;
 };
@@ -34,7 +36,7 @@ std::string row(const std::string& name, const PerQuantity& difference) {
 }
 
 void print_agreement(const Scene& scene, const Reference& r, const ReferenceSettings& settings) {
-  fmt::print("{}: reference at {} times to t = {:g} s\n", scene.name, r.motion.t.size(), settings.end);
+  fmt::print("{}: reference at {} times to t = {:g} s\n", printable(scene.name), r.motion.t.size(), settings.end);
   fmt::print("  {:<46}", "largest difference, relative to the motion");
   for (const auto quantity : kQuantities) fmt::print("{:>14}", quantity);
   fmt::print("\n");
@@ -91,7 +93,7 @@ int run(const Options& options) {
   if (options.digits < 4 || options.digits > 12)
     throw InputError(fmt::format("--digits: found {}, expected a whole number from 4 to 12", options.digits));
   settings.digits = options.digits;
-  const Scene scene = read_startable_scene(options.scene);
+  const Scene scene = read_startable_scene(options.scene, values_set(options.set));
   settings.end = end_time(options.end, scene);
   Settings every;
   if (!options.every.empty()) set_setting(*find_setting("every"), options.every, every);
@@ -103,7 +105,7 @@ int run(const Options& options) {
   if (!options.out.empty()) trajectory.emplace(options.out, scene);
   if (!record_file.empty()) beside.emplace(record_file);
 
-  std::vector<std::string> notices;
+  std::vector<std::string> notices = scene.notices;
   const Reference r = reference(scene, settings, Cache(options.cache), notices);
   for (const Reference::Method& m : r.methods)
     if (!m.failure.empty() && r.given >= 0)
@@ -132,6 +134,7 @@ void add_reference(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("reference", "compute a motion as exactly as can be, and how exact it is");
   const auto options = std::make_shared<Options>();
   add_scene(*command, options->scene);
+  add_set(*command, options->set);
   add_end(*command, options->end);
   command->add_option("--every", options->every, fmt::format("time between output rows, s (default: end/{})", kRows))
       ->type_name("X");

@@ -13,6 +13,7 @@
 #include "app/terminal.h"
 #include "app/trajectory_writer.h"
 #include "bench/study/output_file.h"
+#include "core/printable.h"
 #include "core/scene_reader.h"
 #include "integrators/simulate.h"
 
@@ -23,6 +24,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::string scene, out, reactions;
+  std::vector<std::string> set;
   SettingsOptions settings;
   bool quiet = false;
 };
@@ -47,8 +49,8 @@ std::string description(const LinearWork& w) {
 void print_summary(const Scene& scene, const Settings& settings, const Outcome& outcome, const LastState& last) {
   const Statistics& s = outcome.statistics;
   const bool kinematics = settings.analysis == Analysis::kinematics;
-  fmt::print("{}: {}, {}{}, {}, h = {:g} s\n", scene.name, kinematics ? "kinematics" : "dynamics", settings.formulation,
-             kinematics ? "" : ", " + settings.integrator, settings.linear_solver, settings.step);
+  fmt::print("{}: {}, {}{}, {}, h = {:g} s\n", printable(scene.name), kinematics ? "kinematics" : "dynamics",
+             settings.formulation, kinematics ? "" : ", " + settings.integrator, settings.linear_solver, settings.step);
   fmt::print("t = {:g} s\n", last.t);
   std::size_t width = 4;
   for (const Body& body : scene.bodies) width = std::max(width, body.name.size());
@@ -78,7 +80,7 @@ int run(const Options& options) {
   std::vector<std::string> notices;
   Settings settings = options.settings.resolve(notices);
   settings.reactions = !options.reactions.empty();
-  Scene scene = read_scene(options.scene);
+  Scene scene = read_scene(options.scene, values_set(options.set));
   // Beside the trajectory, or beside the reactions where only they are asked for.
   const fs::path record_file = record_beside(options.out.empty() ? options.reactions : options.out);
   refuse_overwriting({{"the scene", options.scene}, {"the configuration", options.settings.config_file()}},
@@ -131,6 +133,7 @@ void add_run(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("run", "compute the motion of a scene");
   const auto options = std::make_shared<Options>();
   add_scene(*command, options->scene);
+  add_set(*command, options->set);
   options->settings.add_to(*command);
   command->add_option("--out", options->out, "trajectory, CSV; the run record is written beside it as .json")
       ->type_name("FILE.csv");

@@ -62,6 +62,14 @@ std::string to_json(const RunRecord& record) {
                         {"violation", {{"position", s.violation.position}, {"velocity", s.violation.velocity}}}};
   add_origin(json);
   json["configuration"] = Json::parse(record.configuration);
+  if (!record.scene.parameters.empty()) {
+    Json values, set = Json::array();
+    for (const Parameter& parameter : record.scene.parameters) {
+      values[parameter.name] = parameter.value;
+      if (parameter.set) set.push_back(parameter.name);
+    }
+    json["parameters"] = {{"values", values}, {"set", set}};
+  }
   json["scene_file"] = record.scene_file.string();
   json["scene"] = Json::parse(record.scene.source, nullptr, true, true);
   // A message may quote bytes of a file that are not UTF-8.

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
+
+#include "core/printable.h"
 
 namespace poinsot::app {
 namespace {
@@ -14,6 +18,17 @@ bool coloured() {
   return stderr_is_terminal() && (!no_color || !*no_color);
 }
 
+// Line by line: what comes from files and names may hold anything.
+std::string shown(std::string_view sentence) {
+  std::string text;
+  for (std::size_t begin = 0; begin <= sentence.size();) {
+    const std::size_t end = std::min(sentence.find('\n', begin), sentence.size());
+    text += (begin > 0 ? "\n" : "") + printable(sentence.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return text;
+}
+
 }  // namespace
 
 bool stderr_is_terminal() {
@@ -21,11 +36,11 @@ bool stderr_is_terminal() {
 }
 
 void print_error(std::string_view sentence) {
-  fmt::print(stderr, "{} {}\n", coloured() ? "\x1b[1;31mpoinsot:\x1b[0m" : "poinsot:", sentence);
+  fmt::print(stderr, "{} {}\n", coloured() ? "\x1b[1;31mpoinsot:\x1b[0m" : "poinsot:", shown(sentence));
 }
 
 void print_notice(std::string_view sentence) {
-  fmt::print(stderr, "{} {}\n", coloured() ? "poinsot: \x1b[1;33mnote:\x1b[0m" : "poinsot: note:", sentence);
+  fmt::print(stderr, "{} {}\n", coloured() ? "poinsot: \x1b[1;33mnote:\x1b[0m" : "poinsot: note:", shown(sentence));
 }
 
 }  // namespace poinsot::app

@@ -118,12 +118,21 @@ class Builder final : public nlohmann::json_sax<Json> {
 
 JsonDocument::JsonDocument(std::string_view text, std::string_view file)
     : file_(file), json_(std::make_unique<Json>()) {
+  if (text.find_first_not_of(" \t\r\n") == text.npos) throw InputError(fmt::format("{}: the file is empty", file));
   Builder builder(text, file_, *json_);
   constexpr bool kWholeText = true, kComments = true;
   Json::sax_parse(text.begin(), text.end(), &builder, Json::input_format_t::json, kWholeText, kComments);
 }
 
 JsonDocument::~JsonDocument() = default;
+
+void JsonDocument::replace(const std::string& pointer, Json value) {
+  (*json_)[Json::json_pointer(pointer)] = std::move(value);
+}
+
+std::string JsonDocument::text() const {
+  return json_->dump();
+}
 
 std::string read_text(const std::string& file) {
   std::error_code error;

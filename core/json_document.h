@@ -17,7 +17,11 @@ class JsonDocument {
   JsonDocument(std::string_view text, std::string_view file);
   ~JsonDocument();
 
-  JsonValue root() const { return JsonValue(*json_, file_); }
+  JsonValue root(ExpressionNames* names = nullptr) const { return JsonValue(*json_, file_, names); }
+
+  // Puts `value` in the place of what the pointer leads to, in an object that is there.
+  void replace(const std::string& pointer, nlohmann::json value);
+  std::string text() const;  // of the document as it is now, without comments
 
  private:
   std::string file_;

@@ -7,6 +7,7 @@
 
 #include "core/expression.h"
 #include "core/input_error.h"
+#include "core/printable.h"
 
 namespace poinsot {
 
@@ -21,12 +22,12 @@ std::string describe(const nlohmann::json& value) {
     while ((static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not inside a UTF-8 sequence
     text = text.substr(0, end) + "...";
   }
-  return text;
+  return printable(text);
 }
 
 std::string pointer_token(std::string_view key) {
   std::string token;
-  for (const char c : key) {
+  for (const char c : printable(key)) {
     if (c == '~') {
       token += "~0";
     } else if (c == '/') {
@@ -84,6 +85,13 @@ JsonValue JsonValue::at(std::size_t index) const& {
   return JsonValue((*value_)[index], *this, {}, index);
 }
 
+std::vector<std::string> JsonValue::names(std::string_view allowed) const {
+  if (!value_->is_object()) expected(allowed);
+  std::vector<std::string> names;
+  for (const auto& [key, value] : value_->items()) names.push_back(key);
+  return names;
+}
+
 bool JsonValue::is_array() const {
   return value_->is_array();
 }
@@ -106,7 +114,7 @@ double JsonValue::number(std::string_view allowed) const {
   if (value_->is_number()) return value_->get<double>();  // finite: the parser refuses numbers out of range
   if (!value_->is_string()) expected(allowed);
   try {
-    return Expression::parse_constant(value_->get_ref<const std::string&>()).at(0.0).f;
+    return Expression::parse_constant(value_->get_ref<const std::string&>(), names_).at(0.0).f;
   } catch (const ExpressionError& error) {
     fail(fmt::format("found {} ({}), expected {}", describe(*value_), error.what(), allowed));
   }

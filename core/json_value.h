@@ -13,12 +13,17 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace poinsot {
 
+class ExpressionNames;
+
 class JsonValue {
  public:
-  JsonValue(const nlohmann::json& value, std::string_view file) : value_(&value), file_(file) {}
+  // `names`: what the expressions in it may call by name, beside the names of the language.
+  JsonValue(const nlohmann::json& value, std::string_view file, ExpressionNames* names = nullptr)
+      : value_(&value), file_(file), names_(names) {}
 
   std::string path() const;  // a JSON pointer; "/" for the document itself
   [[noreturn]] void fail(std::string_view message) const;
@@ -35,6 +40,8 @@ class JsonValue {
   JsonValue required(std::string_view key) const&& = delete;
   std::optional<JsonValue> optional(std::string_view key) const&& = delete;
 
+  std::vector<std::string> names(std::string_view allowed) const;  // the keys of an object, sorted
+
   // Arrays. `allowed` is what errors say is allowed: "an array of bodies".
   std::size_t size(std::string_view allowed) const;
   JsonValue at(std::size_t index) const&;
@@ -46,22 +53,24 @@ class JsonValue {
   bool boolean(std::string_view allowed = "true or false") const;
   // A number, or a string holding a constant expression; always finite.
   double number(std::string_view allowed = "a number") const;
+  ExpressionNames* expression_names() const { return names_; }
 
  private:
   JsonValue(const nlohmann::json& value, const JsonValue& parent, std::string_view key, std::size_t index)
-      : value_(&value), parent_(&parent), key_(key), index_(index), file_(parent.file_) {}
+      : value_(&value), parent_(&parent), key_(key), index_(index), file_(parent.file_), names_(parent.names_) {}
 
   const nlohmann::json* value_;
   const JsonValue* parent_ = nullptr;
   std::string_view key_;   // in an object
   std::size_t index_ = 0;  // in an array
   std::string_view file_;
+  ExpressionNames* names_;
 };
 
 // What was found, in a few words, for messages: short values as they stand, the others by kind.
 std::string describe(const nlohmann::json& value);
 
-// The token of a JSON pointer (RFC 6901) for a key.
+// The token of a JSON pointer (RFC 6901) for a key, as messages show it.
 std::string pointer_token(std::string_view key);
 
 }  // namespace poinsot

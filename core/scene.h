@@ -33,6 +33,19 @@ using Matrix3 = Eigen::Matrix3d;
 
 inline constexpr int kGround = -1;
 
+enum class ShapeType { box, cylinder, capsule, sphere, polyline };
+
+// What a picture of the body shows, in its frame; no mass follows from it, and no motion.
+struct Shape {
+  ShapeType type = ShapeType::box;
+  Vector3 at = Vector3::Zero();     // m, the centre
+  Vector3 size = Vector3::Zero();   // m, edges along the body's axes: box
+  double radius = 0;                // m: cylinder, capsule, sphere
+  double length = 0;                // m: cylinder; capsule, without its caps
+  Vector3 axis = Vector3::UnitZ();  // of any length: cylinder, capsule
+  std::vector<Vector3> points;      // m: polyline
+};
+
 struct Body {
   std::string name;
   double mass = 0;                             // kg
@@ -41,6 +54,7 @@ struct Body {
   Matrix3 orientation = Matrix3::Identity();   // A; compile() takes the rotation nearest to what is given
   Vector3 velocity = Vector3::Zero();          // m/s, global
   Vector3 angular_velocity = Vector3::Zero();  // rad/s, body frame
+  std::optional<Shape> shape;
 };
 
 // DP1: a_i·a_j = f   DP2: a_i·d = f   D: d·d = f   CD: c·d = f, with d = r_j + A_j s_j − r_i − A_i s_i
@@ -104,18 +118,19 @@ struct Torque {
   Frame frame = Frame::body;
 };
 
-// Pulls the points together with stiffness (|d| − length) + damping d|d|/dt.
+// Pulls the points together with stiffness x + damping v, or law(x, v, t), where x = |d| − length and v = d|d|/dt.
 struct Spring {
   std::string name;
   int i = kGround, j = kGround;
   Vector3 s_i = Vector3::Zero(), s_j = Vector3::Zero();
-  double stiffness = 0;  // N/m
-  double damping = 0;    // N s/m
-  double length = 0;     // m, unloaded
+  double stiffness = 0;           // N/m
+  double damping = 0;             // N s/m
+  double length = 0;              // m, unloaded
+  std::optional<Expression> law;  // N; stands in the place of stiffness and damping, which are then 0
 };
 
-// Turns body j back with stiffness (angle − rest angle) + damping · rate; the angle of j relative to i about an axis
-// fixed in i, from the initial pose, counted on over full turns.
+// Turns body j back with stiffness x + damping v, or law(x, v, t), where x = θ − angle, v = θ̇ and θ is the angle of j
+// relative to i about an axis fixed in i, from the initial pose, counted on over full turns.
 struct TorsionSpring {
   std::string name;
   int i = kGround, j = kGround;
@@ -123,6 +138,7 @@ struct TorsionSpring {
   double stiffness = 0;            // N m/rad
   double damping = 0;              // N m s/rad
   double angle = 0;                // rad, unloaded
+  std::optional<Expression> law;   // N m; as a spring's
 };
 
 // Force −translational · ṙ at the centre of mass and torque −rotational · ω.
@@ -135,6 +151,13 @@ struct LinearDrag {
 
 using Force = std::variant<PointForce, Torque, Spring, TorsionSpring, LinearDrag>;
 
+// A number that the expressions of a scene file call by name.
+struct Parameter {
+  std::string name;
+  double value = 0;
+  bool set = false;  // from outside, in the place of the file's (core/scene_reader.h)
+};
+
 struct Scene {
   std::string name, about;
   Vector3 gravity = Vector3::Zero();  // m/s², global
@@ -144,7 +167,11 @@ struct Scene {
   std::vector<Driver> drivers;
   std::vector<Force> forces;
 
-  std::string source;  // the text it was read from, for the run record; empty where it was not
+  // Of a scene that was read: what its expressions were read with, and the text that is this scene. Parameters that
+  // were set stand in that text with what they were set to, tables with their points: it needs no other file.
+  std::vector<Parameter> parameters;  // by name
+  std::string source;                 // empty where it was not read
+  std::vector<std::string> notices;   // what reading it came upon: names that nothing uses
 };
 
 }  // namespace poinsot

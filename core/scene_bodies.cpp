@@ -1,11 +1,60 @@
-// One body of a scene file.
+// One body of a scene file, and its shape. For each type of shape: the keys it has, then what they hold.
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "core/scene_parts.h"
+#include "core/scene_types.h"
 #include "core/scene_values.h"
 
 namespace poinsot {
+namespace {
+
+double read_positive(const JsonValue& value) {
+  return value.number("a positive number");
+}
+
+Shape read_shape(const JsonValue& item) {
+  const JsonValue type = item.required("type");
+  const auto* entry = std::ranges::find(kShapeTypes, type.string(one_of(kShapeTypes)), &TypeName<ShapeType>::name);
+  if (entry == std::end(kShapeTypes)) type.expected(one_of(kShapeTypes));
+  Shape shape;
+  shape.type = entry->type;
+  switch (shape.type) {
+    case ShapeType::box:
+      item.keys("a box", {"type", "at", "size"});
+      shape.size = read_vector(item.required("size"));
+      break;
+    case ShapeType::cylinder:
+    case ShapeType::capsule:
+      item.keys(fmt::format("a {}", entry->name), {"type", "at", "radius", "length", "axis"});
+      shape.radius = read_positive(item.required("radius"));
+      shape.length = read_positive(item.required("length"));
+      shape.axis = optional_or(item, "axis", read_vector, shape.axis);
+      break;
+    case ShapeType::sphere:
+      item.keys("a sphere", {"type", "at", "radius"});
+      shape.radius = read_positive(item.required("radius"));
+      break;
+    case ShapeType::polyline: {
+      item.keys("a polyline", {"type", "points"});
+      const JsonValue points = item.required("points");
+      const std::size_t size = points.size("an array of at least 2 points");
+      for (std::size_t k = 0; k < size; ++k) {
+        const JsonValue point = points.at(k);
+        shape.points.push_back(read_vector(point));
+      }
+      break;
+    }
+  }
+  shape.at = optional_or(item, "at", read_vector, shape.at);
+  return shape;
+}
+
+}  // namespace
 
 Body read_body(const JsonValue& item) {
-  item.keys("a body", {"name", "mass", "inertia", "position", "orientation", "velocity", "angular_velocity"});
+  item.keys("a body", {"name", "mass", "inertia", "position", "orientation", "velocity", "angular_velocity", "shape"});
   Body body;
   body.name = read_name(item.required("name"));
   body.mass = item.required("mass").number("a positive number");
@@ -14,6 +63,7 @@ Body read_body(const JsonValue& item) {
   body.orientation = optional_or(item, "orientation", read_orientation, body.orientation);
   body.velocity = optional_or(item, "velocity", read_vector, body.velocity);
   body.angular_velocity = optional_or(item, "angular_velocity", read_vector, body.angular_velocity);
+  if (const auto shape = item.optional("shape")) body.shape = read_shape(*shape);
   return body;
 }
 

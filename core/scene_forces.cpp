@@ -49,25 +49,37 @@ Torque read_torque(const JsonValue& item, const BodyNames& bodies) {
   return torque;
 }
 
+// A law, or stiffness and damping.
+template <class Spring>
+void read_law(const JsonValue& item, Spring& spring) {
+  if (const std::optional<JsonValue> law = item.optional("law")) {
+    for (const std::string_view other : {"stiffness", "damping"})
+      if (const auto beside = item.optional(other)) beside->fail("found one beside a law, expected one or the other");
+    spring.law = read_law(*law);
+  } else {
+    if (!item.optional("stiffness")) item.fail("found neither stiffness nor law, expected one of them");
+    spring.stiffness = item.required("stiffness").number();
+    spring.damping = optional_or(item, "damping", read_number, 0.0);
+  }
+}
+
 Spring read_spring(const JsonValue& item, const BodyNames& bodies) {
-  item.keys("a spring", {"type", "name", "bodies", "s_i", "s_j", "stiffness", "damping", "length"});
+  item.keys("a spring", {"type", "name", "bodies", "s_i", "s_j", "stiffness", "damping", "length", "law"});
   Spring spring;
   std::tie(spring.i, spring.j) = bodies.read_pair(item.required("bodies"));
   spring.s_i = read_vector(item.required("s_i"));
   spring.s_j = read_vector(item.required("s_j"));
-  spring.stiffness = item.required("stiffness").number();
-  spring.damping = optional_or(item, "damping", read_number, 0.0);
+  read_law(item, spring);
   spring.length = item.required("length").number("a number that is not negative");
   return spring;
 }
 
 TorsionSpring read_torsion_spring(const JsonValue& item, const BodyNames& bodies) {
-  item.keys("a torsion spring", {"type", "name", "bodies", "axis", "stiffness", "damping", "angle"});
+  item.keys("a torsion spring", {"type", "name", "bodies", "axis", "stiffness", "damping", "angle", "law"});
   TorsionSpring spring;
   std::tie(spring.i, spring.j) = bodies.read_pair(item.required("bodies"));
   spring.axis = read_vector(item.required("axis"));
-  spring.stiffness = item.required("stiffness").number();
-  spring.damping = optional_or(item, "damping", read_number, 0.0);
+  read_law(item, spring);
   spring.angle = optional_or(item, "angle", read_number, 0.0);
   return spring;
 }

@@ -1,12 +1,20 @@
 #include "core/scene_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/definitions.h"
 #include "core/input_error.h"
 #include "core/json_document.h"
+#include "core/printable.h"
 #include "core/scene_parts.h"
 #include "core/scene_validation.h"
 #include "core/scene_values.h"
+#include "core/table_file.h"
 
 namespace poinsot {
 namespace {
@@ -32,16 +40,73 @@ void in_file(std::string_view file, Validate validate) {
   }
 }
 
+// Values from outside take the place of the file's.
+bool set_parameters(JsonDocument& document, const ParameterValues& values) {
+  const JsonValue root = document.root();
+  const std::optional<JsonValue> section = root.optional("parameters");
+  const std::vector<std::string> known =
+      section ? section->names("an object of parameters by name") : std::vector<std::string>();
+  for (const auto& [name, value] : values) {
+    if (std::ranges::find(known, name) == known.end()) {
+      root.fail(fmt::format("there is no parameter '{}' to set; the scene has {}", printable(name),
+                            known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
+    }
+    document.replace("/parameters/" + name, value);  // the names of parameters need no escapes
+  }
+  return !values.empty();
+}
+
+// Tables that name a file come to hold its points.
+bool load_tables(JsonDocument& document, const std::filesystem::path& folder) {
+  const JsonValue root = document.root();
+  const std::optional<JsonValue> section = root.optional("tables");
+  if (!section) return false;
+  bool any = false;
+  for (const std::string& name : section->names("an object of tables by name")) {
+    const JsonValue item = section->required(name);
+    const std::optional<JsonValue> file = item.optional("file");
+    if (!file) continue;
+    item.keys("a table of a file", {"file", "columns"});
+    std::size_t columns[2] = {0, 1};
+    if (const auto chosen = item.optional("columns")) {
+      constexpr std::string_view kAllowed = "2 columns, counted from 0, that of x and that of y";
+      if (chosen->size(kAllowed) != 2) chosen->expected(kAllowed);
+      for (std::size_t k = 0; k < 2; ++k) {
+        constexpr double kMost = 1e6;
+        const JsonValue column = chosen->at(k);
+        const double number = column.number(kAllowed);
+        if (!(number >= 0 && number <= kMost && number == std::floor(number))) column.expected(kAllowed);
+        columns[k] = static_cast<std::size_t>(number);
+      }
+    }
+    nlohmann::json points = nlohmann::json::array();
+    try {
+      for (const auto& [x, y] : read_columns(folder / file->string("the name of a file"), columns[0], columns[1]))
+        points.push_back({x, y});
+    } catch (const InputError& error) {
+      file->fail(error.what());
+    }
+    document.replace("/tables/" + pointer_token(name), {{"points", points}});
+    any = true;
+  }
+  return any;
+}
+
 }  // namespace
 
-Scene parse_scene(std::string_view text, std::string_view file) {
-  const JsonDocument document(text, file);
-  const JsonValue root = document.root();
-  root.keys("a scene", {"scene", "name", "about", "gravity", "bodies", "constraints", "joints", "drivers", "forces"});
+Scene parse_scene(std::string_view text, std::string_view file, const ParameterValues& set) {
+  JsonDocument document(text, file);
+  document.root().keys("a scene", {"$schema", "scene", "name", "about", "parameters", "tables", "gravity", "bodies",
+                                   "constraints", "joints", "drivers", "forces"});
+  const bool with_values = set_parameters(document, set);
+  const bool with_files = load_tables(document, std::filesystem::path(file).parent_path());
+  Definitions definitions(document);
+  const JsonValue root = document.root(&definitions);
   const JsonValue version = root.required("scene");
   constexpr std::string_view kVersion = "1, the version of the format";
   if (version.is_string() || version.number(kVersion) != 1) version.expected(kVersion);
 
+  if (const auto schema = root.optional("$schema")) (void)schema->string();  // for editors
   Scene scene;
   if (const auto name = root.optional("name")) scene.name = name->string();
   if (const auto about = root.optional("about")) scene.about = about->string();
@@ -62,12 +127,27 @@ Scene parse_scene(std::string_view text, std::string_view file) {
            [&](const JsonValue& item) { scene.forces.push_back(read_force(item, bodies)); });
   in_file(file, [&] { validate(scene); });
 
-  scene.source = text;
+  for (const auto& [name, value] : definitions.values()) scene.parameters.push_back({name, value, set.contains(name)});
+  scene.notices = definitions.unused();
+  if (!root.optional("gravity") && !scene.joints.empty())
+    scene.notices.push_back(
+        "the scene has joints and says nothing of gravity, so there is none; \"gravity\": "
+        "[0, 0, -9.81] is the earth's, [0, 0, 0] says that none is meant");
+  scene.source = with_values || with_files ? document.text() : std::string(text);
   return scene;
 }
 
-Scene read_scene(const std::filesystem::path& file) {
-  return parse_scene(read_text(file.string()), file.string());
+Scene read_scene(const std::filesystem::path& file, const ParameterValues& set) {
+  return parse_scene(read_text(file.string()), file.string(), set);
+}
+
+Scene with_parameters(const Scene& scene, const std::map<std::string, double>& values) {
+  if (scene.source.empty()) throw InputError("with_parameters: found a scene that was not read, expected one that was");
+  ParameterValues texts;
+  for (const auto& [name, value] : values) texts.emplace(name, fmt::format("{}", value));
+  Scene varied = parse_scene(scene.source, printable(scene.name), texts);
+  for (std::size_t k = 0; k < varied.parameters.size(); ++k) varied.parameters[k].set |= scene.parameters[k].set;
+  return varied;
 }
 
 }  // namespace poinsot

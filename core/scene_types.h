@@ -1,4 +1,5 @@
-// How scenes write the types of constraints, joints, drivers and forces, and the frames that loads are given in.
+// How scenes write the types of constraints, joints, drivers, forces and shapes, and the frames that loads are given
+// in.
 #pragma once
 
 #include <cstddef>
@@ -26,6 +27,11 @@ inline constexpr TypeName<JointType> kJointTypes[] = {
     {"translational", JointType::translational}, {"fixed", JointType::fixed}};
 inline constexpr TypeName<DriverType> kDriverTypes[] = {{"angle", DriverType::angle},
                                                         {"distance", DriverType::distance}};
+inline constexpr TypeName<ShapeType> kShapeTypes[] = {{"box", ShapeType::box},
+                                                      {"cylinder", ShapeType::cylinder},
+                                                      {"capsule", ShapeType::capsule},
+                                                      {"sphere", ShapeType::sphere},
+                                                      {"polyline", ShapeType::polyline}};
 inline constexpr TypeName<Frame> kFrames[] = {{"global", Frame::global}, {"body", Frame::body}};
 // The type of a force is its place in the variant.
 inline constexpr TypeName<std::size_t> kForceTypes[] = {
@@ -40,6 +46,9 @@ constexpr const auto& type_names(JointType) {
 }
 constexpr const auto& type_names(DriverType) {
   return kDriverTypes;
+}
+constexpr const auto& type_names(ShapeType) {
+  return kShapeTypes;
 }
 constexpr const auto& type_names(Frame) {
   return kFrames;

@@ -120,6 +120,35 @@ void orientation(const Place& at, const Matrix3& A) {
   }
 }
 
+void positive(const Place& at, std::string_view key, double x) {
+  finite(at, key, x);
+  if (!(x > 0)) at.fail(key, fmt::format("found {}, expected a positive number", x));
+}
+
+void shape(const Place& at, const Shape& s) {
+  known(at, "shape/type", s.type);
+  finite(at, "shape/at", s.at);
+  switch (s.type) {
+    case ShapeType::box:
+      for (Eigen::Index k = 0; k < 3; ++k) positive(at, fmt::format("shape/size/{}", k), s.size[k]);
+      break;
+    case ShapeType::cylinder:
+    case ShapeType::capsule:
+      positive(at, "shape/length", s.length);
+      direction(at, "shape/axis", s.axis);
+      [[fallthrough]];
+    case ShapeType::sphere:
+      positive(at, "shape/radius", s.radius);
+      break;
+    case ShapeType::polyline:
+      if (s.points.size() < 2)
+        at.fail("shape/points", fmt::format("found {}, expected an array of at least 2 points",
+                                            s.points.empty() ? "an array of 0 values" : "an array of 1 value"));
+      for (std::size_t k = 0; k < s.points.size(); ++k) finite(at, fmt::format("shape/points/{}", k), s.points[k]);
+      break;
+  }
+}
+
 [[noreturn]] void already(const Place& at, std::string_view key, std::string_view name, std::string_view why,
                           const Place& first) {
   at.fail(key,
@@ -255,6 +284,8 @@ class Validation {
       finite(at, "s_i", d.s_i);
       finite(at, "s_j", d.s_j);
       finite(at, "length", d.value);
+      if (const double length = d.value.at(0.0).f; d.value.is_constant() && !(length > 0))
+        at.fail("length", fmt::format("found {}, expected a positive length", length));
     }
   }
 
@@ -275,22 +306,29 @@ class Validation {
     pair(at, f);
     finite(at, "s_i", f.s_i);
     finite(at, "s_j", f.s_j);
-    finite(at, "stiffness", f.stiffness);
-    finite(at, "damping", f.damping);
+    law(at, f);
     finite(at, "length", f.length);
     if (f.length < 0) at.fail("length", fmt::format("found {}, expected a number that is not negative", f.length));
   }
   void force(const Place& at, const TorsionSpring& f) const {
     pair(at, f);
     direction(at, "axis", f.axis);
-    finite(at, "stiffness", f.stiffness);
-    finite(at, "damping", f.damping);
+    law(at, f);
     finite(at, "angle", f.angle);
   }
   void force(const Place& at, const LinearDrag& f) const {
     moving(at, f.body);
     finite(at, "translational", f.translational);
     finite(at, "rotational", f.rotational);
+  }
+
+  template <class AnySpring>
+  static void law(const Place& at, const AnySpring& f) {
+    finite(at, "stiffness", f.stiffness);
+    finite(at, "damping", f.damping);
+    if (!f.law) return;
+    finite(at, "law", *f.law);
+    if (f.stiffness != 0 || f.damping != 0) at.fail("law", "found stiffness or damping beside it, expected it alone");
   }
 
   template <class Item>
@@ -334,13 +372,13 @@ void validate_bodies(const std::vector<Body>& bodies) {
     if (const auto [entry, is_new] = taken.emplace(b.name, k); !is_new) {
       already(at, "name", b.name, "", Place{"bodies", entry->second});
     }
-    finite(at, "mass", b.mass);
-    if (!(b.mass > 0)) at.fail("mass", fmt::format("found {}, expected a positive number", b.mass));
+    positive(at, "mass", b.mass);
     inertia(at, b.inertia);
     finite(at, "position", b.position);
     orientation(at, b.orientation);
     finite(at, "velocity", b.velocity);
     finite(at, "angular_velocity", b.angular_velocity);
+    if (b.shape) shape(at, *b.shape);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/nearest_rotation.h"
+#include "core/printable.h"
 
 namespace poinsot {
 namespace {
@@ -37,6 +38,16 @@ Matrix3 read_euler_parameters(const JsonValue& value) {
   return Eigen::Quaterniond(p[0], p[1], p[2], p[3]).toRotationMatrix();
 }
 
+Expression read_expression(const JsonValue& value, Expression (*parse)(std::string_view, ExpressionNames*),
+                           std::string_view allowed) {
+  if (!value.is_string()) return Expression(value.number(allowed));
+  try {
+    return parse(value.string(), value.expression_names());
+  } catch (const ExpressionError& error) {
+    value.fail(fmt::format("found \"{}\" ({}), expected {}", printable(value.string()), error.what(), allowed));
+  }
+}
+
 Matrix3 turn(double angle, const Vector3& axis) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
 }
@@ -62,13 +73,11 @@ Vector3 read_vector(const JsonValue& value) {
 }
 
 Expression read_function(const JsonValue& value) {
-  constexpr std::string_view kAllowed = "a number or a string holding an expression in t";
-  if (!value.is_string()) return Expression(value.number(kAllowed));
-  try {
-    return Expression::parse(value.string());
-  } catch (const ExpressionError& error) {
-    value.fail(fmt::format("found \"{}\" ({}), expected {}", value.string(), error.what(), kAllowed));
-  }
+  return read_expression(value, Expression::parse, "a number or a string holding an expression in t");
+}
+
+Expression read_law(const JsonValue& value) {
+  return read_expression(value, Expression::parse_law, "a number or a string holding an expression in x, v and t");
 }
 
 Matrix3 read_inertia(const JsonValue& value) {

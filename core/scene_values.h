@@ -1,4 +1,4 @@
-// The values that scenes are made of, read: names, vectors, functions of time, inertias, orientations.
+// The values that scenes are made of, read: names, vectors, functions of time, laws, inertias, orientations.
 #pragma once
 
 #include <string>
@@ -12,6 +12,7 @@ namespace poinsot {
 std::string read_name(const JsonValue& value);  // not empty
 Vector3 read_vector(const JsonValue& value);
 Expression read_function(const JsonValue& value);
+Expression read_law(const JsonValue& value);  // of a spring
 
 // Three principal moments, or a 3 × 3 matrix. kg m².
 Matrix3 read_inertia(const JsonValue& value);

@@ -16,6 +16,29 @@ std::string vector(const Vector3& v) {
   return fmt::format("[{}, {}, {}]", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
 }
 
+std::string shape(const Shape& s) {
+  std::string text = fmt::format("{{\"type\": \"{}\"", type_name(s.type));
+  if (!s.at.isZero(0)) text += fmt::format(", \"at\": {}", vector(s.at));
+  switch (s.type) {
+    case ShapeType::box:
+      text += fmt::format(", \"size\": {}", vector(s.size));
+      break;
+    case ShapeType::cylinder:
+    case ShapeType::capsule:
+      text += fmt::format(", \"length\": {}, \"axis\": {}", s.length, vector(s.axis));
+      [[fallthrough]];
+    case ShapeType::sphere:
+      text += fmt::format(", \"radius\": {}", s.radius);
+      break;
+    case ShapeType::polyline:
+      for (const Vector3& point : s.points)
+        text += (&point == s.points.data() ? ", \"points\": [" : ", ") + vector(point);
+      text += "]";
+      break;
+  }
+  return text + "}";
+}
+
 std::string body(const Body& b) {
   check(b.inertia.isDiagonal(0), "generated bodies have principal axes");
   std::string text = fmt::format(
@@ -25,6 +48,7 @@ std::string body(const Body& b) {
   text += "]}";
   if (!b.velocity.isZero(0)) text += fmt::format(", \"velocity\": {}", vector(b.velocity));
   if (!b.angular_velocity.isZero(0)) text += fmt::format(", \"angular_velocity\": {}", vector(b.angular_velocity));
+  if (b.shape) text += fmt::format(", \"shape\": {}", shape(*b.shape));
   return text + "}";
 }
 

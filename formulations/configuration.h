@@ -186,6 +186,8 @@ class Configuration {
   static Jet2<T> evaluate(const RightSide& side, const T& t) {
     const Jet2<double> jet = side.f.at(plain(t));
     if (!side.squared) return lift(jet, t);
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    if (!(jet.f > 0)) return lift(Jet2<double>{nan, nan, nan}, t);  // no length; its square would hide it
     return lift(Jet2<double>{jet.f * jet.f, 2 * jet.f * jet.fd, 2 * (jet.fd * jet.fd + jet.f * jet.fdd)}, t);
   }
 

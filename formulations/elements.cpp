@@ -10,6 +10,13 @@
 namespace poinsot {
 namespace {
 
+// Of a spring or torsion spring of the model, which stays.
+template <class Spring>
+SpringLaw law_of(const Spring& s) {
+  if (s.law) return {0, 0, s.law->depends_on_rate(), &*s.law};
+  return {s.stiffness, s.damping, s.damping != 0, nullptr};
+}
+
 // Body and exact components: equal vectors are one attached vector.
 struct MarkerKey {
   int body;
@@ -193,12 +200,12 @@ Elements::Elements(std::shared_ptr<const Model> of, std::span<const int> dropped
   build.number_blocks();
   for (const Body& b : model->bodies) inertia.push_back({b.mass, b.inertia});
   for (const Spring& s : model->springs) {
-    springs.push_back({s.i, s.j, build.marker(s.i, s.s_i), build.marker(s.j, s.s_j), s.stiffness, s.damping, s.length});
+    springs.push_back({law_of(s), s.i, s.j, build.marker(s.i, s.s_i), build.marker(s.j, s.s_j), s.length});
   }
   for (const TorsionElement& t : model->torsions) {
     const TorsionSpring& s = t.spring;
-    torsions.push_back({s.i, s.j, build.marker(s.i, t.a_i), build.marker(s.i, t.b_i), build.marker(s.j, t.c_j),
-                        s.stiffness, s.damping, s.angle});
+    torsions.push_back(
+        {law_of(s), s.i, s.j, build.marker(s.i, t.a_i), build.marker(s.i, t.b_i), build.marker(s.j, t.c_j), s.angle});
   }
   for (const PointForce& f : model->point_forces) {
     point_forces.push_back({f.body, build.marker(f.body, f.point), {f.force[0], f.force[1], f.force[2]}, f.frame});

@@ -72,13 +72,19 @@ struct AlternateRow {
   DP1Row normal, alternate;
 };
 
-struct SpringElement {
-  int i, j, p, q;
-  double stiffness, damping, length;
+// Tension or torque of a spring: stiffness x + damping v, or law(x, v, t) (formulations/spring_law.h).
+struct SpringLaw {
+  double stiffness, damping;
+  bool damped;            // it depends on v
+  const Expression* law;  // of the model; null of a linear spring
 };
-struct TorsionSpringElement {
+struct SpringElement : SpringLaw {
+  int i, j, p, q;
+  double length;
+};
+struct TorsionSpringElement : SpringLaw {
   int i, j, a, b, c;
-  double stiffness, damping, angle;
+  double angle;
 };
 struct PointForceElement {
   int body, p;

@@ -11,6 +11,7 @@
 #include "core/index.h"
 #include "formulations/configuration.h"
 #include "formulations/problem.h"
+#include "formulations/spring_law.h"
 #include "formulations/torsion.h"
 
 namespace poinsot {
@@ -82,8 +83,8 @@ class Forces {
           if (body[b] == kGround) continue;
           Block K = arm[a].transpose() * s.stiffness * arm[b];
           Block D = Block::Zero();
-          if (k.damping != 0) {  // tension's part c n·ḋ varies with ḋ, and ḋ with the orientation and the velocity
-            const Eigen::Matrix<T, 1, 3> along = T(k.damping) * s.direction.transpose();
+          if (k.damped) {  // tension's part ∂F/∂v n·ḋ varies with ḋ, and ḋ with the orientation and the velocity
+            const Eigen::Matrix<T, 1, 3> along = s.damping * s.direction.transpose();
             Eigen::Matrix<T, n, 1> left = arm[a].transpose() * s.direction;
             D = left * (along * arm[b]);
             K.template rightCols<F::m>() +=
@@ -134,18 +135,18 @@ class Forces {
     }
   }
 
-  // Springs' and torsion springs' stored energy.
+  // Springs' and torsion springs' stored energy, of laws that at v = 0.
   static T energy(const C& c) {
     const Elements& e = *c.elements;
     T sum = T(0);
     for (const SpringElement& k : e.springs) {
       using std::sqrt;
       const T stretch = sqrt(c.span(k.i, k.j, k.p, k.q).squaredNorm()) - T(k.length);
-      sum += T(0.5 * k.stiffness) * stretch * stretch;
+      sum += potential(k, stretch, c.time);
     }
     for (std::size_t k = 0; k < e.torsions.size(); ++k) {
       const T twist = Torsion<F, T>::angle(c, e.torsions[k], c.twist[k]) - T(e.torsions[k].angle);
-      sum += T(0.5 * e.torsions[k].stiffness) * twist * twist;
+      sum += potential(e.torsions[k], twist, c.time);
     }
     return sum;
   }
@@ -162,10 +163,10 @@ class Forces {
     return frame == Frame::global ? w : Vec3<T>(c.at[index(body)].A * w);
   }
 
-  // Tension of a spring, f = stiffness (l − length) + damping l̇, and ∂(f n)/∂d.
+  // Tension F of a spring, ∂(F n)/∂d and ∂F/∂v.
   struct Stretch {
     Vec3<T> direction = Vec3<T>::Zero();
-    T force = T(0);
+    T force = T(0), damping = T(0);
     Mat3<T> stiffness;
 
     Stretch(const C& c, const SpringElement& k) {
@@ -173,19 +174,22 @@ class Forces {
       const Vec3<T> d = c.span(k.i, k.j, k.p, k.q);
       const T l = sqrt(d.squaredNorm());
       if (plain(l) == 0) {  // the direction of a spring of no length is undefined: it pulls in none
-        stiffness = T(k.stiffness) * Mat3<T>::Identity();
+        stiffness = spring_force(k, T(-k.length), T(0), c.time).F_x * Mat3<T>::Identity();
         return;
       }
       direction = d / l;
-      force = T(k.stiffness) * (l - T(k.length));
       const Mat3<T> along = direction * direction.transpose();
-      stiffness = T(k.stiffness) * along;
-      if (k.damping != 0) {
-        const Vec3<T> d_dot = c.span_rate(k.i, k.j, k.p, k.q);
-        const T l_dot = direction.dot(d_dot);
-        force += T(k.damping) * l_dot;
-        stiffness += T(k.damping) / l * direction * (d_dot - l_dot * direction).transpose();
+      Vec3<T> d_dot = Vec3<T>::Zero();
+      T l_dot = T(0);
+      if (k.damped) {
+        d_dot = c.span_rate(k.i, k.j, k.p, k.q);
+        l_dot = direction.dot(d_dot);
       }
+      const LawValue<T> tension = spring_force(k, l - T(k.length), l_dot, c.time);
+      force = tension.F;
+      damping = tension.F_v;
+      stiffness = tension.F_x * along;
+      if (k.damped) stiffness += damping / l * direction * (d_dot - l_dot * direction).transpose();
       stiffness += force / l * (Mat3<T>::Identity() - along);
     }
   };

@@ -188,9 +188,8 @@ class Mechanism {
  private:
   static Eigen::Map<const X> coordinates(const T* x) { return Eigen::Map<const X>(x); }
   static bool damped(const Elements& e) {
-    return std::any_of(e.springs.begin(), e.springs.end(), [](const SpringElement& k) { return k.damping != 0; }) ||
-           std::any_of(e.torsions.begin(), e.torsions.end(),
-                       [](const TorsionSpringElement& k) { return k.damping != 0; });
+    return std::any_of(e.springs.begin(), e.springs.end(), [](const SpringElement& k) { return k.damped; }) ||
+           std::any_of(e.torsions.begin(), e.torsions.end(), [](const TorsionSpringElement& k) { return k.damped; });
   }
 
   // Adds a row's force l on its two bodies.

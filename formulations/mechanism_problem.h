@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/check.h"
+#include "formulations/faults.h"
 #include "formulations/mechanism.h"
 #include "formulations/mechanism_matrix.h"
 #include "formulations/torsion.h"
@@ -188,6 +189,7 @@ class MechanismProblem final : public Problem {
     }
   }
   double energy() const override { return mechanism_.energy(); }
+  std::string fault() const override { return first_fault(mechanism_.c); }
 
   std::string describe_unknown(int k) const override {
     const Elements& e = *mechanism_.c.elements;

@@ -116,6 +116,9 @@ class Problem {
   virtual void reaction(int group, std::span<const double> lambda, Vector3& force, Vector3& moment) const = 0;
   // Kinetic and potential energy (gravity, springs, torsion springs), J.
   virtual double energy() const = 0;
+  // Which function of time or law is not finite where the problem stands, and when: "at t = 1 s driver 'motor': ...";
+  // empty where none is. For messages of runs that failed.
+  virtual std::string fault() const { return {}; }
   // How messages speak of unknown k of the step's linear system: a body's coordinates or a constraint row.
   virtual std::string describe_unknown(int k) const = 0;
 

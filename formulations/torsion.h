@@ -1,4 +1,4 @@
-// Torsion springs, for every formulation: torque = stiffness (θ − angle) + damping θ̇ about the axis of a hinge.
+// Torsion springs, for every formulation: torque F(x, v, t) about the axis of a hinge, x = θ − angle and v = θ̇.
 //
 // θ = atan2(y, x), x = a·c, y = b·c with a, b on body i and c on body j; ∇θ is the gradient of u·c at fixed
 // u = (x b − y a)/(x² + y²), so that the torque acts on the orientations as a direction constraint's multiplier does.
@@ -10,6 +10,7 @@
 
 #include "core/index.h"
 #include "formulations/configuration.h"
+#include "formulations/spring_law.h"
 
 namespace poinsot {
 
@@ -32,7 +33,7 @@ class Torsion {
 
   // Where a spring stands.
   struct Twist {
-    T x, y, xd = T(0), yd = T(0), rho2, torque;
+    T x, y, xd = T(0), yd = T(0), rate = T(0), rho2, torque, stiffness, damping;
     Vec3<T> u, c;
 
     Twist(const C& at, const TorsionSpringElement& k, double before) : c(at.s[index(k.c)]) {
@@ -41,17 +42,20 @@ class Torsion {
       y = b.dot(c);
       rho2 = x * x + y * y;
       u = (x * b - y * a) / rho2;
-      torque = T(k.stiffness) * (angle(at, k, before) - T(k.angle));
-      if (k.damping != 0) {
+      if (k.damped) {
         const Vec3<T>&ad = at.s_dot[index(k.a)], &bd = at.s_dot[index(k.b)], &cd = at.s_dot[index(k.c)];
         xd = ad.dot(c) + a.dot(cd);
         yd = bd.dot(c) + b.dot(cd);
-        torque += T(k.damping) * (x * yd - y * xd) / rho2;
+        rate = (x * yd - y * xd) / rho2;
       }
+      const LawValue<T> law = spring_force(k, angle(at, k, before) - T(k.angle), rate, at.time);
+      torque = law.F;
+      stiffness = law.F_x;
+      damping = law.F_v;
     }
   };
 
-  // K = k ∇θ∇θᵀ + torque ∇²θ + c ∇θ (∂θ̇/∂q)ᵀ, D = c ∇θ∇θᵀ.
+  // K = k ∇θ∇θᵀ + torque ∇²θ + c ∇θ (∂θ̇/∂q)ᵀ, D = c ∇θ∇θᵀ, with k = ∂F/∂x, c = ∂F/∂v.
   template <class Sink>
   static void matrix(const C& c, const TorsionSpringElement& k, double before, const T& cq, const T& cv,
                      const std::vector<XX>& T_inverse, Sink&& sink) {
@@ -70,7 +74,7 @@ class Torsion {
       gx[1] = pulled(k.j, C::Et_times(w.c, a));
       gy[1] = pulled(k.j, C::Et_times(w.c, b));
     }
-    if (k.damping != 0) {
+    if (k.damped) {
       const Vec3<T>&ad = c.s_dot[index(k.a)], &bd = c.s_dot[index(k.b)], &cd = c.s_dot[index(k.c)];
       if (k.i != kGround) {
         gxd[0] = w.c.transpose() * c.s_dot_variation(k.i, k.a) + pulled(k.i, C::Et_times(a, cd));
@@ -99,13 +103,13 @@ class Torsion {
           const auto block = p == 0 ? C::EtE(w.u, w.c) : C::EtE(w.c, w.u);
           second += c.at[index(body[p])].W().transpose() * block * c.at[index(body[q])].W();
         }
-        XX K = T(k.stiffness) * grad_p.transpose() * grad_q + w.torque * second;
+        XX K = w.stiffness * grad_p.transpose() * grad_q + w.torque * second;
         XX D = XX::Zero();
-        if (k.damping != 0) {  // θ̇ = tx ẋ + ty ẏ
+        if (k.damped) {  // θ̇ = tx ẋ + ty ẏ
           const Line rate_q =
               (txx * w.xd + txy * w.yd) * gx[q] + (txy * w.xd - txx * w.yd) * gy[q] + tx * gxd[q] + ty * gyd[q];
-          K += T(k.damping) * grad_p.transpose() * rate_q;
-          D = T(k.damping) * grad_p.transpose() * grad_q;
+          K += w.damping * grad_p.transpose() * rate_q;
+          D = w.damping * grad_p.transpose() * grad_q;
           if (!T_inverse.empty()) D *= T_inverse[index(body[q])];
         }
         sink.orientation_block(body[p], body[q], XX(cq * K + cv * D));

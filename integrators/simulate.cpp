@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "core/check.h"
 #include "core/index.h"
 #include "core/input_error.h"
+#include "core/model_faults.h"
+#include "core/scene_doubts.h"
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
@@ -55,6 +58,18 @@ void refuse_free_motion(const Problem& problem) {
   }
 }
 
+// A function without a finite value is why, or a number that overflows, whatever it looked like to the method that came
+// upon it.
+void explain(Status& status, const Problem& problem) {
+  if (status.ok()) return;
+  if (const std::string fault = problem.fault(); !fault.empty()) {
+    status = no_value(status.time, fault);
+  } else if (const std::string why = overflowing(problem.model()); !why.empty()) {
+    status = {Failure::not_finite, status.time,
+              fmt::format("at t = {:.9g} s a number overflows: {}", status.time, why)};
+  }
+}
+
 }  // namespace
 
 Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe) {
@@ -68,7 +83,9 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   Outcome outcome;
   InitialState start = find_initial_state(model, settings);
   outcome.status = start.status;
-  outcome.notices = std::move(start.notices);
+  outcome.notices = scene.notices;
+  std::ranges::move(scene_doubts(*model), std::back_inserter(outcome.notices));
+  std::ranges::move(start.notices, std::back_inserter(outcome.notices));
   for (const int group : start.rank.undetermined)
     outcome.undetermined_reactions.push_back(model->groups[index(group)].name);
   if (!outcome.status.ok()) return outcome;
@@ -81,9 +98,11 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   State state(*problem);
   outcome.status = find_first_state(start, settings, *problem, state);
   std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
+  explain(outcome.status, *problem);
   if (!outcome.status.ok()) return outcome;
   const Eigen::VectorXd q_start = state.q;
   outcome.status = integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics});
+  explain(outcome.status, *problem);
   const Failure failure = outcome.status.failure;
   if (settings.analysis == Analysis::dynamics &&
       (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {

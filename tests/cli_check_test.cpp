@@ -55,9 +55,8 @@ TEST_F(Check, ADerivativeThatIsNotFinite) {
   const Result result = poinsot({"check", "root.json"});
   EXPECT_EQ(result.status, 3);
   EXPECT_EQ(result.err,
-            "poinsot: root.json: derivatives are wrong or not finite at t = 0; try functions of time that have two "
-            "derivatives "
-            "there\n");
+            "poinsot: at t = 0 s constraint 'root': the second derivative of 't^1.5' is not finite; end the run before, "
+            "or change the function\n");
   expect_says(result, {"  rA: constraint 'root': gamma is off by "});
 }
 

@@ -55,8 +55,10 @@ TEST(SceneReader, answers_every_case_of_the_table) {
 // What no JSON document can hold: it is in the text.
 TEST(SceneReader, answers_to_text_that_is_not_a_document) {
   const std::pair<const char*, const char*> cases[] = {
-      {"",
-       "case.json: line 1, column 1: syntax error while parsing value - unexpected end of input; expected '[', "
+      {"", "case.json: the file is empty"},
+      {" \r\n\n", "case.json: the file is empty"},
+      {"// nothing",
+       "case.json: line 1, column 11: syntax error while parsing value - unexpected end of input; expected '[', "
        "'{', or a literal"},
       {"{\n  \"scene\": 1,\n  \"bodies\": [}\n}",
        "case.json: line 3, column 14: syntax error while parsing value - unexpected '}'; expected '[', '{', or a "

@@ -1,8 +1,13 @@
 #include "bench/study/scene_check.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <iterator>
 
+#include "core/check.h"
 #include "core/input_error.h"
+#include "core/scene_doubts.h"
+#include "core/scene_types.h"
 #include "formulations/registry.h"
 
 namespace poinsot::study {
@@ -20,11 +25,54 @@ void compare_derivatives(SceneCheck& result, std::span<const BodyState> states) 
   }
 }
 
+void measure(SceneCheck& result) {
+  const Model& model = *result.model;
+  Eigen::AlignedBox3d box;
+  for (const Body& body : model.bodies) {
+    result.mass += body.mass;
+    box.extend(body.position);
+  }
+  const auto hold = [&](int of, const Vector3& s) {
+    if (of == kGround) return box.extend(s);
+    const Body& body = model.bodies[static_cast<std::size_t>(of)];
+    return box.extend(Vector3(body.position + body.orientation * s));
+  };
+  for (const Row& row : model.rows) {
+    if (row.type == RowType::DP1 || row.type == RowType::angle) continue;  // directions hold no points
+    hold(row.i, row.s_i);
+    hold(row.j, row.s_j);
+  }
+  result.extent = box.sizes();
+}
+
 }  // namespace
+
+std::string_view left_free(const Group& joint) {
+  const auto* entry = std::ranges::find(kJointTypes, joint.type, &TypeName<JointType>::name);
+  check(entry != std::end(kJointTypes), "the group is a joint");
+  switch (entry->type) {
+    case JointType::revolute:
+      return "turning about its axis";
+    case JointType::spherical:
+      return "turning about every axis";
+    case JointType::universal:
+      return "turning about its two axes";
+    case JointType::cylindrical:
+      return "turning about its axis and sliding along it";
+    case JointType::translational:
+      return "sliding along its axis";
+    case JointType::fixed:
+      return "nothing";
+  }
+  return "";
+}
 
 SceneCheck check_scene(const Scene& scene) {
   SceneCheck result;
   result.model = std::make_shared<const Model>(compile(scene));
+  result.notices = scene.notices;
+  std::ranges::move(scene_doubts(*result.model), std::back_inserter(result.notices));
+  measure(result);
   const std::vector<BodyState> given = given_state(*result.model);
   result.rank = analyze_rank(result.model, given, RankNames::all);
   result.violation = violation(result.model, given);

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/body_state.h"
@@ -22,9 +23,12 @@ struct SceneCheck {
   };
 
   std::shared_ptr<const Model> model;
-  RankAnalysis rank;    // where rows conflict, nothing further is checked
-  Violation violation;  // of the state as given
-  std::string refusal;  // why no run can start from it; what follows is then unknown
+  std::vector<std::string> notices;  // of reading the scene, and what nobody would mean
+  double mass = 0;                   // kg, of all bodies
+  Vector3 extent = Vector3::Zero();  // m, of the box around centres of mass and the points that constraints hold
+  RankAnalysis rank;                 // where rows conflict, nothing further is checked
+  Violation violation;               // of the state as given
+  std::string refusal;               // why no run can start from it; what follows is then unknown
   InitialState start;
   // At the start, or at the state as given where the start fails: derivatives that are not finite are why it does.
   std::size_t derivatives = 0;  // compared, in all formulations
@@ -36,5 +40,8 @@ struct SceneCheck {
 };
 
 SceneCheck check_scene(const Scene& scene);
+
+// "turning about its axis": what a joint alone leaves of the motion between its bodies.
+std::string_view left_free(const Group& joint);
 
 }  // namespace poinsot::study

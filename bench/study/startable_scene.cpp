@@ -10,8 +10,8 @@
 
 namespace poinsot::study {
 
-Scene read_startable_scene(const std::filesystem::path& file) {
-  Scene scene = read_scene(file);
+Scene read_startable_scene(const std::filesystem::path& file, const ParameterValues& set) {
+  Scene scene = read_scene(file, set);
   try {
     (void)find_initial_state(std::make_shared<const Model>(compile(scene)), Settings{});
   } catch (const InputError& refused) {

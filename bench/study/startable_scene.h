@@ -5,10 +5,10 @@
 
 #include <filesystem>
 
-#include "core/scene.h"
+#include "core/scene_reader.h"
 
 namespace poinsot::study {
 
-Scene read_startable_scene(const std::filesystem::path& file);  // throws InputError
+Scene read_startable_scene(const std::filesystem::path& file, const ParameterValues& set = {});  // throws InputError
 
 }  // namespace poinsot::study

@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "core/input_error.h"
+#include "core/model_faults.h"
 #include "core/so3.h"
 #include "formulations/registry.h"
 #include "integrators/start/rank.h"
@@ -226,6 +227,11 @@ Violation violation(const std::shared_ptr<const Model>& model, const std::vector
 }
 
 InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings) {
+  if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) {
+    InitialState none;
+    none.status = no_value(0, fault);
+    return none;
+  }
   return Assembler(model, settings).run();
 }
 

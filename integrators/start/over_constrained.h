@@ -69,6 +69,7 @@ class OverConstrained final : public Problem {
     kept_->reaction(group, lambda, force, moment);
   }
   double energy() const override { return kept_->energy(); }
+  std::string fault() const override { return kept_->fault(); }
   std::string describe_unknown(int k) const override { return kept_->describe_unknown(k); }
 
   bool has_discrete_state() const override { return true; }

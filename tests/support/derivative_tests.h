@@ -244,7 +244,9 @@ TYPED_TEST_P(Derivatives, OfTheEnergyAreThePowerOfTheForces) {
     duals.stand(Dual<double>(t, 1.0), q, TestFixture::dual(VectorX::Zero(problem->nv()), v), TestFixture::dual(v, a));
     const auto& torsions = duals.mechanism.c.elements->torsions;
     for (const TorsionSpringElement& torsion : torsions) {
-      power -= torsion.damping * std::pow(Torsion<TypeParam, Dual<double>>::angle(duals.mechanism.c, torsion, 0).d, 2);
+      const Dual<double> angle = Torsion<TypeParam, Dual<double>>::angle(duals.mechanism.c, torsion, 0);
+      power -= torsion.damping * angle.d * angle.d;
+      if (torsion.law) power += power_beside_potential(*torsion.law, {t, angle.v - torsion.angle, angle.d});
     }
     const double expected = v.dot(out) + power;
     EXPECT_NEAR(duals.mechanism.energy().d, expected, 1e-11 * (1 + std::abs(expected)));

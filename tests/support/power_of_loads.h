@@ -9,6 +9,11 @@
 
 namespace poinsot::test {
 
+// What a law F(x, v, t) does beside its potential, the integral of F(x, 0, t).
+inline double power_beside_potential(const Expression& law, const Arguments<double>& at) {
+  return -(law.law(at).F - law.law<double>({at.t, at.x, 0}).F) * at.v;
+}
+
 // Point forces, torques, drag and the damping of springs; without the damping of torsion springs.
 inline double power_of_loads(const Model& model, std::span<const BodyState> states, double t) {
   const auto at = [](const Expression(&w)[3], double time) {
@@ -29,7 +34,9 @@ inline double power_of_loads(const Model& model, std::span<const BodyState> stat
     const BodyState i = state(spring.i), j = state(spring.j);
     const Vector3 d = j.r + j.A * spring.s_j - i.r - i.A * spring.s_i;
     const Vector3 d_dot = j.rd + j.A * j.w.cross(spring.s_j) - i.rd - i.A * i.w.cross(spring.s_i);
-    power -= spring.damping * std::pow(d.normalized().dot(d_dot), 2);
+    const double rate = d.normalized().dot(d_dot);
+    power -= spring.damping * rate * rate;
+    if (spring.law) power += power_beside_potential(*spring.law, {t, d.norm() - spring.length, rate});
   }
   for (const LinearDrag& drag : model.drags) {
     const BodyState s = state(drag.body);

@@ -98,6 +98,7 @@ inline void add_row(Model& model, RowType type, int i, int j, Random& random) {
   row.c = random.unit();
   row.f = random.function();
   row.squared = type == RowType::D && random.integer(0, 1) == 1;
+  if (row.squared) row.f = Expression::parse("exp(0.3*(" + row.f.text() + "))");  // a length
   row.group = static_cast<int>(model.groups.size());
   Group group;
   const std::string type_name = kRowNames[static_cast<int>(type)];
@@ -123,36 +124,52 @@ inline void add_coincidence(Model& model, int i, int j, Random& random) {
   }
 }
 
-enum class ForceType { spring, damped_spring, torsion, damped_torsion, force, body_force, torque, body_torque, drag };
-inline constexpr const char* kForceNames[] = {
-    "spring", "damped_spring", "torsion", "damped_torsion", "force", "body_force", "torque", "body_torque", "drag"};
-inline constexpr int kForceTypes = 9;
+enum class ForceType {
+  // clang-format off
+  spring, damped_spring, spring_law, torsion, damped_torsion, torsion_law,
+  force, body_force, torque, body_torque, drag
+  // clang-format on
+};
+inline constexpr const char* kForceNames[] = {"spring",         "damped_spring", "spring_law", "torsion",
+                                              "damped_torsion", "torsion_law",   "force",      "body_force",
+                                              "torque",         "body_torque",   "drag"};
+inline constexpr int kForceTypes = 11;
 
 inline bool acts_between_two(ForceType type) {
-  return type <= ForceType::damped_torsion;
+  return type <= ForceType::torsion_law;
+}
+
+// Smooth, not linear in anything, with x and v together.
+inline Expression random_law(Random& random) {
+  return Expression::parse_law("3*sin(x) + 0.5*x^3 + 2*tanh(v)*(1 + x^2) + " + std::to_string(random.uniform(0.1, 1)) +
+                               "*v*cos(x)");
 }
 
 // Types that act on one body act on j.
 inline void add_force(Model& model, ForceType type, int i, int j, Random& random) {
   switch (type) {
     case ForceType::spring:
-    case ForceType::damped_spring: {
+    case ForceType::damped_spring:
+    case ForceType::spring_law: {
       Spring spring;
       spring.i = i, spring.j = j;
       spring.s_i = random.vector(), spring.s_j = random.vector();
       spring.stiffness = random.uniform(1, 5);
       spring.length = random.uniform(0.5, 2);
       if (type == ForceType::damped_spring) spring.damping = random.uniform(1, 5);
+      if (type == ForceType::spring_law) spring.law = random_law(random), spring.stiffness = 0;
       model.springs.push_back(spring);
       break;
     }
     case ForceType::torsion:
-    case ForceType::damped_torsion: {
+    case ForceType::damped_torsion:
+    case ForceType::torsion_law: {
       TorsionElement torsion;
       torsion.spring.i = i, torsion.spring.j = j;
       torsion.spring.stiffness = random.uniform(1, 5);
       torsion.spring.angle = random.normal();
       if (type == ForceType::damped_torsion) torsion.spring.damping = random.uniform(1, 5);
+      if (type == ForceType::torsion_law) torsion.spring.law = random_law(random), torsion.spring.stiffness = 0;
       const Vector3 axis = random.unit();
       torsion.spring.axis = axis;
       torsion.a_i = axis.unitOrthogonal();

@@ -1,0 +1,45 @@
+#include "core/model_faults.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+namespace poinsot {
+namespace {
+
+std::string of_row(const Row& row, double t) {
+  const int derivatives = row.type == RowType::pfaffian ? 1 : 2;
+  if (std::string what = row.f.fault(t, derivatives); !what.empty()) return what;
+  if (const double length = row.f.at(t).f; row.squared && !(length > 0))
+    return fmt::format("the length '{}' is {:.9g} m, expected a positive one", row.f.text(), length);
+  return row.alternate ? row.alternate->f.fault(t, derivatives) : "";
+}
+
+template <class Load>
+std::string of_loads(const std::vector<Load>& loads, Expression (Load::*components)[3], double t) {
+  for (const Load& load : loads)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const std::string what = (load.*components)[k].fault(t, 0); !what.empty())
+        return fault_sentence(t, fmt::format("force '{}', component {}", load.name, "xyz"[k]), what);
+  return {};
+}
+
+}  // namespace
+
+std::string fault_of_functions(const Model& model, double t) {
+  for (std::size_t row = 0; row < model.rows.size(); ++row)
+    if (const std::string what = of_row(model.rows[row], t); !what.empty())
+      return fault_sentence(t, describe_row(model, static_cast<int>(row)), what);
+  const std::string of_forces = of_loads(model.point_forces, &PointForce::force, t);
+  return of_forces.empty() ? of_loads(model.torques, &Torque::torque, t) : of_forces;
+}
+
+std::string fault_sentence(double t, const std::string& whose, const std::string& what) {
+  return fmt::format("at t = {:.9g} s {}: {}", t, whose, what);
+}
+
+Status no_value(double t, const std::string& fault) {
+  return {Failure::not_finite, t, fault + "; end the run before, or change the function"};
+}
+
+}  // namespace poinsot

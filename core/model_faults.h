@@ -1,0 +1,20 @@
+// Which function of time of a model has no finite value at a time, and why: for messages of runs that cannot go on.
+#pragma once
+
+#include <string>
+
+#include "core/model.h"
+#include "core/status.h"
+
+namespace poinsot {
+
+// "at t = 1 s driver 'motor': '1/(t - 1)' is not finite": the first of constraints, drivers, forces and torques; empty
+// where all of them, and the derivatives that rows need, are finite. A length that is not positive is none.
+std::string fault_of_functions(const Model& model, double t);
+// The sentence that begins so.
+std::string fault_sentence(double t, const std::string& whose, const std::string& what);
+
+// The failure that a fault is.
+Status no_value(double t, const std::string& fault);
+
+}  // namespace poinsot

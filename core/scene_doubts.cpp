@@ -1,0 +1,127 @@
+#include "core/scene_doubts.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace poinsot {
+namespace {
+
+constexpr double kApart = 1e6;
+
+Vector3 principal_moments(const Body& body) {
+  if (!body.inertia.isDiagonal(0))
+    return Eigen::SelfAdjointEigenSolver<Matrix3>(body.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  Vector3 moments = body.inertia.diagonal();
+  std::ranges::sort(moments);
+  return moments;
+}
+
+// ∫ y² + z², ∫ x² + z², ∫ x² + y²: none exceeds the sum of the others. To the digits that moments are given with.
+void tell_moments(const Model& model, std::vector<std::string>& sentences) {
+  constexpr double kDigits = 1e-3;
+  std::size_t bodies = 0;
+  std::string first;
+  for (const Body& body : model.bodies) {
+    const Vector3 moments = principal_moments(body);
+    if (moments[2] <= (1 + kDigits) * (moments[0] + moments[1])) continue;
+    if (bodies++ == 0)
+      first = fmt::format(
+          "body '{}' has the principal moments {:.6g}, {:.6g} and {:.6g}, and no body has one that "
+          "exceeds the sum of the others",
+          body.name, moments[0], moments[1], moments[2]);
+  }
+  if (bodies > 1) first += fmt::format("; {} more like it", bodies - 1);
+  if (bodies > 0) sentences.push_back(first);
+}
+
+// The smallest and the largest of positive sizes, and whose they are.
+struct Range {
+  std::pair<double, std::size_t> least{HUGE_VAL, 0}, most{0, 0};
+
+  void add(double size, std::size_t body) {
+    least = std::min(least, std::pair(size, body));
+    most = std::max(most, std::pair(size, body));
+  }
+  bool apart() const { return most.first >= kApart * least.first; }
+};
+
+void tell_masses(const Model& model, std::vector<std::string>& sentences) {
+  Range masses;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) masses.add(model.bodies[b].mass, b);
+  if (masses.apart())
+    sentences.push_back(fmt::format("masses are six orders of magnitude apart: {:g} kg of '{}', {:g} kg of '{}'",
+                                    masses.least.first, model.bodies[masses.least.second].name, masses.most.first,
+                                    model.bodies[masses.most.second].name));
+}
+
+// How far constraints and springs take hold of a body from its centre of mass.
+void tell_lengths(const Model& model, std::vector<std::string>& sentences) {
+  std::vector<double> reach(model.bodies.size(), 0.0);
+  double size = 0;  // of the whole; what is rounding of it is no length
+  for (const Body& body : model.bodies) size = std::max(size, body.position.norm());
+  const auto hold = [&](int body, const Vector3& s) {
+    if (body == kGround) return;
+    double& r = reach[static_cast<std::size_t>(body)];
+    r = std::max(r, s.norm());
+    size = std::max(size, r);
+  };
+  for (const Row& row : model.rows) hold(row.i, row.s_i), hold(row.j, row.s_j);
+  for (const Spring& spring : model.springs) hold(spring.i, spring.s_i), hold(spring.j, spring.s_j);
+  constexpr double kRounding = 1e-12;
+  Range lengths;
+  for (std::size_t b = 0; b < reach.size(); ++b)
+    if (reach[b] > kRounding * size) lengths.add(reach[b], b);
+  if (lengths.apart())
+    sentences.push_back(
+        fmt::format("lengths are six orders of magnitude apart: '{}' is held {:.3g} m from its centre of mass, "
+                    "'{}' {:.3g} m",
+                    model.bodies[lengths.least.second].name, lengths.least.first,
+                    model.bodies[lengths.most.second].name, lengths.most.first));
+}
+
+}  // namespace
+
+std::string overflowing(const Model& model) {
+  const double limit = std::sqrt(std::numeric_limits<double>::max());
+  std::string found;
+  const auto look = [&](const std::string& whose, std::string_view what, double size) {
+    if (found.empty() && size > limit)
+      found = fmt::format("{} has a {} of {:.3g}, whose square is beyond the numbers of a computer", whose, what, size);
+  };
+  for (const Body& body : model.bodies) {
+    const std::string name = fmt::format("body '{}'", body.name);
+    look(name, "mass", body.mass);
+    look(name, "moment of inertia", body.inertia.cwiseAbs().maxCoeff());
+    look(name, "coordinate", body.position.cwiseAbs().maxCoeff());
+    look(name, "velocity", body.velocity.cwiseAbs().maxCoeff());
+    look(name, "angular velocity", body.angular_velocity.cwiseAbs().maxCoeff());
+  }
+  for (std::size_t k = 0; k < model.rows.size(); ++k) {
+    const Row& row = model.rows[k];
+    double size = std::max(row.s_i.cwiseAbs().maxCoeff(), row.s_j.cwiseAbs().maxCoeff());
+    if (row.f.is_constant()) size = std::max(size, std::abs(row.f.at(0.0).f));
+    if (size > limit) look(describe_row(model, static_cast<int>(k)), "length", size);
+  }
+  for (const Spring& spring : model.springs) {
+    look(fmt::format("force '{}'", spring.name), "stiffness", std::abs(spring.stiffness));
+    look(fmt::format("force '{}'", spring.name), "length", spring.length);
+  }
+  look("the scene", "gravity", model.gravity.cwiseAbs().maxCoeff());
+  return found;
+}
+
+std::vector<std::string> scene_doubts(const Model& model) {
+  std::vector<std::string> sentences;
+  tell_moments(model, sentences);
+  tell_masses(model, sentences);
+  tell_lengths(model, sentences);
+  if (const std::string overflow = overflowing(model); !overflow.empty()) sentences.push_back(overflow);
+  return sentences;
+}
+
+}  // namespace poinsot

@@ -1,0 +1,17 @@
+// What a sound scene holds that nobody would mean: told, never refused.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/model.h"
+
+namespace poinsot {
+
+// Sentences: principal moments that no body has, masses or lengths six orders of magnitude apart, numbers whose squares
+// overflow. Linear in the model.
+std::vector<std::string> scene_doubts(const Model& model);
+// The last of these alone: why a run of the model is not finite. Empty where there is none.
+std::string overflowing(const Model& model);
+
+}  // namespace poinsot
