@@ -3,7 +3,8 @@
 //
 //   numbers      finite; masses positive, inertias symmetric and positive semidefinite, unloaded lengths not negative
 //   orientations a rotation, to within kOrientationTolerance in every entry
-//   directions   not zero, of any length; the two axes of a universal joint perpendicular
+//   directions   not zero, of any length; the two axes of a universal joint perpendicular, and a_i and a_j to axes
+//   joints       global at the initial pose or in the bodies' frames, not both
 //   bodies       at least one; two different ones in whatever acts between two; a force acts on one that can move
 //   names        without control characters, in UTF-8; bodies have one, of its own and not "ground"; constraints,
 //                joints and drivers differ in theirs, and so do forces

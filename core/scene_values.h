@@ -13,6 +13,9 @@ std::string read_name(const JsonValue& value);  // not empty
 Vector3 read_vector(const JsonValue& value);
 Expression read_function(const JsonValue& value);
 
+// The keys "a_i" and "a_j", both or neither: then the directions stay as they are.
+void read_references(const JsonValue& item, Vector3& a_i, Vector3& a_j);
+
 // Three principal moments, or a 3 × 3 matrix. kg m².
 Matrix3 read_inertia(const JsonValue& value);
 

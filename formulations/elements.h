@@ -80,6 +80,9 @@ struct TorsionSpringElement {
   int i, j, a, b, c;
   double stiffness, damping, angle;
 };
+struct FollowedAngleElement {
+  int a, b, c;
+};
 struct PointForceElement {
   int body, p;
   Expression force[3];
@@ -130,6 +133,7 @@ struct Elements {
   std::vector<PointForceElement> point_forces;
   std::vector<TorqueElement> torques;
   std::vector<LinearDrag> drags;
+  std::vector<FollowedAngleElement> followed;
   bool has_forces() const {
     return !(springs.empty() && torsions.empty() && point_forces.empty() && torques.empty() && drags.empty());
   }

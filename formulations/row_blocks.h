@@ -99,7 +99,9 @@ class RowBlocks {
     sink_.block(row, body * kV + 3, x);
     if (!transposed) return;
     for (int l = 0; l < 3; ++l) sink_.block(body * kV + l, row + l, one);
-    sink_.block(body * kV + 3, row, Eigen::Matrix<T, F::m, 3>(x.transpose()));
+    Eigen::Matrix<T, F::m, 3> column = Eigen::Matrix<T, F::m, 3>::Zero();
+    column.noalias() = x.transpose();
+    sink_.block(body * kV + 3, row, column);
   }
   template <bool has_r>
   void gradient_blocks(int row, int body, const Vec3<T>& g, const Ambient& e, bool transposed) const {

@@ -2,8 +2,9 @@
 // constraints, and told what was done.
 //
 // A state that satisfies the constraints is left untouched to the last bit. Others are projected mass-orthogonally,
-// which moves them least; positions only where they are nearly right (or where the settings say so), velocities always,
-// because scenes with drivers may leave them out.
+// which moves them least; velocities always, because scenes with drivers may leave them out. Positions that are far off
+// are closed first (integrators/start/rough_pose.h), where the settings say so or where a joint or an angle driver is
+// given in the bodies' frames: then the scene says what the mechanism is apart from the pose. Others are refused.
 #pragma once
 
 #include <memory>

@@ -69,6 +69,8 @@ class OverConstrained final : public Problem {
     kept_->reaction(group, lambda, force, moment);
   }
   double energy() const override { return kept_->energy(); }
+  double twist(int torsion) const override { return kept_->twist(torsion); }
+  double followed_angle(int of) const override { return kept_->followed_angle(of); }
   std::string describe_unknown(int k) const override { return kept_->describe_unknown(k); }
 
   bool has_discrete_state() const override { return true; }
