@@ -99,9 +99,7 @@ class RowBlocks {
     sink_.block(row, body * kV + 3, x);
     if (!transposed) return;
     for (int l = 0; l < 3; ++l) sink_.block(body * kV + l, row + l, one);
-    Eigen::Matrix<T, F::m, 3> column = Eigen::Matrix<T, F::m, 3>::Zero();
-    column.noalias() = x.transpose();
-    sink_.block(body * kV + 3, row, column);
+    sink_.block(body * kV + 3, row, Eigen::Matrix<T, F::m, 3>(x.transpose()));
   }
   template <bool has_r>
   void gradient_blocks(int row, int body, const Vec3<T>& g, const Ambient& e, bool transposed) const {

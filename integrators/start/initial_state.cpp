@@ -31,14 +31,6 @@ double turn_between(const Matrix3& from, const Matrix3& to) {
   return 2 * std::asin(std::min(1.0, (to - from).norm() / std::sqrt(8.0)));
 }
 
-// The residual of a row or its rate (order 1), with its unit.
-std::string amount(const Model& model, int row, double value, int order) {
-  static constexpr const char* kUnits[] = {" rad", " m", " m²", " m", " rad", ""};  // by RowType; of unit directions
-  const RowType type = model.rows[index(row)].type;
-  if (type == RowType::pfaffian) return fmt::format("{:.3g} m/s", value);
-  return fmt::format("{:.3g}{}{}", value, kUnits[static_cast<int>(type)], order == 1 ? "/s" : "");
-}
-
 double size_of(const std::vector<BodyState>& states) {
   double size = 1;
   for (const BodyState& state : states) size = std::max(size, state.r.cwiseAbs().maxCoeff());
@@ -86,8 +78,8 @@ class Assembler {
     throw InputError(fmt::format("the initial {} violates {} by {}; allowed with --no-assemble: {:.0e}",
                                  position ? "pose" : "velocity",
                                  describe_row(*model_, position ? before_.position_row : before_.velocity_row),
-                                 position ? amount(*model_, before_.position_row, before_.position, 0)
-                                          : amount(*model_, before_.velocity_row, before_.velocity, 1),
+                                 position ? describe_residual(*model_, before_.position_row, before_.position, 0)
+                                          : describe_residual(*model_, before_.velocity_row, before_.velocity, 1),
                                  kSatisfied));
   }
 
@@ -103,11 +95,14 @@ class Assembler {
     if (settings_.assembly == Assembly::never || (settings_.assembly == Assembly::small && !rough))
       throw InputError(far_message(group, *most, limit));
     const ClosedPose pose = close_mechanism(*model_, given_);
-    if (!pose.closed)
+    if (!pose.closed) {
+      result_.rank = analyze_rank(model_, given_, RankNames::none);
+      refuse_conflicts();
       throw InputError(fmt::format(
           "no position near the given pose closes the mechanism: {} stays open by {}, at the given pose {} is by {}; "
           "correct it, or start from a pose nearer to the one meant; `poinsot check` names conflicting constraints",
           describe_group(*model_, pose.worst), describe(pose.gap), describe_group(*model_, group), describe(*most)));
+    }
     closed_ = true;
     tell_closed(pose, group, *most);
     given_ = pose.states;
@@ -124,9 +119,10 @@ class Assembler {
           describe_group(*model_, group), asked, asked + std::remainder(gap.radians, 2 * std::numbers::pi));
     }
     return fmt::format(
-        "the initial pose violates {} by {}, more than the {:.3g} that is put right unasked; correct the scene, or "
-        "have it projected onto the constraints with --assemble",
-        describe_group(*model_, group), describe(gap), limit);
+        "the initial pose violates {} by {}, more than the {:.3g} {} that is put right unasked; correct the scene, "
+        "or have it projected onto the constraints with --assemble",
+        describe_group(*model_, group), describe(gap), gap.metres > limit ? limit : std::min(limit, kQuarter),
+        gap.metres > limit ? "m" : "rad");
   }
 
   // The way each body was moved.
@@ -251,18 +247,19 @@ class Assembler {
       spin = std::max(spin, (y.w - x.w).norm());
     }
     if (off_position() && !closed_) {
-      result_.notices.push_back(fmt::format(
-          "initial pose assembled: {} was violated by {}; the bodies moved by up to {:.3g} m and turned "
-          "by up to {:.3g} rad, '{}' most",
-          describe_row(*model_, before_.position_row), amount(*model_, before_.position_row, before_.position, 0),
-          moved, turned, model_->bodies[body].name));
+      result_.notices.push_back(
+          fmt::format("initial pose assembled: {} was violated by {}; the bodies moved by up to {:.3g} m and turned "
+                      "by up to {:.3g} rad, '{}' most",
+                      describe_row(*model_, before_.position_row),
+                      describe_residual(*model_, before_.position_row, before_.position, 0), moved, turned,
+                      model_->bodies[body].name));
     }
     if (off_velocity()) {
       result_.notices.push_back(
           fmt::format("initial velocities assembled: {} was violated by {}; the velocities "
                       "changed by up to {:.3g} m/s and {:.3g} rad/s",
                       describe_row(*model_, before_.velocity_row),
-                      amount(*model_, before_.velocity_row, before_.velocity, 1), velocity, spin));
+                      describe_residual(*model_, before_.velocity_row, before_.velocity, 1), velocity, spin));
     }
   }
 
@@ -275,6 +272,13 @@ class Assembler {
 };
 
 }  // namespace
+
+std::string describe_residual(const Model& model, int row, double value, int order) {
+  static constexpr const char* kUnits[] = {" rad", " m", " m²", " m", " rad", ""};  // by RowType; of unit directions
+  const RowType type = model.rows[index(row)].type;
+  if (type == RowType::pfaffian) return fmt::format("{:.3g} m/s", value);
+  return fmt::format("{:.3g}{}{}", value, kUnits[static_cast<int>(type)], order == 1 ? "/s" : "");
+}
 
 std::vector<BodyState> given_state(const Model& model) {
   std::vector<BodyState> states;

@@ -40,6 +40,9 @@ struct Violation {
 };
 Violation violation(const std::shared_ptr<const Model>& model, const std::vector<BodyState>& states);
 
+// The residual of a row (order 0) or its rate (1) with its unit, for directions of unit length: "0.242 m²".
+std::string describe_residual(const Model& model, int row, double value, int order);
+
 // Violations up to this are rounding of the scene's numbers and are left as they are (m, rad, m/s, rad/s).
 inline constexpr double kSatisfied = 1e-10;
 
