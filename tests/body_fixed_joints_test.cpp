@@ -9,6 +9,7 @@
 #include "core/input_error.h"
 #include "core/joint_frames.h"
 #include "core/scene_types.h"
+#include "core/scene_writer.h"
 #include "integrators/start/closure.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/rough_pose.h"
@@ -93,6 +94,24 @@ TEST(BodyFixedJoints, MoveAsGlobalOnesDo) {
       const Distance d = distance(motion(body_fixed(scene), settings), motion(scene, settings));
       EXPECT_LT(d.largest(), 1e-12) << fmt::format("{} between {} and {}, seed {}: ", name, i, j, kSeed) << d;
     }
+  }
+}
+
+TEST(BodyFixedJoints, AreWrittenAsTheyAreRead) {
+  Random random(26);
+  Scene scene = two_bodies(random);
+  for (const auto& [name, type] : kJointTypes) {
+    scene.joints.push_back(random_joint(type, 0, 1, random));
+    scene.joints.back().name = name;
+  }
+  scene = body_fixed(scene);
+  const Scene read = parse_scene(to_json(scene), "written");
+  ASSERT_EQ(read.joints.size(), scene.joints.size());
+  for (std::size_t k = 0; k < read.joints.size(); ++k) {
+    const JointFrames &x = read.joints[k].frames.value(), &y = scene.joints[k].frames.value();
+    for (const auto member : {&JointFrames::s_i, &JointFrames::s_j, &JointFrames::axis_i, &JointFrames::axis_j,
+                              &JointFrames::a_i, &JointFrames::a_j})
+      EXPECT_EQ(x.*member, y.*member) << scene.joints[k].name;
   }
 }
 
