@@ -90,7 +90,7 @@ TEST(BodyFixedJoints, MoveAsGlobalOnesDo) {
     for (const auto& [i, j] : kPairs) {
       Scene scene = two_bodies(random);
       scene.joints = {random_joint(type, i, j, random)};
-      const Settings settings = dynamics("rA", 1e-2, 5e-2);
+      const Settings settings = controlled("dop853", "rA", 1e-6, 0.2, 0.1);
       const Distance d = distance(motion(body_fixed(scene), settings), motion(scene, settings));
       EXPECT_LT(d.largest(), 1e-12) << fmt::format("{} between {} and {}, seed {}: ", name, i, j, kSeed) << d;
     }
@@ -128,7 +128,7 @@ TEST(BodyFixedJoints, AngleDriversAndTorsionSpringsStartWhereTheirDirectionsSay)
   constexpr double kZero = 0.7;  // the angle at the initial pose
   spring.a_i = std::cos(kZero) * frame.a_i - std::sin(kZero) * frame.b_i, spring.a_j = frame.a_j, spring.angle += kZero;
   other.forces = {spring};
-  const Settings settings = dynamics("rA", 1e-2, 5e-2);
+  const Settings settings = controlled("dop853", "rA", 1e-6, 0.2, 0.1);
   EXPECT_LT(distance(motion(other, settings), motion(scene, settings)).largest(), 1e-12);
 
   Driver driver;

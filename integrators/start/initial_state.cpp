@@ -45,8 +45,8 @@ class Assembler {
   InitialState run() {
     tell_far_joints(*model_, result_.notices);
     before_ = violation(model_, given_);
-    refuse_any();
     close_from_afar();
+    refuse_any();
     result_.bodies = given_;
     result_.rank = analyze_rank(model_, given_, RankNames::none);
     refuse_conflicts();
@@ -112,11 +112,12 @@ class Assembler {
   std::string far_message(int group, const Gap& gap, double limit) const {
     const Row& row = model_->rows[index(model_->groups[index(group)].first_row)];
     if (row.type == RowType::angle) {
-      const double asked = row.f.at(0.0).f;
+      const std::vector<OpenPart> parts = open_parts(*model_, given_);
+      const double asked = row.f.at(0.0).f, off = std::ranges::find(parts, group, &OpenPart::group)->value;
       return fmt::format(
           "{} asks for an angle of {:.6g} rad at t = 0, where the initial pose has {:.6g} rad; correct the scene, or "
           "have it turned there with --assemble",
-          describe_group(*model_, group), asked, asked + std::remainder(gap.radians, 2 * std::numbers::pi));
+          describe_group(*model_, group), asked, asked + off);
     }
     return fmt::format(
         "the initial pose violates {} by {}, more than the {:.3g} {} that is put right unasked; correct the scene, "
