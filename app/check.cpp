@@ -111,15 +111,16 @@ void print_doubt(const SceneCheck& found) {
 }
 
 void print_state(const SceneCheck& found) {
-  const auto line = [&](const char* what, double largest, int row) {
+  const auto line = [&](const char* what, double largest, int row, int order) {
     if (largest <= kSatisfied)
       fmt::print("{}: consistent, largest violation {:.2g}\n", what, largest);
     else
-      fmt::print("{}: violates {} by {:.3g}, the most of all\n", what, describe_row(*found.model, row), largest);
+      fmt::print("{}: violates {} by {}, the most of all\n", what, describe_row(*found.model, row),
+                 describe_residual(*found.model, row, largest, order));
   };
   const Violation& v = found.violation;
-  line("initial pose", v.position, v.position_row);
-  line("initial velocities", v.velocity, v.velocity_row);
+  line("initial pose", v.position, v.position_row, 0);
+  line("initial velocities", v.velocity, v.velocity_row, 1);
 }
 
 void print_derivatives(const SceneCheck& found) {

@@ -102,7 +102,7 @@ int run(const Options& options) {
   std::optional<OutputFile> beside;
   const fs::path record_file = record_beside(options.out);
   refuse_overwriting({{"the scene", options.scene}}, {{"--out", options.out}, {"the record", record_file}});
-  if (!options.out.empty()) trajectory.emplace(options.out, scene);
+  if (!options.out.empty()) trajectory.emplace(options.out, scene, TrajectoryContent(scene));
   if (!record_file.empty()) beside.emplace(record_file);
 
   std::vector<std::string> notices = scene.notices;

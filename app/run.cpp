@@ -10,6 +10,8 @@
 #include "app/reactions_writer.h"
 #include "app/run_record.h"
 #include "app/settings_options.h"
+#include "app/signals_writer.h"
+#include "app/state_saver.h"
 #include "app/terminal.h"
 #include "app/trajectory_writer.h"
 #include "bench/study/output_file.h"
@@ -23,8 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string scene, out, reactions;
+  std::string scene, out, reactions, signals, save_state;
   std::vector<std::string> set;
+  std::string columns, bodies;  // of the trajectory
   SettingsOptions settings;
   bool quiet = false;
 };
@@ -80,23 +83,36 @@ int run(const Options& options) {
   std::vector<std::string> notices;
   Settings settings = options.settings.resolve(notices);
   settings.reactions = !options.reactions.empty();
+  settings.signals = !options.signals.empty();
   Scene scene = read_scene(options.scene, values_set(options.set));
-  // Beside the trajectory, or beside the reactions where only they are asked for.
-  const fs::path record_file = record_beside(options.out.empty() ? options.reactions : options.out);
+  // Beside the trajectory, or beside the first of the others that is asked for.
+  fs::path named = options.out;
+  for (const std::string& other : {options.reactions, options.signals})
+    if (named.empty()) named = other;
+  const fs::path record_file = record_beside(named);
   refuse_overwriting({{"the scene", options.scene}, {"the configuration", options.settings.config_file()}},
-                     {{"--out", options.out}, {"--reactions", options.reactions}, {"the run record", record_file}});
+                     {{"--out", options.out},
+                      {"--reactions", options.reactions},
+                      {"--signals", options.signals},
+                      {"--save-state", options.save_state},
+                      {"the run record", record_file}});
+  const TrajectoryContent content(scene, options.columns, options.bodies);
 
   std::optional<TrajectoryWriter> trajectory;
   std::optional<ReactionsWriter> reactions;
+  std::optional<SignalsWriter> signals;
+  std::optional<StateSaver> state;
   std::optional<OutputFile> record;
-  if (!options.out.empty()) trajectory.emplace(options.out, scene);
+  if (!options.out.empty()) trajectory.emplace(options.out, scene, content);
   if (!options.reactions.empty()) reactions.emplace(options.reactions, compile(scene));
+  if (!options.signals.empty()) signals.emplace(options.signals, compile(scene));
+  if (!options.save_state.empty()) state.emplace(options.save_state, scene);
   if (!record_file.empty())
     record.emplace(record_file);
   else
     std::string().swap(scene.source);  // memory of large scenes
 
-  const bool summary = !trajectory && !reactions && !options.quiet;
+  const bool summary = !trajectory && !reactions && !signals && !options.quiet;
   LastState last;
   Outcome outcome;
   {
@@ -104,6 +120,8 @@ int run(const Options& options) {
     outcome = simulate(scene, settings, [&](const Sample& sample) {
       if (trajectory) trajectory->write(sample);
       if (reactions) reactions->write(sample);
+      if (signals) signals->write(sample);
+      if (state) state->keep(sample);
       if (summary) {
         last.t = sample.t;
         last.bodies.resize(std::min(kShown, scene.bodies.size()));
@@ -114,9 +132,16 @@ int run(const Options& options) {
   }
   outcome.notices.insert(outcome.notices.begin(), notices.begin(), notices.end());
 
-  if (record) record->write(to_json(RunRecord{options.scene, scene, to_json(settings), outcome}));
+  if (record) {
+    RunRecord told{options.scene, scene, to_json(settings), outcome};
+    if (trajectory && is_npy(options.out)) told.columns.emplace_back("--out", trajectory->columns());
+    if (signals && is_npy(options.signals)) told.columns.emplace_back("--signals", signals->columns());
+    record->write(to_json(told));
+  }
   if (trajectory) trajectory->commit();
   if (reactions) reactions->commit();
+  if (signals) signals->commit();
+  if (state && outcome.status.ok()) state->commit();
   if (record) record->commit();
 
   if (!options.quiet)
@@ -135,12 +160,28 @@ void add_run(CLI::App& app, int& status) {
   add_scene(*command, options->scene);
   add_set(*command, options->set);
   options->settings.add_to(*command);
-  command->add_option("--out", options->out, "trajectory, CSV; the run record is written beside it as .json")
+  command
+      ->add_option(
+          "--out", options->out,
+          "trajectory, CSV (NumPy's array where it ends in .npy); the run record is written beside it as .json")
       ->type_name("FILE.csv");
+  command
+      ->add_option("--columns", options->columns,
+                   "what the trajectory holds of a body, with commas between: " + TrajectoryContent::column_names() +
+                       " (default all)")
+      ->type_name("NAMES");
+  command->add_option("--bodies", options->bodies, "whom the trajectory holds, with commas between (default all)")
+      ->type_name("NAMES");
   command->add_option("--reactions", options->reactions, "multipliers and reaction forces, CSV")->type_name("FILE.csv");
+  command
+      ->add_option("--signals", options->signals,
+                   "energies, momenta, joint coordinates, drivers' efforts, forces of springs, CSV or .npy")
+      ->type_name("FILE.csv");
+  command->add_option("--save-state", options->save_state, "the scene as it stands at the end, to run on from")
+      ->type_name("FILE.json");
   add_quiet(*command, options->quiet);
   command->footer(
-      "Without --out and --reactions a short summary is printed. Numbers may be constant expressions, as\n"
+      "Without --out, --reactions and --signals a short summary is printed. Numbers may be constant expressions, as\n"
       "in scenes: --step 1/1000 --end 2*pi.");
   command->callback([options, &status] { status = run(*options); });
 }

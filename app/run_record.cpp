@@ -60,6 +60,7 @@ std::string to_json(const RunRecord& record) {
                           {"solve", s.seconds.solve},
                           {"other", s.seconds.other}}},
                         {"violation", {{"position", s.violation.position}, {"velocity", s.violation.velocity}}}};
+  for (const auto& [option, names] : record.columns) json["columns"][option] = names;
   add_origin(json);
   json["configuration"] = Json::parse(record.configuration);
   if (!record.scene.parameters.empty()) {

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/scene.h"
 #include "integrators/simulate.h"
@@ -15,6 +17,7 @@ struct RunRecord {
   const Scene& scene;
   std::string configuration;  // JSON, as resolved: a configuration file that repeats the run
   const Outcome& outcome;
+  std::vector<std::pair<std::string, std::vector<std::string>>> columns = {};  // by option, of files without a header
 };
 
 std::string to_json(const RunRecord& record);

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <tuple>
 #include <utility>
 
 #include "core/check.h"
+#include "core/joint_frames.h"
 #include "core/nearest_rotation.h"
 #include "core/scene_names.h"
 #include "core/scene_types.h"
@@ -14,14 +14,6 @@
 
 namespace poinsot {
 namespace {
-
-// Two directions that make a right-handed orthonormal frame (a, b, axis).
-std::pair<Vector3, Vector3> perpendiculars(const Vector3& axis) {
-  Eigen::Index smallest = 0;
-  axis.cwiseAbs().minCoeff(&smallest);
-  const Vector3 a = axis.cross(Vector3::Unit(smallest)).normalized();
-  return {a, axis.cross(a)};
-}
 
 class Compiler {
  public:
@@ -45,20 +37,6 @@ class Compiler {
   }
 
  private:
-  // The ground's frame is the global one.
-  Vector3 direction_in(int body, const Vector3& global) const {
-    if (body == kGround) return global;
-    return model_.bodies[static_cast<std::size_t>(body)].orientation.transpose() * global;
-  }
-  Vector3 direction_from(int body, const Vector3& local) const {
-    if (body == kGround) return local;
-    return model_.bodies[static_cast<std::size_t>(body)].orientation * local;
-  }
-  Vector3 point_in(int body, const Vector3& global) const {
-    if (body == kGround) return global;
-    return direction_in(body, global - model_.bodies[static_cast<std::size_t>(body)].position);
-  }
-
   template <class Item>
   void begin(GroupKind kind, const Item& item, const Vector3& point_j) {
     const char* type = type_name(item.type);
@@ -89,84 +67,80 @@ class Compiler {
     if (c.alternate) r.alternate = std::make_shared<const Constraint::Alternate>(*c.alternate);
   }
 
-  // The paper's Table 1. `axis` is global, at the initial pose, like everything a joint says.
+  // The paper's Table 1.
   void joint(const Joint& j) {
-    begin(GroupKind::joint, j, point_in(j.j, j.point));
+    const JointFrames& f = model_.joints.emplace_back(complete_frames(j, model_.bodies));
+    begin(GroupKind::joint, j, f.s_j);
+    model_.groups.back().body_fixed = j.frames.has_value();
     switch (j.type) {
       case JointType::revolute:
-        coincident(j);
-        parallel(j, j.axis.stableNormalized());
+        coincident(f);
+        parallel(f);
         break;
       case JointType::spherical:
-        coincident(j);
+        coincident(f);
         break;
       case JointType::universal:
-        coincident(j);
-        perpendicular(j, j.axis_i.stableNormalized(), j.axis_j.stableNormalized());
+        coincident(f);
+        perpendicular(f.axis_i, f.axis_j);
         break;
-      case JointType::cylindrical: {
-        const Vector3 axis = j.axis.stableNormalized();
-        parallel(j, axis);
-        on_axis(j, axis);
+      case JointType::cylindrical:
+        parallel(f);
+        on_axis(f);
         break;
-      }
-      case JointType::translational: {
-        const Vector3 axis = j.axis.stableNormalized();
-        parallel(j, axis);
-        on_axis(j, axis);
-        const auto [a, b] = perpendiculars(axis);
-        perpendicular(j, a, b);
+      case JointType::translational:
+        parallel(f);
+        on_axis(f);
+        perpendicular(f.a_i, f.axis_j.cross(f.a_j));
         break;
-      }
       case JointType::fixed:
-        coincident(j);
-        parallel(j, Vector3::UnitZ());
-        perpendicular(j, Vector3::UnitX(), Vector3::UnitY());
+        coincident(f);
+        parallel(f);
+        perpendicular(f.a_i, f.axis_j.cross(f.a_j));
         break;
     }
   }
 
   // 3 CD: the joint's point is the same on both bodies.
-  void coincident(const Joint& j) {
+  void coincident(const JointFrames& f) {
     for (int k = 0; k < 3; ++k) {
       Row& r = row(RowType::CD);
       r.c = Vector3::Unit(k);
-      r.s_i = point_in(j.i, j.point);
-      r.s_j = point_in(j.j, j.point);
+      r.s_i = f.s_i;
+      r.s_j = f.s_j;
     }
   }
 
-  // DP1 between a global direction taken along by body i and one taken along by body j.
-  void perpendicular(const Joint& j, const Vector3& on_i, const Vector3& on_j) {
+  // DP1 between a direction of body i and one of body j.
+  void perpendicular(const Vector3& on_i, const Vector3& on_j) {
     Row& r = row(RowType::DP1);
-    r.a_i = direction_in(j.i, on_i);
-    r.a_j = direction_in(j.j, on_j);
+    r.a_i = on_i;
+    r.a_j = on_j;
   }
 
   // 2 DP1, the paper's perpendicular 1: the axis on body j stays normal to a plane of body i.
-  void parallel(const Joint& j, const Vector3& axis) {
-    const auto [a, b] = perpendiculars(axis);
-    perpendicular(j, a, axis);
-    perpendicular(j, b, axis);
+  void parallel(const JointFrames& f) {
+    perpendicular(f.a_i, f.axis_j);
+    perpendicular(f.axis_i.cross(f.a_i), f.axis_j);
   }
 
   // 2 DP2, the paper's perpendicular 2: the point of body j stays on the axis through that of body i.
-  void on_axis(const Joint& j, const Vector3& axis) {
-    const auto [a, b] = perpendiculars(axis);
-    for (const Vector3& normal : {a, b}) {
+  void on_axis(const JointFrames& f) {
+    for (const Vector3& normal : {f.a_i, Vector3(f.axis_i.cross(f.a_i))}) {
       Row& r = row(RowType::DP2);
-      r.a_i = direction_in(j.i, normal);
-      r.s_i = point_in(j.i, j.point);
-      r.s_j = point_in(j.j, j.point);
+      r.a_i = normal;
+      r.s_i = f.s_i;
+      r.s_j = f.s_j;
     }
   }
 
   void driver(const Driver& d) {
     if (d.type == DriverType::angle) {
       begin(GroupKind::driver, d, Vector3::Zero());
+      model_.groups.back().body_fixed = !d.a_i.isZero(0);
+      const AngleFrame frame = angle_frame(d, model_.bodies);
       Row& r = row(RowType::angle);
-      std::tie(r.a_i, r.b_i) = perpendiculars(d.axis.stableNormalized());
-      r.a_j = direction_in(d.j, direction_from(d.i, r.a_i));
+      r.a_i = frame.a_i, r.b_i = frame.b_i, r.a_j = frame.a_j;
       r.f = d.value;
     } else {
       begin(GroupKind::driver, d, d.s_j);
@@ -185,8 +159,8 @@ class Compiler {
     TorsionElement element;
     element.spring = spring;
     element.spring.axis.stableNormalize();
-    std::tie(element.a_i, element.b_i) = perpendiculars(element.spring.axis);
-    element.c_j = direction_in(spring.j, direction_from(spring.i, element.a_i));
+    const AngleFrame frame = angle_frame(spring, model_.bodies);
+    element.a_i = frame.a_i, element.b_i = frame.b_i, element.c_j = frame.a_j;
     model_.torsions.push_back(std::move(element));
   }
 
@@ -202,11 +176,17 @@ Model compile(const Scene& scene) {
   return Compiler(scene).run();
 }
 
+std::string describe_group(const Model& model, int group) {
+  static constexpr const char* kKinds[] = {"constraint", "joint", "driver"};
+  const Group& of = model.groups[static_cast<std::size_t>(group)];
+  return fmt::format("{} '{}'", kKinds[static_cast<int>(of.kind)], of.name);
+}
+
 std::string describe_row(const Model& model, int row) {
   check(row >= 0 && row < static_cast<int>(model.rows.size()), "the row is one of the model's");
-  const Group& group = model.groups[static_cast<std::size_t>(model.rows[static_cast<std::size_t>(row)].group)];
-  static constexpr const char* kKinds[] = {"constraint", "joint", "driver"};
-  std::string text = fmt::format("{} '{}'", kKinds[static_cast<int>(group.kind)], group.name);
+  const int of = model.rows[static_cast<std::size_t>(row)].group;
+  const Group& group = model.groups[static_cast<std::size_t>(of)];
+  std::string text = describe_group(model, of);
   if (group.rows > 1) text += fmt::format(" (its row {} of {})", row - group.first_row + 1, group.rows);
   return text;
 }

@@ -1,7 +1,8 @@
 // A scene taken apart into what is computed: scalar constraint rows and force elements between bodies.
 //
-// Joints and drivers become rows of a few types (the paper's Table 1); their points and axes are expressed in the body
-// frames once, at the initial pose the scene gives. Everything here is constant; a Model is shared between threads.
+// Joints and drivers become rows of a few types (the paper's Table 1); points and axes that a scene gives globally are
+// expressed in the body frames once, at the initial pose (core/joint_frames.h). Everything here is constant; a Model is
+// shared between threads.
 #pragma once
 
 #include <memory>
@@ -39,11 +40,18 @@ struct Group {
   int i = kGround, j = kGround;
   int first_row = 0, rows = 0;
   Vector3 point_j = Vector3::Zero();  // m, where its reaction is given, in body j's frame
+  bool body_fixed = false;            // a joint or an angle driver that says where it is apart from the initial pose
 };
 
 // A torsion spring with its reference directions: the angle of A_j c_j about `axis` from A_i a_i towards A_i b_i.
 struct TorsionElement {
   TorsionSpring spring;
+  Vector3 a_i = Vector3::Zero(), b_i = Vector3::Zero(), c_j = Vector3::Zero();
+};
+
+// The angle of A_j c_j about a_i × b_i from A_i a_i towards A_i b_i. Its turns are counted; it applies no force.
+struct FollowedAngle {
+  int i = kGround, j = kGround;
   Vector3 a_i = Vector3::Zero(), b_i = Vector3::Zero(), c_j = Vector3::Zero();
 };
 
@@ -53,19 +61,23 @@ struct Model {
   std::vector<Body> bodies;  // with the initial state
   std::vector<Row> rows;     // grouped, groups in the order constraints, joints, drivers of the scene
   std::vector<Group> groups;
+  std::vector<JointFrames> joints;  // complete, of unit length, in the order of the groups that are joints
 
   std::vector<PointForce> point_forces;
   std::vector<Torque> torques;
   std::vector<Spring> springs;
   std::vector<TorsionElement> torsions;
   std::vector<LinearDrag> drags;
+
+  std::vector<FollowedAngle> followed;  // none, unless signals are asked for (integrators/signals.h)
 };
 
 // Throws InputError where the scene breaks a rule of core/scene_validation.h. Names are given to what has none,
 // axes are normalized, inertias and orientations given to a few digits made symmetric and orthogonal.
 Model compile(const Scene& scene);
 
-// "constraint 'driver'", "joint 'revolute1' (its row 4 of 5)": how messages speak of a row.
+// "constraint 'driver'", "joint 'revolute1' (its row 4 of 5)": how messages speak of a group and of a row.
+std::string describe_group(const Model& model, int group);
 std::string describe_row(const Model& model, int row);
 
 }  // namespace poinsot

@@ -80,11 +80,22 @@ struct Constraint {
 
 enum class JointType { revolute, spherical, universal, cylindrical, translational, fixed };
 
+// A joint in the frames of its bodies: the same mechanism from whatever pose the file starts. Directions of any length.
+struct JointFrames {
+  Vector3 s_i = Vector3::Zero(), s_j = Vector3::Zero();        // m, the joint's point on either body
+  Vector3 axis_i = Vector3::Zero(), axis_j = Vector3::Zero();  // one axis, but for universal; not for spherical
+  // Perpendicular to the axes: directions that coincide at angle 0. Of universal: a_i coincides with axis_j at angle 0
+  // about axis_i, a_j with axis_i at angle 0 about axis_j. Translational and fixed need them; left out elsewhere, the
+  // pose that the scene gives is that of angle 0.
+  Vector3 a_i = Vector3::Zero(), a_j = Vector3::Zero();
+};
+
 struct Joint {
   std::string name;
   JointType type = JointType::revolute;
   int i = kGround, j = kGround;
-  Vector3 point = Vector3::Zero();   // m, global, at the initial pose
+  std::optional<JointFrames> frames;  // in the place of what follows
+  Vector3 point = Vector3::Zero();    // m, global, at the initial pose
   Vector3 axis = Vector3::Zero();    // global, at the initial pose, of any length: revolute, cylindrical, translational
   Vector3 axis_i = Vector3::Zero();  // as axis: universal, fixed in body i
   Vector3 axis_j = Vector3::Zero();  // as axis: universal, fixed in body j, perpendicular to axis_i
@@ -97,8 +108,9 @@ struct Driver {
   DriverType type = DriverType::angle;
   int i = kGround, j = kGround;
   Vector3 axis = Vector3::Zero();                        // of any length, in body i's frame: angle
+  Vector3 a_i = Vector3::Zero(), a_j = Vector3::Zero();  // directions that coincide at angle 0; zero: the initial pose
   Vector3 s_i = Vector3::Zero(), s_j = Vector3::Zero();  // m: distance
-  Expression value;                                      // angle in rad from the initial pose, or length in m
+  Expression value;                                      // angle in rad, or length in m
 };
 
 enum class Frame { global, body };
@@ -130,15 +142,16 @@ struct Spring {
 };
 
 // Turns body j back with stiffness x + damping v, or law(x, v, t), where x = θ − angle, v = θ̇ and θ is the angle of j
-// relative to i about an axis fixed in i, from the initial pose, counted on over full turns.
+// relative to i about an axis fixed in i, counted on over full turns.
 struct TorsionSpring {
   std::string name;
   int i = kGround, j = kGround;
-  Vector3 axis = Vector3::Zero();  // of any length, in body i's frame
-  double stiffness = 0;            // N m/rad
-  double damping = 0;              // N m s/rad
-  double angle = 0;                // rad, unloaded
-  std::optional<Expression> law;   // N m; as a spring's
+  Vector3 axis = Vector3::Zero();                        // of any length, in body i's frame
+  Vector3 a_i = Vector3::Zero(), a_j = Vector3::Zero();  // directions that coincide at angle 0; zero: the initial pose
+  double stiffness = 0;                                  // N m/rad
+  double damping = 0;                                    // N m s/rad
+  double angle = 0;                                      // rad, unloaded
+  std::optional<Expression> law;                         // N m; as a spring's
 };
 
 // Force −translational · ṙ at the centre of mass and torque −rotational · ω.

@@ -74,10 +74,43 @@ Constraint read_constraint(const JsonValue& item, const BodyNames& bodies) {
   return c;
 }
 
+namespace {
+
+bool has_any(const JsonValue& item, std::initializer_list<std::string_view> keys) {
+  return std::ranges::any_of(keys, [&](std::string_view key) { return item.optional(key).has_value(); });
+}
+
+// In the place of "point" and global axes.
+JointFrames read_frames(const JsonValue& item, std::string_view owner, JointType type) {
+  JointFrames frames;
+  if (type == JointType::spherical) {
+    item.keys(owner, {"type", "name", "bodies", "s_i", "s_j"});
+  } else {
+    item.keys(owner, {"type", "name", "bodies", "s_i", "s_j", "axis_i", "axis_j", "a_i", "a_j"});
+    frames.axis_i = read_vector(item.required("axis_i"));
+    frames.axis_j = read_vector(item.required("axis_j"));
+    if (type == JointType::translational || type == JointType::fixed) (void)item.required("a_i");
+    read_references(item, frames.a_i, frames.a_j);
+  }
+  read_points(item, frames.s_i, frames.s_j);
+  return frames;
+}
+
+}  // namespace
+
 Joint read_joint(const JsonValue& item, const BodyNames& bodies) {
   const auto& [type_name, type] = read_type(item, kJointTypes);
   Joint j;
   j.type = type;
+  if (has_any(item, {"s_i", "s_j"})) {
+    if (has_any(item, {"point", "axis"})) {
+      item.fail("found a joint in the bodies' frames (s_i, s_j) and globally (point, axis), expected one of the two");
+    }
+    j.frames = read_frames(item, fmt::format("a {} joint in the bodies' frames", type_name), type);
+    read_bodies(item, bodies, j);
+    j.name = optional_or(item, "name", read_name, std::string());
+    return j;
+  }
   switch (type) {
     case JointType::spherical:
     case JointType::fixed:
@@ -106,8 +139,9 @@ Driver read_driver(const JsonValue& item, const BodyNames& bodies) {
   Driver d;
   d.type = type;
   if (type == DriverType::angle) {
-    item.keys("an angle driver", {"type", "name", "bodies", "axis", "angle"});
+    item.keys("an angle driver", {"type", "name", "bodies", "axis", "a_i", "a_j", "angle"});
     d.axis = read_vector(item.required("axis"));
+    read_references(item, d.a_i, d.a_j);
     d.value = read_function(item.required("angle"));
   } else {
     item.keys("a distance driver", {"type", "name", "bodies", "s_i", "s_j", "length"});

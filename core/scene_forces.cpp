@@ -75,10 +75,12 @@ Spring read_spring(const JsonValue& item, const BodyNames& bodies) {
 }
 
 TorsionSpring read_torsion_spring(const JsonValue& item, const BodyNames& bodies) {
-  item.keys("a torsion spring", {"type", "name", "bodies", "axis", "stiffness", "damping", "angle", "law"});
+  item.keys("a torsion spring",
+            {"type", "name", "bodies", "axis", "a_i", "a_j", "stiffness", "damping", "angle", "law"});
   TorsionSpring spring;
   std::tie(spring.i, spring.j) = bodies.read_pair(item.required("bodies"));
   spring.axis = read_vector(item.required("axis"));
+  read_references(item, spring.a_i, spring.a_j);
   read_law(item, spring);
   spring.angle = optional_or(item, "angle", read_number, 0.0);
   return spring;

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 #include "core/input_error.h"
 #include "core/json_value.h"
@@ -250,22 +251,24 @@ class Validation {
   void joint(const Place& at, const Joint& j) const {
     known(at, "type", j.type);
     pair(at, j);
+    if (j.frames) {
+      for (const auto& [key, global] : {std::pair("point", &j.point), std::pair("axis", &j.axis),
+                                        std::pair("axis_i", &j.axis_i), std::pair("axis_j", &j.axis_j)}) {
+        if (!global->isZero(0)) at.fail(key, "found one beside the joint's frames, expected one of the two");
+      }
+      frames(at, j.type, *j.frames);
+      return;
+    }
     finite(at, "point", j.point);
     switch (j.type) {
       case JointType::spherical:
       case JointType::fixed:
         break;
-      case JointType::universal: {
+      case JointType::universal:
         direction(at, "axis_i", j.axis_i);
         direction(at, "axis_j", j.axis_j);
-        constexpr double kSquare = 1e-2;  // what is given to a few digits is left to the assembly of the initial pose
-        const double cosine = j.axis_i.stableNormalized().dot(j.axis_j.stableNormalized());
-        if (std::abs(cosine) > kSquare) {
-          at.fail("axis_j", fmt::format("found an axis at {:.4g} rad to axis_i, expected one perpendicular to it",
-                                        std::acos(std::clamp(cosine, -1.0, 1.0))));
-        }
+        perpendicular(at, "axis_j", "an axis", j.axis_j, "axis_i", j.axis_i);
         break;
-      }
       case JointType::revolute:
       case JointType::cylindrical:
       case JointType::translational:
@@ -274,11 +277,44 @@ class Validation {
     }
   }
 
+  static void frames(const Place& at, JointType type, const JointFrames& f) {
+    finite(at, "s_i", f.s_i);
+    finite(at, "s_j", f.s_j);
+    if (type == JointType::spherical) return;
+    direction(at, "axis_i", f.axis_i);
+    direction(at, "axis_j", f.axis_j);
+    const bool needed = type == JointType::translational || type == JointType::fixed;
+    references(at, f.a_i, f.a_j, needed, "axis_i", f.axis_i);
+    if (!f.a_j.isZero(0)) perpendicular(at, "a_j", "a direction", f.a_j, "axis_j", f.axis_j);
+  }
+
+  // Both directions or, where they are not needed, none.
+  static void references(const Place& at, const Vector3& a_i, const Vector3& a_j, bool needed, const char* axis_key,
+                         const Vector3& axis) {
+    finite(at, "a_i", a_i);
+    finite(at, "a_j", a_j);
+    if (!needed && a_i.isZero(0) && a_j.isZero(0)) return;
+    direction(at, "a_i", a_i);
+    direction(at, "a_j", a_j);
+    perpendicular(at, "a_i", "a direction", a_i, axis_key, axis);
+  }
+
+  static void perpendicular(const Place& at, std::string_view key, std::string_view what, const Vector3& a,
+                            std::string_view axis_key, const Vector3& axis) {
+    constexpr double kSquare = 1e-2;  // what is given to a few digits is put right
+    const double cosine = a.stableNormalized().dot(axis.stableNormalized());
+    if (std::abs(cosine) > kSquare) {
+      at.fail(key, fmt::format("found {} at {:.4g} rad to {}, expected one perpendicular to it", what,
+                               std::acos(std::clamp(cosine, -1.0, 1.0)), axis_key));
+    }
+  }
+
   void driver(const Place& at, const Driver& d) const {
     known(at, "type", d.type);
     pair(at, d);
     if (d.type == DriverType::angle) {
       direction(at, "axis", d.axis);
+      references(at, d.a_i, d.a_j, false, "axis", d.axis);
       finite(at, "angle", d.value);
     } else {
       finite(at, "s_i", d.s_i);
@@ -313,6 +349,7 @@ class Validation {
   void force(const Place& at, const TorsionSpring& f) const {
     pair(at, f);
     direction(at, "axis", f.axis);
+    references(at, f.a_i, f.a_j, false, "axis", f.axis);
     law(at, f);
     finite(at, "angle", f.angle);
   }

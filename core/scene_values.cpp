@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 #include "core/nearest_rotation.h"
 #include "core/printable.h"
@@ -70,6 +71,15 @@ Vector3 read_vector(const JsonValue& value) {
     vector[static_cast<Eigen::Index>(k)] = component.number();
   }
   return vector;
+}
+
+void read_references(const JsonValue& item, Vector3& a_i, Vector3& a_j) {
+  if (!item.optional("a_i") && !item.optional("a_j")) return;
+  for (const auto& [key, direction] : {std::pair("a_i", &a_i), std::pair("a_j", &a_j)}) {
+    const JsonValue value = item.required(key);
+    *direction = read_vector(value);
+    if (direction->isZero(0)) value.fail("found the zero vector, expected a direction");
+  }
 }
 
 Expression read_function(const JsonValue& value) {

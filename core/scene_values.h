@@ -14,6 +14,9 @@ Vector3 read_vector(const JsonValue& value);
 Expression read_function(const JsonValue& value);
 Expression read_law(const JsonValue& value);  // of a spring
 
+// The keys "a_i" and "a_j", both or neither: then the directions stay as they are.
+void read_references(const JsonValue& item, Vector3& a_i, Vector3& a_j);
+
 // Three principal moments, or a 3 × 3 matrix. kg m².
 Matrix3 read_inertia(const JsonValue& value);
 

@@ -52,12 +52,23 @@ std::string body(const Body& b) {
   return text + "}";
 }
 
+// Those that the type has and that are given.
+std::string frames_members(JointType type, const JointFrames& f) {
+  std::string text = fmt::format(", \"s_i\": {}, \"s_j\": {}", vector(f.s_i), vector(f.s_j));
+  if (type == JointType::spherical) return text;
+  text += fmt::format(", \"axis_i\": {}, \"axis_j\": {}", vector(f.axis_i), vector(f.axis_j));
+  if (!f.a_i.isZero(0)) text += fmt::format(", \"a_i\": {}, \"a_j\": {}", vector(f.a_i), vector(f.a_j));
+  return text;
+}
+
 std::string joint(const Scene& scene, const Joint& j) {
   const auto name = [&](int b) -> std::string_view {
     return b == kGround ? "ground" : std::string_view(scene.bodies[static_cast<std::size_t>(b)].name);
   };
-  std::string text = fmt::format(R"({{"type": "{}", "name": "{}", "bodies": ["{}", "{}"], "point": {})",
-                                 type_name(j.type), j.name, name(j.i), name(j.j), vector(j.point));
+  std::string text = fmt::format(R"({{"type": "{}", "name": "{}", "bodies": ["{}", "{}"])", type_name(j.type), j.name,
+                                 name(j.i), name(j.j));
+  if (j.frames) return text + frames_members(j.type, *j.frames) + "}";
+  text += fmt::format(", \"point\": {}", vector(j.point));
   if (!j.axis.isZero(0)) text += fmt::format(", \"axis\": {}", vector(j.axis));
   if (!j.axis_i.isZero(0)) text += fmt::format(", \"axis_i\": {}, \"axis_j\": {}", vector(j.axis_i), vector(j.axis_j));
   return text + "}";

@@ -46,7 +46,8 @@ class Configuration {
         s_dot(s.size(), Vec3<T>::Zero()),
         f(elements->right_sides.size()),
         dp1(elements->dp1),
-        twist(elements->torsions.size(), 0.0) {
+        twist(elements->torsions.size(), 0.0),
+        followed(elements->followed.size(), 0.0) {
     for (std::size_t k = static_cast<std::size_t>(elements->ground_markers); k < s.size(); ++k) {
       s[k] = elements->markers[k].s_bar.template cast<T>();
     }
@@ -181,6 +182,7 @@ class Configuration {
   std::vector<Jet2<T>> f;         // of every right-hand side
   std::vector<DP1Row> dp1;        // with the alternates that stand in at this time
   std::vector<double> twist;      // angle of every torsion spring at the last accepted step, rad
+  std::vector<double> followed;   // the same of angles that are followed
 
  private:
   static Jet2<T> evaluate(const RightSide& side, const T& t) {

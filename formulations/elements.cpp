@@ -178,6 +178,7 @@ struct Elements::Builder {
     for (auto& s : e.springs) move(s.p, s.q);
     for (auto& s : e.torsions) move(s.a, s.b, s.c);
     for (auto& s : e.point_forces) move(s.p);
+    for (auto& s : e.followed) move(s.a, s.b, s.c);
   }
 };
 
@@ -214,6 +215,8 @@ Elements::Elements(std::shared_ptr<const Model> of, std::span<const int> dropped
     torques.push_back({f.body, {f.torque[0], f.torque[1], f.torque[2]}, f.frame});
   }
   drags = model->drags;
+  for (const FollowedAngle& f : model->followed)
+    followed.push_back({build.marker(f.i, f.a_i), build.marker(f.i, f.b_i), build.marker(f.j, f.c_j)});
   build.sort_markers();
 }
 

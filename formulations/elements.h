@@ -86,6 +86,9 @@ struct TorsionSpringElement : SpringLaw {
   int i, j, a, b, c;
   double angle;
 };
+struct FollowedAngleElement {
+  int a, b, c;
+};
 struct PointForceElement {
   int body, p;
   Expression force[3];
@@ -136,6 +139,7 @@ struct Elements {
   std::vector<PointForceElement> point_forces;
   std::vector<TorqueElement> torques;
   std::vector<LinearDrag> drags;
+  std::vector<FollowedAngleElement> followed;
   bool has_forces() const {
     return !(springs.empty() && torsions.empty() && point_forces.empty() && torques.empty() && drags.empty());
   }

@@ -29,12 +29,14 @@ class MechanismProblem final : public Problem {
   std::unique_ptr<Problem> clone() const override {
     auto copy = std::make_unique<MechanismProblem>(mechanism_.c.elements);
     copy->mechanism_.c.twist = mechanism_.c.twist;
+    copy->mechanism_.c.followed = mechanism_.c.followed;
     return copy;
   }
   std::unique_ptr<Problem> clone_without(std::span<const int> dropped) const override {
     auto copy =
         std::make_unique<MechanismProblem>(std::make_shared<const Elements>(mechanism_.c.elements->model, dropped));
     copy->mechanism_.c.twist = mechanism_.c.twist;
+    copy->mechanism_.c.followed = mechanism_.c.followed;
     return copy;
   }
   std::string_view formulation() const override { return F::name; }
@@ -150,7 +152,7 @@ class MechanismProblem final : public Problem {
   void lower(std::span<const double> dq, std::span<double> z) const override { M::lower(dq.data(), z.data(), bodies_); }
 
   bool has_discrete_state() const override {
-    return F::space == CoordinateSpace::charts || !mechanism_.c.twist.empty();
+    return F::space == CoordinateSpace::charts || !mechanism_.c.twist.empty() || !mechanism_.c.followed.empty();
   }
   Status accept(double, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double>,
                 bool& rewritten) override {
@@ -158,6 +160,7 @@ class MechanismProblem final : public Problem {
     for (std::size_t k = 0; k < c.twist.size(); ++k) {
       c.twist[k] = Torsion<F, double>::angle(c, c.elements->torsions[k], c.twist[k]);
     }
+    for (std::size_t k = 0; k < c.followed.size(); ++k) c.followed[k] = followed_angle(static_cast<int>(k));
     rewritten = false;
     if constexpr (F::space == CoordinateSpace::charts) {
       for (int b = 0; b < bodies_; ++b) {
@@ -190,6 +193,16 @@ class MechanismProblem final : public Problem {
   }
   double energy() const override { return mechanism_.energy(); }
   std::string fault() const override { return first_fault(mechanism_.c); }
+  double twist(int torsion) const override {
+    const auto& c = mechanism_.c;
+    const std::size_t k = static_cast<std::size_t>(torsion);
+    return Torsion<F, double>::angle(c, c.elements->torsions[k], c.twist[k]);
+  }
+  double followed_angle(int of) const override {
+    const auto& c = mechanism_.c;
+    const std::size_t k = static_cast<std::size_t>(of);
+    return Torsion<F, double>::angle(c, c.elements->followed[k], c.followed[k]);
+  }
 
   std::string describe_unknown(int k) const override {
     const Elements& e = *mechanism_.c.elements;

@@ -101,9 +101,9 @@ class Problem {
   // Whether accept() has anything to do.
   virtual bool has_discrete_state() const = 0;
   // The step to (t, q, v) is accepted, and the problem stands there. What is discrete is brought up to date: turns of
-  // torsion springs, the body-fixed frames of reps, the choice among rows that depend on one another. May rewrite q, v,
-  // a and λ (not what they mean) and says so; then set_position and set_velocity are due again. Fails where rows left
-  // out do not follow from the others any more.
+  // torsion springs and angles that are followed, the body-fixed frames of reps, the choice among rows that depend on
+  // one another. May rewrite q, v, a and λ (not what they mean) and says so; then set_position and set_velocity are due
+  // again. Fails where rows left out do not follow from the others any more.
   virtual Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a,
                         std::span<double> lambda, bool& rewritten) = 0;
   // Largest |Φ| and |G v − ν| of rows that are left out because they follow from the others, when last accepted.
@@ -119,6 +119,9 @@ class Problem {
   // Which function of time or law is not finite where the problem stands, and when: "at t = 1 s driver 'motor': ...";
   // empty where none is. For messages of runs that failed.
   virtual std::string fault() const { return {}; }
+  // Angle of a torsion spring of the model, and of an angle that is followed: rad, with full turns.
+  virtual double twist(int torsion) const = 0;
+  virtual double followed_angle(int of) const = 0;
   // How messages speak of unknown k of the step's linear system: a body's coordinates or a constraint row.
   virtual std::string describe_unknown(int k) const = 0;
 

@@ -21,9 +21,10 @@ class Torsion {
   using Ambient = typename C::Ambient;
   using XX = Eigen::Matrix<T, F::m, F::m>;
 
-  // Angle of a torsion spring with its full turns: of all that fit, the one nearest to `before`, so that it goes on
-  // over ±π within a step.
-  static T angle(const C& c, const TorsionSpringElement& k, double before) {
+  // Angle of a torsion spring, or of one that is followed, with its full turns: of all that fit, the one nearest to
+  // `before`, so that it goes on over ±π within a step.
+  template <class Element>
+  static T angle(const C& c, const Element& k, double before) {
     using std::atan2;
     constexpr double turn = 2 * std::numbers::pi;
     const Vec3<T>& v = c.s[index(k.c)];

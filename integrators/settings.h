@@ -39,6 +39,7 @@ struct Settings {
   double every = 0;  // s between outputs; 0: every step
   Assembly assembly = Assembly::small;
   bool reactions = false;  // kinematics: find the multipliers, too (inverse dynamics)
+  bool signals = false;    // follow the angles of joints with their turns (integrators/signals.h), and reactions
   std::map<std::string, double, std::less<>> parameters = {};  // that are given of those the integrator declares
 
   LinearChoice linear() const { return {linear_solver, linear_system}; }

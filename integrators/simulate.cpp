@@ -14,6 +14,7 @@
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
+#include "integrators/signals.h"
 #include "integrators/start/first_state.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
@@ -79,7 +80,9 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   (void)jacobians().require(settings.jacobian);
   const IntegratorEntry& integrator = integrator_of(settings);
 
-  const auto model = std::make_shared<const Model>(compile(scene));
+  Model compiled = compile(scene);
+  if (settings.signals) compiled.followed = joint_angles(compiled);
+  const auto model = std::make_shared<const Model>(std::move(compiled));
   Outcome outcome;
   InitialState start = find_initial_state(model, settings);
   outcome.status = start.status;

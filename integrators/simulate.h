@@ -13,7 +13,8 @@
 //   });
 //   if (!outcome.status.ok()) std::puts(outcome.status.message.c_str());
 //
-// Reactions are in integrators/start/reactions.h; kinematics finds them where Settings::reactions asks.
+// Reactions are in integrators/start/reactions.h; kinematics finds them where Settings::reactions asks. Energies, joint
+// coordinates, efforts of drivers and forces of springs are in integrators/signals.h, where Settings::signals asks.
 #pragma once
 
 #include <string>

@@ -63,8 +63,8 @@ TEST_F(Check, ADerivativeThatIsNotFinite) {
 TEST_F(Check, AStateOffTheConstraints) {
   const Result result = check_model("four_link");
   EXPECT_EQ(result.status, 0);
-  expect_says(result, {"degrees of freedom: 0\n", "initial pose: violates constraint 'revD-CD-i' by 0.0087",
-                       "initial velocities: violates constraint 'univ-CD-j' by 6.28", "'link 3' most"});
+  expect_says(result, {"degrees of freedom: 0\n", "initial pose: violates constraint 'revD-CD-i' by 0.0087 m,",
+                       "initial velocities: violates constraint 'univ-CD-j' by 6.28 m/s,", "'link 3' most"});
 }
 
 TEST_F(Check, RedundantConstraintsByName) {

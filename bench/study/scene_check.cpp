@@ -9,6 +9,7 @@
 #include "core/scene_doubts.h"
 #include "core/scene_types.h"
 #include "formulations/registry.h"
+#include "integrators/start/rough_pose.h"
 
 namespace poinsot::study {
 namespace {
@@ -45,6 +46,14 @@ void measure(SceneCheck& result) {
   result.extent = box.sizes();
 }
 
+// Where the rows are looked at: a pose that is no more than a guess is closed first.
+std::vector<BodyState> pose_meant(const SceneCheck& result, std::vector<BodyState> given) {
+  if (result.violation.position <= kSatisfied || !std::ranges::any_of(result.model->groups, &Group::body_fixed))
+    return given;
+  ClosedPose pose = close_mechanism(*result.model, given);
+  return pose.closed ? std::move(pose.states) : given;
+}
+
 }  // namespace
 
 std::string_view left_free(const Group& joint) {
@@ -74,8 +83,8 @@ SceneCheck check_scene(const Scene& scene) {
   std::ranges::move(scene_doubts(*result.model), std::back_inserter(result.notices));
   measure(result);
   const std::vector<BodyState> given = given_state(*result.model);
-  result.rank = analyze_rank(result.model, given, RankNames::all);
   result.violation = violation(result.model, given);
+  result.rank = analyze_rank(result.model, pose_meant(result, given), RankNames::all);
   if (!result.rank.conflicts.empty()) return result;
   try {
     result.start = find_initial_state(result.model, Settings{});

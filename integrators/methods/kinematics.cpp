@@ -21,7 +21,7 @@ class Kinematics final : public FixedSteps {
         delta_(nc_),
         q_next_(problem_.nq()),
         dq_(nv_) {
-    if (settings_.reactions) {
+    if (settings_.reactions || settings_.signals) {
       inverse_dynamics_ = std::make_unique<Consistent>(problem_, settings_.linear());
     } else {
       x_.z.setZero(nv_);  // no multipliers

@@ -4,13 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
 
 #include "core/check.h"
+#include "core/index.h"
 #include "core/input_error.h"
 #include "core/model_faults.h"
 #include "core/so3.h"
 #include "formulations/registry.h"
+#include "integrators/start/closure.h"
+#include "integrators/start/far_joints.h"
 #include "integrators/start/rank.h"
+#include "integrators/start/rough_pose.h"
 #include "integrators/stepping/consistent.h"
 
 namespace poinsot {
@@ -18,6 +24,13 @@ namespace {
 
 // Positions off by more than this part of the mechanism's size are a mistake of the scene rather than its rounding.
 constexpr double kNearlyRight = 1e-2;
+
+constexpr double kQuarter = 0.5;  // rad: rows further off may lie on another branch than their residual shows
+constexpr double kBranch = 1;     // rad: bodies that turn by more are told
+
+double turn_between(const Matrix3& from, const Matrix3& to) {
+  return 2 * std::asin(std::min(1.0, (to - from).norm() / std::sqrt(8.0)));
+}
 
 double size_of(const std::vector<BodyState>& states) {
   double size = 1;
@@ -31,9 +44,11 @@ class Assembler {
       : model_(model), settings_(settings), given_(given_state(*model)) {}
 
   InitialState run() {
-    result_.bodies = given_;
+    tell_far_joints(*model_, result_.notices);
     before_ = violation(model_, given_);
-    refuse_if_far();
+    close_from_afar();
+    refuse_any();
+    result_.bodies = given_;
     result_.rank = analyze_rank(model_, given_, RankNames::none);
     refuse_conflicts();
     tell_rank();
@@ -57,21 +72,89 @@ class Assembler {
   bool off_position() const { return before_.position > kSatisfied; }
   bool off_velocity() const { return before_.velocity > kSatisfied; }
 
-  void refuse_if_far() const {
-    if (settings_.assembly == Assembly::never && (off_position() || off_velocity())) {
-      const bool position = off_position();
-      throw InputError(fmt::format("the initial {} violates {} by {:.3g}; allowed with --no-assemble: {:.0e}",
-                                   position ? "pose" : "velocity",
-                                   describe_row(*model_, position ? before_.position_row : before_.velocity_row),
-                                   position ? before_.position : before_.velocity, kSatisfied));
-    }
+  // Under Assembly::never.
+  void refuse_any() const {
+    if (settings_.assembly != Assembly::never || !(off_position() || off_velocity())) return;
+    const bool position = off_position();
+    throw InputError(fmt::format("the initial {} violates {} by {}; allowed with --no-assemble: {:.0e}",
+                                 position ? "pose" : "velocity",
+                                 describe_row(*model_, position ? before_.position_row : before_.velocity_row),
+                                 position ? describe_residual(*model_, before_.position_row, before_.position, 0)
+                                          : describe_residual(*model_, before_.velocity_row, before_.velocity, 1),
+                                 kSatisfied));
+  }
+
+  // A pose far from the constraints is closed first where the scene or the settings ask for it, or refused.
+  void close_from_afar() {
+    const std::vector<Gap> open = gaps(*model_, given_);
+    const auto size = [](const Gap& g) { return std::max(g.metres, g.radians); };
+    const auto most = std::ranges::max_element(open, {}, size);
     const double limit = kNearlyRight * size_of(given_);
-    if (settings_.assembly == Assembly::small && before_.position > limit) {
-      throw InputError(
-          fmt::format("the initial pose violates {} by {:.3g}, more than the {:.3g} that is put right "
-                      "unasked; correct the scene, or have it projected onto the constraints with --assemble",
-                      describe_row(*model_, before_.position_row), before_.position, limit));
+    if (open.empty() || (most->metres <= limit && most->radians <= std::min(limit, kQuarter))) return;
+    const int group = static_cast<int>(most - open.begin());
+    const bool rough = std::ranges::any_of(model_->groups, &Group::body_fixed);
+    if (settings_.assembly == Assembly::never || (settings_.assembly == Assembly::small && !rough))
+      throw InputError(far_message(group, *most, limit));
+    const ClosedPose pose = close_mechanism(*model_, given_);
+    if (!pose.closed) {
+      result_.rank = analyze_rank(model_, given_, RankNames::none);
+      refuse_conflicts();
+      throw InputError(fmt::format(
+          "no position near the given pose closes the mechanism: {} stays open by {}, at the given pose {} is by {}; "
+          "correct it, or start from a pose nearer to the one meant; `poinsot check` names conflicting constraints",
+          describe_group(*model_, pose.worst), describe(pose.gap), describe_group(*model_, group), describe(*most)));
     }
+    closed_ = true;
+    tell_closed(pose, group, *most);
+    given_ = pose.states;
+    before_ = violation(model_, given_);
+  }
+
+  std::string far_message(int group, const Gap& gap, double limit) const {
+    const Row& row = model_->rows[index(model_->groups[index(group)].first_row)];
+    if (row.type == RowType::angle) {
+      const std::vector<OpenPart> parts = open_parts(*model_, given_);
+      const double asked = row.f.at(0.0).f, off = std::ranges::find(parts, group, &OpenPart::group)->value;
+      return fmt::format(
+          "{} asks for an angle of {:.6g} rad at t = 0, where the initial pose has {:.6g} rad; correct the scene, or "
+          "have it turned there with --assemble",
+          describe_group(*model_, group), asked, asked + off);
+    }
+    return fmt::format(
+        "the initial pose violates {} by {}, more than the {:.3g} {} that is put right unasked; correct the scene, "
+        "or have it projected onto the constraints with --assemble",
+        describe_group(*model_, group), describe(gap), gap.metres > limit ? limit : std::min(limit, kQuarter),
+        gap.metres > limit ? "m" : "rad");
+  }
+
+  // The way each body was moved.
+  void tell_closed(const ClosedPose& pose, int group, const Gap& gap) {
+    double turn = 0;
+    std::size_t turned = 0;
+    std::vector<std::size_t> order(given_.size());
+    std::vector<double> moved(given_.size()), angle(given_.size());
+    for (std::size_t b = 0; b < given_.size(); ++b) {
+      order[b] = b;
+      moved[b] = (pose.states[b].r - given_[b].r).norm();
+      angle[b] = turn_between(given_[b].A, pose.states[b].A);
+      if (angle[b] > turn) turn = angle[b], turned = b;
+    }
+    std::ranges::stable_sort(order, std::greater(), [&](std::size_t b) { return std::max(moved[b], angle[b]); });
+    result_.notices.push_back(fmt::format("initial pose assembled: {} was open by {}; {}",
+                                          describe_group(*model_, group), describe(gap),
+                                          listed(order, [&](std::size_t b) {
+                                            return fmt::format("'{}' moved by {:.3g} m and turned by {:.3g} rad",
+                                                               model_->bodies[b].name, moved[b], angle[b]);
+                                          })));
+    if (pose.from_beside)
+      result_.notices.push_back(
+          "the given pose is a singular one, from which the constraints can be closed in several ways, and one was "
+          "taken; start nearer to the one that is meant");
+    else if (turn > kBranch)
+      result_.notices.push_back(fmt::format(
+          "body '{}' had to turn by {:.3g} rad: on so long a way there can be other positions that close the "
+          "mechanism; if another is meant, start nearer to it",
+          model_->bodies[turned].name, turn));
   }
 
   // Position and velocity where they are off.
@@ -158,35 +241,46 @@ class Assembler {
     for (std::size_t b = 0; b < given_.size(); ++b) {
       const BodyState &x = given_[b], &y = result_.bodies[b];
       const double dr = (y.r - x.r).norm();
-      const double turn = 2 * std::asin(std::min(1.0, (y.A - x.A).norm() / std::sqrt(8.0)));
+      const double turn = turn_between(x.A, y.A);
       if (std::max(dr, turn) > std::max(moved, turned)) body = b;
       moved = std::max(moved, dr);
       turned = std::max(turned, turn);
       velocity = std::max(velocity, (y.rd - x.rd).norm());
       spin = std::max(spin, (y.w - x.w).norm());
     }
-    if (off_position()) {
-      result_.notices.push_back(fmt::format(
-          "initial pose assembled: {} was violated by {:.3g}; the bodies moved by up to {:.3g} m and turned "
-          "by up to {:.3g} rad, '{}' most",
-          describe_row(*model_, before_.position_row), before_.position, moved, turned, model_->bodies[body].name));
+    if (off_position() && !closed_) {
+      result_.notices.push_back(
+          fmt::format("initial pose assembled: {} was violated by {}; the bodies moved by up to {:.3g} m and turned "
+                      "by up to {:.3g} rad, '{}' most",
+                      describe_row(*model_, before_.position_row),
+                      describe_residual(*model_, before_.position_row, before_.position, 0), moved, turned,
+                      model_->bodies[body].name));
     }
     if (off_velocity()) {
       result_.notices.push_back(
-          fmt::format("initial velocities assembled: {} was violated by {:.3g}; the velocities "
+          fmt::format("initial velocities assembled: {} was violated by {}; the velocities "
                       "changed by up to {:.3g} m/s and {:.3g} rad/s",
-                      describe_row(*model_, before_.velocity_row), before_.velocity, velocity, spin));
+                      describe_row(*model_, before_.velocity_row),
+                      describe_residual(*model_, before_.velocity_row, before_.velocity, 1), velocity, spin));
     }
   }
 
   std::shared_ptr<const Model> model_;
   const Settings& settings_;
-  std::vector<BodyState> given_;
+  std::vector<BodyState> given_;  // or what a pose far from the constraints was closed to
+  bool closed_ = false;
   Violation before_;
   InitialState result_;
 };
 
 }  // namespace
+
+std::string describe_residual(const Model& model, int row, double value, int order) {
+  static constexpr const char* kUnits[] = {" rad", " m", " m²", " m", " rad", ""};  // by RowType; of unit directions
+  const RowType type = model.rows[index(row)].type;
+  if (type == RowType::pfaffian) return fmt::format("{:.3g} m/s", value);
+  return fmt::format("{:.3g}{}{}", value, kUnits[static_cast<int>(type)], order == 1 ? "/s" : "");
+}
 
 std::vector<BodyState> given_state(const Model& model) {
   std::vector<BodyState> states;

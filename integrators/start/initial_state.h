@@ -2,8 +2,9 @@
 // constraints, and told what was done.
 //
 // A state that satisfies the constraints is left untouched to the last bit. Others are projected mass-orthogonally,
-// which moves them least; positions only where they are nearly right (or where the settings say so), velocities always,
-// because scenes with drivers may leave them out.
+// which moves them least; velocities always, because scenes with drivers may leave them out. Positions that are far off
+// are closed first (integrators/start/rough_pose.h), where the settings say so or where a joint or an angle driver is
+// given in the bodies' frames: then the scene says what the mechanism is apart from the pose. Others are refused.
 #pragma once
 
 #include <memory>
@@ -38,6 +39,9 @@ struct Violation {
   int position_row = -1, velocity_row = -1;
 };
 Violation violation(const std::shared_ptr<const Model>& model, const std::vector<BodyState>& states);
+
+// The residual of a row (order 0) or its rate (1) with its unit, for directions of unit length: "0.242 m²".
+std::string describe_residual(const Model& model, int row, double value, int order);
 
 // Violations up to this are rounding of the scene's numbers and are left as they are (m, rad, m/s, rad/s).
 inline constexpr double kSatisfied = 1e-10;

@@ -69,6 +69,7 @@ struct Transform {
   }
   void transform(TorsionSpring& f) const {
     f.axis = direction(f.i, f.axis);
+    f.a_i = direction(f.i, f.a_i), f.a_j = direction(f.j, f.a_j);
     f.i = new_body(f.i), f.j = new_body(f.j);
   }
   void transform(LinearDrag& f) const { f.body = new_body(f.body); }
@@ -106,6 +107,7 @@ inline Scene Transform::apply(const Scene& scene) const {
   }
   for (Driver& d : s.drivers) {
     d.axis = direction(d.i, d.axis);
+    d.a_i = direction(d.i, d.a_i), d.a_j = direction(d.j, d.a_j);
     d.s_i = point(d.i, d.s_i), d.s_j = point(d.j, d.s_j);
     d.i = new_body(d.i), d.j = new_body(d.j);
   }

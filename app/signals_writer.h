@@ -1,0 +1,28 @@
+// The signals as a table: t, then the columns of integrators/signals.h.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/number_table.h"
+#include "core/model.h"
+#include "integrators/signals.h"
+
+namespace poinsot::app {
+
+class SignalsWriter {
+ public:
+  SignalsWriter(const std::filesystem::path& file, const Model& model);  // throws InputError
+
+  const std::vector<std::string>& columns() const { return names_; }
+  void write(const Sample& sample);
+  void commit() { table_.commit(); }
+
+ private:
+  std::vector<std::string> names_;
+  NumberTable table_;
+  std::optional<Signals> signals_;  // from the first sample on
+};
+
+}  // namespace poinsot::app

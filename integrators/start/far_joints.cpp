@@ -1,0 +1,62 @@
+#include "integrators/start/far_joints.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/index.h"
+
+namespace poinsot {
+namespace {
+
+// From the nearest of the joint's bodies; the ground is near to everything.
+double arm(const Group& joint, const JointFrames& f) {
+  double least = std::numeric_limits<double>::infinity();
+  if (joint.i != kGround) least = std::min(least, f.s_i.norm());
+  if (joint.j != kGround) least = std::min(least, f.s_j.norm());
+  return least;
+}
+
+double extent(const std::vector<Body>& bodies) {
+  Vector3 low = bodies.front().position, high = low;
+  for (const Body& body : bodies) {
+    low = low.cwiseMin(body.position);
+    high = high.cwiseMax(body.position);
+  }
+  return (high - low).norm();
+}
+
+}  // namespace
+
+void tell_far_joints(const Model& model, std::vector<std::string>& notices) {
+  constexpr double kFar = 2;
+  double first = 0, second = 0;  // the two longest arms
+  std::size_t k = 0;
+  for (const Group& group : model.groups) {
+    if (group.kind != GroupKind::joint) continue;
+    const double a = arm(group, model.joints[k++]);
+    second = std::max(second, std::min(first, a));
+    first = std::max(first, a);
+  }
+  if (k == 0) return;
+  const double centres = extent(model.bodies);
+  k = 0;
+  for (const Group& group : model.groups) {
+    if (group.kind != GroupKind::joint) continue;
+    const JointFrames& f = model.joints[k++];
+    const double a = arm(group, f), others = std::max(centres, a == first ? second : first);
+    if (group.body_fixed || others == 0 || a <= kFar * others) continue;
+    const auto from = [&](int body, const Vector3& s) {
+      return body == kGround ? std::string()
+                             : fmt::format(" {:.3g} m from '{}'", s.norm(), model.bodies[index(body)].name);
+    };
+    const std::string i = from(group.i, f.s_i), j = from(group.j, f.s_j);
+    notices.push_back(
+        fmt::format("joint '{}' is far from its bodies:{}{}{}, where the mechanism without it measures "
+                    "{:.3g} m; is its point meant?",
+                    group.name, i, i.empty() || j.empty() ? "" : " and", j, others));
+  }
+}
+
+}  // namespace poinsot

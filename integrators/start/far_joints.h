@@ -1,0 +1,15 @@
+// Joints given by a global point that lies far from the bodies they join, as where "7.0" was written for "0.70".
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/model.h"
+
+namespace poinsot {
+
+// A sentence for every joint whose point is further from its bodies' centres of mass than twice the extent of the
+// mechanism without it: of the bodies' centres, and of the arms of other joints.
+void tell_far_joints(const Model& model, std::vector<std::string>& notices);
+
+}  // namespace poinsot
