@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "bench/study/verification.h"
 #include "core/scene.h"
 #include "integrators/simulate.h"
 
@@ -15,6 +16,9 @@ struct RunRecord {
   const Scene& scene;
   std::string configuration;  // JSON, as resolved: a configuration file that repeats the run
   const Outcome& outcome;
+  std::string accuracy;
+  const study::Verification* verification = nullptr;
+  bool running = false;  // the run goes on
 };
 
 std::string to_json(const RunRecord& record);

@@ -24,20 +24,21 @@ int scale(const Options& options) {
                              names_given("linear_solver", options.linear_solvers), options.most, options.repetitions};
   require_positive("--bodies", options.most);
   require_positive("--repetitions", options.repetitions);
-  make_folder(options.out);
+  try_folder(options.out);
   const int core = pin_to_one_core();
   ProgressLine progress("runs", !options.quiet);
   const std::vector<Series> all = measure_scale(request, progress.callback());
   progress.clear();
 
   Report report = scale_report(all, options.repetitions, core);
+  bool failed = false;
   if (const std::string why = write_plots({scaling_plot(all)}, options.out, report.foot); why.empty()) {
     report.text += "\n\n![Cost over the number of bodies](scaling_plot.svg)";
   } else {
-    if (!options.quiet) print_notice(why);
+    print_error(why);
+    failed = true;
     report.text += fmt::format("\n\n({})", why);
   }
-  bool failed = false;
   for (const Missing& one : missing(all)) {
     print_error(one.why);
     report.text += "\n\n" + one.why;

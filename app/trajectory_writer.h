@@ -19,7 +19,7 @@ class TrajectoryWriter {
 
   void write(const Sample& sample);
   void write(double t, std::span<const BodyState> bodies);
-  void commit() { file_.commit(); }
+  study::OutputFile& file() { return file_; }
 
  private:
   void write(const Vector3& x);

@@ -125,7 +125,12 @@ JsonDocument::JsonDocument(std::string_view text, std::string_view file)
 
 JsonDocument::~JsonDocument() = default;
 
+std::string shown_input(const std::string& file) {
+  return file == "-" ? "standard input" : file;
+}
+
 std::string read_text(const std::string& file) {
+  if (file == "-") return read_text("/dev/stdin");
   std::error_code error;
   if (std::filesystem::is_directory(file, error))
     throw InputError(fmt::format("{}: found a directory, expected a file", file));

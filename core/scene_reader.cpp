@@ -67,7 +67,7 @@ Scene parse_scene(std::string_view text, std::string_view file) {
 }
 
 Scene read_scene(const std::filesystem::path& file) {
-  return parse_scene(read_text(file.string()), file.string());
+  return parse_scene(read_text(file.string()), shown_input(file.string()));
 }
 
 }  // namespace poinsot

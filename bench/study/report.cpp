@@ -70,11 +70,8 @@ std::string csv(const Table& table, const std::vector<std::string>& foot) {
   return text;
 }
 
-void make_folder(const fs::path& directory) {
+void try_folder(const fs::path& directory) {
   if (directory.empty()) throw InputError("--out: found \"\", expected a folder");
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw InputError(fmt::format("{}: the folder cannot be made: {}", directory.string(), error.message()));
   const OutputFile attempt(directory / "tables.md");  // not committed: nothing remains of it
 }
 
@@ -87,6 +84,7 @@ std::vector<fs::path> write_report(const Report& report, const fs::path& directo
     files.push_back(std::make_unique<OutputFile>(directory / (table.file + ".csv")));
     files.back()->write(csv(table, report.foot));
   }
+  for (const auto& file : files) file->complete();  // all or none
   std::vector<fs::path> written;
   for (const auto& file : files) {
     file->commit();
