@@ -71,7 +71,7 @@ int chart(const Options& options) {
   std::vector<Scene> scenes;
   for (const fs::path& file : files) scenes.push_back(read_startable_scene(file));
   if (!options.end.empty()) (void)end_time(options.end, scenes.front());  // a wrong one, before anything is written
-  try_folder(options.out);
+  make_folder(options.out);
   const int core = pin_to_one_core();
 
   int status = kDone;

@@ -66,7 +66,7 @@ int compute_figures(const Options& options) {
   const std::vector<const FigureEntry*> entries = chosen(options.names);
   ProgressLine progress("runs", !options.quiet);
   const FigureRequest request{models_directory(options.models), options.quick, progress.callback()};
-  try_folder(options.out);
+  make_folder(options.out);
 
   Report report{"Figures", "", {}, origin_lines(-1)};
   if (options.quick) report.foot.push_back("settings: --quick, fewer and longer steps and shorter motions");

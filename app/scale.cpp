@@ -24,7 +24,7 @@ int scale(const Options& options) {
                              names_given("linear_solver", options.linear_solvers), options.most, options.repetitions};
   require_positive("--bodies", options.most);
   require_positive("--repetitions", options.repetitions);
-  try_folder(options.out);
+  make_folder(options.out);
   const int core = pin_to_one_core();
   ProgressLine progress("runs", !options.quiet);
   const std::vector<Series> all = measure_scale(request, progress.callback());

@@ -28,7 +28,7 @@ int tables(const Options& options) {
   set_setting(*find_setting("linear_solver"), request.linear_solver, checked);
   require_positive("--repetitions", request.repetitions);
   request.models = models_directory(options.models);
-  study::try_folder(options.out);
+  study::make_folder(options.out);
 
   const int core = study::pin_to_one_core();
   ProgressLine progress("runs", !options.quiet);

@@ -120,15 +120,15 @@ class Written : public testing::Test {
 
 TEST_F(Written, report_is_a_page_and_a_csv_for_each_table) {
   const fs::path out = folder_ / "new" / "folder";
-  study::try_folder(out);
+  study::make_folder(out);
   EXPECT_TRUE(fs::is_empty(out));  // trying to write left nothing
   const study::Report report{"Title", "Text.", {small_table()}, {"foot"}};
   EXPECT_THAT(study::write_report(report, out, "page"), ElementsAre(out / "page.md", out / "small.csv"));
   EXPECT_EQ(read(out / "page.md"), study::markdown(report));
   EXPECT_EQ(read(out / "small.csv"), study::csv(small_table(), {"foot"}));
   std::ofstream(folder_ / "file") << "";
-  EXPECT_THROW(study::try_folder(folder_ / "file" / "below"), InputError);
-  EXPECT_THROW(study::try_folder(""), InputError);
+  EXPECT_THROW(study::make_folder(folder_ / "file" / "below"), InputError);
+  EXPECT_THROW(study::make_folder(""), InputError);
 }
 
 TEST_F(Written, file_is_whole_or_as_it_was) {

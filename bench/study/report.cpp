@@ -70,8 +70,11 @@ std::string csv(const Table& table, const std::vector<std::string>& foot) {
   return text;
 }
 
-void try_folder(const fs::path& directory) {
+void make_folder(const fs::path& directory) {
   if (directory.empty()) throw InputError("--out: found \"\", expected a folder");
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) throw InputError(fmt::format("{}: the folder cannot be made: {}", directory.string(), error.message()));
   const OutputFile attempt(directory / "tables.md");  // not committed: nothing remains of it
 }
 

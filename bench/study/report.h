@@ -28,8 +28,8 @@ std::vector<std::string> origin_lines(int core);
 std::string markdown(const Report& report);
 std::string csv(const Table& table, const std::vector<std::string>& foot);  // foot lines begin with '#'
 
-// Tries whether files can be written there. Throws InputError.
-void try_folder(const std::filesystem::path& directory);
+// Makes the folder and tries whether files can be written there. Throws InputError.
+void make_folder(const std::filesystem::path& directory);
 
 // DIR/NAME.md and DIR/TABLE.csv; returns the files. Throws InputError where they cannot be written.
 std::vector<std::filesystem::path> write_report(const Report& report, const std::filesystem::path& directory,
