@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/json_output.h"
 #include "app/name_list.h"
 #include "app/options.h"
 #include "app/terminal.h"
@@ -15,16 +17,19 @@
 #include "core/expression.h"
 #include "core/input_error.h"
 #include "core/printable.h"
+#include "integrators/settings_reader.h"
 
 namespace poinsot::app {
 using namespace study;
 namespace {
+using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kListed = 6;  // further methods that reach the accuracy, and that do not
 
 struct Options {
   std::string scene, end, of = "position", accuracy = "1e-6", cache = user_cache().string();
   std::vector<std::string> set;
+  bool json = false, quiet = false;
 };
 
 Asked asked(const Options& options) {
@@ -123,6 +128,49 @@ void print_advice(const Options& options, const Scene& scene, const Asked& asked
   for (const std::string& sentence : advice.waste) fmt::print("costs without mattering: {}\n", sentence);
 }
 
+Json named(const PerQuantity& errors) {
+  Json object;
+  for (std::size_t k = 0; k < kQuantities.size(); ++k) object[std::string(kQuantities[k])] = errors[k];
+  return object;
+}
+
+Json listed(const Options& options, std::span<const Candidate> candidates) {
+  Json list = Json::array();
+  for (const Candidate& c : candidates) {
+    const Settings& s = c.one.settings;
+    list.push_back({{"analysis", value_text(*find_setting("analysis"), s)},
+                    {"formulation", s.formulation},
+                    {"integrator", s.integrator},
+                    {"linear_solver", s.linear_solver},
+                    {c.one.parameter(), c.one.value()},
+                    {"seconds", c.measured.seconds},
+                    {"error", named(c.measured.error)},
+                    {"command", command_line(options.scene, c.one)}});
+  }
+  return list;
+}
+
+Json advice_json(const Options& options, const Scene& scene, const Asked& asked, const Advice& advice, double end) {
+  const Reference& r = advice.reference;
+  Json of = Json::array(), unresolved = Json::array();
+  for (const std::size_t quantity : asked.quantities) of.push_back(kQuantities[quantity]);
+  for (const std::size_t quantity : advice.unresolved) unresolved.push_back(kQuantities[quantity]);
+  return {{"scene", scene.name},
+          {"end", end},
+          {"accuracy", asked.accuracy},
+          {"of", of},
+          {"reached", !advice.calibration.reaching.empty()},
+          {"reaching", listed(options, advice.calibration.reaching)},
+          {"others", listed(options, advice.calibration.others)},
+          {"reference",
+           {{"integrator", r.of().integrator},
+            {"formulation", r.of().formulation},
+            {"rtol", r.of().tight},
+            {"resolves", named(r.agreement)},
+            {"unresolved", unresolved}}},
+          {"costs_without_mattering", advice.waste}};
+}
+
 int run_advise(const Options& options) {
   const Asked what = asked(options);
   const Scene scene = read_startable_scene(options.scene, values_set(options.set));
@@ -131,15 +179,20 @@ int run_advise(const Options& options) {
   pin_to_one_core();
   std::vector<std::string> notices = scene.notices;
   const Advice advice = advise(scene, end, what, Cache(options.cache), notices);
-  for (const std::string& notice : notices) print_notice(notice);
+  if (!options.quiet)
+    for (const std::string& notice : notices) print_notice(notice);
   if (advice.reference.given < 0) {
     print_error(fmt::format("nothing can be checked: {}", why_none(advice.reference)));
     return kNumericsFailed;
   }
   for (const std::size_t quantity : advice.unresolved)
-    print_notice(fmt::format("{:g} cannot be checked: in {} the reference resolves {:.2g}", what.accuracy,
-                             kQuantities[quantity], advice.reference.agreement[quantity]));
-  print_advice(options, scene, what, advice);
+    if (!options.quiet)
+      print_notice(fmt::format("{:g} cannot be checked: in {} the reference resolves {:.2g}", what.accuracy,
+                               kQuantities[quantity], advice.reference.agreement[quantity]));
+  if (options.json)
+    print_json(stdout, advice_json(options, scene, what, advice, end));
+  else if (!options.quiet)
+    print_advice(options, scene, what, advice);
   return advice.calibration.reaching.empty() ? kNumericsFailed : kDone;
 }
 
@@ -161,6 +214,8 @@ void add_advise(CLI::App& app, int& status) {
       ->type_name("NAMES");
   add_end(*command, options->end);
   add_cache(*command, options->cache);
+  add_json(*command, options->json);
+  add_quiet(*command, options->quiet);
   command->footer("Everything named has been run on this scene and compared with a reference (`poinsot reference`).");
   command->callback([options, &status] { status = run_advise(*options); });
 }

@@ -16,6 +16,7 @@
 #include "bench/study/plot.h"
 #include "bench/study/startable_scene.h"
 #include "core/input_error.h"
+#include "core/json_document.h"
 
 namespace poinsot::app {
 using namespace study;
@@ -30,6 +31,11 @@ struct Options {
   bool all = false, quick = false, fresh = false, quiet = false;
 };
 
+// What its chart is called.
+std::string stem_of(const fs::path& scene) {
+  return scene == "-" ? "standard_input" : scene.stem().string();
+}
+
 std::vector<fs::path> scene_files(const Options& options) {
   std::set<fs::path> files(options.scenes.begin(), options.scenes.end());
   if (options.all) {
@@ -41,8 +47,8 @@ std::vector<fs::path> scene_files(const Options& options) {
   std::set<std::string> stems;
   if (files.size() > 1) stems = {"fronts_integrators", "fronts_methods"};  // written, too
   for (const fs::path& file : files)
-    if (!stems.insert(file.stem()).second)
-      throw InputError(fmt::format("{}: two tables would be written as {}.csv", file.string(), file.stem().string()));
+    if (!stems.insert(stem_of(file)).second)
+      throw InputError(fmt::format("{}: two tables would be written as {}.csv", shown_input(file), stem_of(file)));
   return {files.begin(), files.end()};
 }
 
@@ -83,11 +89,11 @@ int chart(const Options& options) {
     }
     if (r.given < 0) {
       progress.clear();
-      print_error(fmt::format("{}: no chart: {}", files[k].string(), why_none(r)));
+      print_error(fmt::format("{}: no chart: {}", shown_input(files[k]), why_none(r)));
       status = kNumericsFailed;
       continue;
     }
-    const fs::path stem = fs::path(options.out) / files[k].stem();
+    const fs::path stem = fs::path(options.out) / stem_of(files[k]);
     ChartFile file(fs::path(stem).concat(".csv"), chart_notes(scenes[k], end, r, plan, core), options.fresh);
     const double before = told.skipped;
     measure_chart(scenes[k], end, r, plan, file, [&](const study::Progress& here) {
@@ -100,7 +106,10 @@ int chart(const Options& options) {
   }
   progress.clear();
   if (charts.empty()) return status;
-  if (const std::string why = draw("work_precision", plots); !why.empty() && !options.quiet) print_notice(why);
+  if (const std::string why = draw("work_precision", plots); !why.empty()) {
+    print_error(why);
+    status = kNumericsFailed;
+  }
   std::vector<fs::path> written;
   for (const Plot& plot : plots) written.push_back(plot.csv);
   if (charts.size() > 1) {

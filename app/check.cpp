@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "app/commands.h"
+#include "app/json_output.h"
 #include "app/options.h"
 #include "app/terminal.h"
 #include "bench/study/scene_check.h"
+#include "core/json_document.h"
 #include "core/printable.h"
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
@@ -15,24 +19,39 @@
 namespace poinsot::app {
 using namespace study;
 namespace {
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string scene;
+  std::vector<std::string> set;
+  bool json = false, quiet = false;
+};
 
 std::string count(std::size_t n, std::string_view one) {
   return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
 }
 
-// "joint 'hinge', driver 'motor'": the groups that rows belong to, the first few of them. Rows of a group lie together.
-std::string groups_text(const Model& model, std::span<const int> rows) {
-  constexpr int most = 8;
+// "joint 'hinge'", "driver 'motor'": the groups that rows belong to. Rows of a group lie together.
+std::vector<std::string> groups_of(const Model& model, std::span<const int> rows) {
   constexpr const char* kinds[] = {"constraint", "joint", "driver"};
-  std::string text;
-  int groups = 0, last = -1;
+  std::vector<std::string> groups;
+  int last = -1;
   for (const int row : rows) {
     const int k = model.rows[static_cast<std::size_t>(row)].group;
-    if (k == std::exchange(last, k) || ++groups > most) continue;
+    if (k == std::exchange(last, k)) continue;
     const Group& group = model.groups[static_cast<std::size_t>(k)];
-    text += fmt::format("{}{} '{}'", groups > 1 ? ", " : "", kinds[static_cast<int>(group.kind)], group.name);
+    groups.push_back(fmt::format("{} '{}'", kinds[static_cast<int>(group.kind)], group.name));
   }
-  return groups > most ? fmt::format("{} and {} more", text, groups - most) : text;
+  return groups;
+}
+
+// The first few of them.
+std::string groups_text(const Model& model, std::span<const int> rows) {
+  constexpr std::size_t most = 8;
+  const std::vector<std::string> groups = groups_of(model, rows);
+  const std::size_t shown = std::min(most, groups.size());
+  const std::string text = fmt::format("{}", fmt::join(std::span(groups).first(shown), ", "));
+  return groups.size() > most ? fmt::format("{} and {} more", text, groups.size() - most) : text;
 }
 
 void print_header(const Model& model) {
@@ -95,12 +114,17 @@ void print_constraints(const SceneCheck& found) {
   }
 }
 
-void print_undetermined(const SceneCheck& found) {
-  if (found.rank.undetermined.empty()) return;
+std::vector<int> undetermined_rows(const SceneCheck& found) {
   std::vector<int> rows;
   for (const int group : found.rank.undetermined)
     rows.push_back(found.model->groups[static_cast<std::size_t>(group)].first_row);
-  fmt::print("reactions that redundant rows leave undetermined: {}\n", groups_text(*found.model, rows));
+  return rows;
+}
+
+void print_undetermined(const SceneCheck& found) {
+  if (found.rank.undetermined.empty()) return;
+  fmt::print("reactions that redundant rows leave undetermined: {}\n",
+             printable(groups_text(*found.model, undetermined_rows(found))));
 }
 
 void print_doubt(const SceneCheck& found) {
@@ -133,9 +157,8 @@ void print_derivatives(const SceneCheck& found) {
     fmt::print("  {}: {}: {} is off by {:.3g}\n", formulation, derivative.name, derivative.what, derivative.error);
 }
 
-int run_check(const std::string& file, const ParameterValues& set) {
-  const SceneCheck found = check_scene(read_scene(file, set));
-  for (const std::string& notice : found.notices) print_notice(notice);
+// All of it but the derivatives, which are not compared where no run can start.
+void print_text(const SceneCheck& found) {
   print_header(*found.model);
   print_measures(found);
   print_joints(*found.model);
@@ -143,25 +166,87 @@ int run_check(const std::string& file, const ParameterValues& set) {
   print_undetermined(found);
   print_doubt(found);
   print_state(found);
-  if (!found.rank.conflicts.empty()) {
-    print_error(fmt::format("{}: the constraints conflict; remove or correct one of those named", file));
-    return kWrongInput;
-  }
-  if (!found.refusal.empty()) {
-    print_error(found.refusal);
-    return kWrongInput;
-  }
+  if (!found.rank.conflicts.empty() || !found.refusal.empty()) return;
   if (!found.consistent())
-    for (const std::string& notice : found.start.notices) fmt::print("  {}\n", notice);
+    for (const std::string& notice : found.start.notices) fmt::print("  {}\n", printable(notice));
   print_derivatives(found);
-  if (found.sound()) return kDone;
+}
+
+struct Verdict {
+  int status = kDone;
+  std::string message;
+};
+
+Verdict verdict(const SceneCheck& found) {
+  if (!found.rank.conflicts.empty())
+    return {kWrongInput, "the constraints conflict; remove or correct one of those named"};
+  if (!found.refusal.empty()) return {kWrongInput, found.refusal};
+  if (found.sound()) return {};
   // Derivatives that are not finite are why the start fails where they are: they are named first.
-  print_error(found.wrong.empty() || found.start.status.failure == Failure::not_finite
-                  ? found.start.status.message
-                  : fmt::format("{}: derivatives are wrong or not finite at t = 0; try functions of time that have two "
-                                "derivatives there",
-                                file));
-  return kNumericsFailed;
+  return {kNumericsFailed,
+          found.wrong.empty() || found.start.status.failure == Failure::not_finite
+              ? found.start.status.message
+              : "derivatives are wrong or not finite at t = 0; try functions of time that have two derivatives there"};
+}
+
+Json check_json(const SceneCheck& found) {
+  const Model& model = *found.model;
+  const RankAnalysis& rank = found.rank;
+  const auto dependencies = [&](std::span<const Dependency> all, bool conflicting) {
+    Json list = Json::array();
+    for (const Dependency& d : all) {
+      const auto conflict = std::ranges::find(rank.conflicts, d.row, &Conflict::row);
+      if ((conflict != rank.conflicts.end()) != conflicting) continue;
+      Json& one =
+          list.emplace_back(Json{{"row", describe_row(model, d.row)}, {"follows_from", groups_of(model, d.others)}});
+      if (conflicting) one["off_by"] = describe(*conflict);
+    }
+    return list;
+  };
+  Json joints = Json::array();
+  for (const Group& group : model.groups)
+    if (group.kind == GroupKind::joint)
+      joints.push_back({{"name", group.name}, {"leaves_free", std::string(left_free(group))}});
+  std::vector<std::string> notices = found.notices;
+  notices.insert(notices.end(), found.start.notices.begin(), found.start.notices.end());
+  Json wrong = Json::array();
+  for (const auto& [formulation, derivative] : found.wrong)
+    wrong.push_back({{"formulation", formulation},
+                     {"of", derivative.name},
+                     {"what", derivative.what},
+                     {"off_by", derivative.error}});
+  return {{"scene", model.name},
+          {"bodies", model.bodies.size()},
+          {"rows", model.rows.size()},
+          {"mass", found.mass},
+          {"extent", {found.extent.x(), found.extent.y(), found.extent.z()}},
+          {"gravity", {model.gravity.x(), model.gravity.y(), model.gravity.z()}},
+          {"joints", joints},
+          {"degrees_of_freedom", rank.degrees_of_freedom()},
+          {"singular_position", rank.singular_position()},
+          {"singular", dependencies(rank.singular, false)},
+          {"redundant", dependencies(rank.dependent, false)},
+          {"conflicting", dependencies(rank.dependent, true)},
+          {"undetermined_reactions", groups_of(model, undetermined_rows(found))},
+          {"violation", {{"position", found.violation.position}, {"velocity", found.violation.velocity}}},
+          {"notices", notices},
+          {"derivatives",
+           {{"compared", found.derivatives}, {"largest_difference", found.derivative_error}, {"wrong", wrong}}},
+          {"sound", found.sound()},
+          {"message", verdict(found).message}};
+}
+
+int run_check(const Options& options) {
+  const SceneCheck found = check_scene(read_scene(options.scene, values_set(options.set)));
+  if (!options.quiet && !options.json)
+    for (const std::string& notice : found.notices) print_notice(notice);
+  if (options.json)
+    print_json(stdout, check_json(found));
+  else if (!options.quiet)
+    print_text(found);
+  const auto [status, message] = verdict(found);
+  if (status != kDone) print_error(fmt::format("{}: {}", shown_input(options.scene), message));
+  return status;
 }
 
 }  // namespace
@@ -169,11 +254,12 @@ int run_check(const std::string& file, const ParameterValues& set) {
 void add_check(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "check", "degrees of freedom, redundant and conflicting constraints, initial state, derivatives");
-  const auto file = std::make_shared<std::string>();
-  const auto set = std::make_shared<std::vector<std::string>>();
-  add_scene(*command, *file);
-  add_set(*command, *set);
-  command->callback([file, set, &status] { status = run_check(*file, values_set(*set)); });
+  const auto options = std::make_shared<Options>();
+  add_scene(*command, options->scene);
+  add_set(*command, options->set);
+  add_json(*command, options->json);
+  add_quiet(*command, options->quiet);
+  command->callback([options, &status] { status = run_check(*options); });
 }
 
 }  // namespace poinsot::app

@@ -17,5 +17,7 @@ void add_reference(CLI::App& app, int& status);
 void add_chart(CLI::App& app, int& status);
 void add_advise(CLI::App& app, int& status);
 void add_figures(CLI::App& app, int& status);
+void add_completion(CLI::App& app, int& status);
+void add_manual(CLI::App& app, int& status);
 
 }  // namespace poinsot::app

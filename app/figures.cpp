@@ -18,6 +18,8 @@ using namespace study;
 using namespace paper;
 namespace {
 
+constexpr const char* kText = "What the pictures show stands as numbers in CSV files beside them.";
+
 struct Options {
   std::string out = "results", models;
   std::vector<std::string> names;
@@ -38,37 +40,48 @@ std::vector<const FigureEntry*> chosen(const std::vector<std::string>& names) {
   return entries;
 }
 
+// Whether all of it is there.
+bool add_figure(const FigureEntry& entry, FigureResult result, const Options& options, Report& report) {
+  std::string pictures;
+  for (const PanelPlot& plot : result.plots) pictures += fmt::format("![{}]({}.svg)\n\n", plot.title, plot.file);
+  std::vector<std::string> failures;
+  if (const std::string why = write_plots(result.plots, options.out, report.foot); !why.empty()) {
+    failures.push_back(why);
+    pictures = fmt::format("({})\n\n", why);
+  }
+  if (!result.tables.empty()) result.tables.front().text = pictures + result.tables.front().text;
+  for (const std::string& failure : result.failures) {
+    failures.push_back(fmt::format("no figure for {}", failure));
+    result.tables.front().text += "\n\n" + failures.back();
+  }
+  for (const std::string& failure : failures) print_error(failure);
+  if (!options.quiet) fmt::print("{}\n", entry.name);
+  for (const std::string& line : result.summary)
+    if (!options.quiet) fmt::print("  {}\n", line);
+  for (Table& table : result.tables) report.tables.push_back(std::move(table));
+  return failures.empty();
+}
+
 int compute_figures(const Options& options) {
   const std::vector<const FigureEntry*> entries = chosen(options.names);
   ProgressLine progress("runs", !options.quiet);
   const FigureRequest request{models_directory(options.models), options.quick, progress.callback()};
   make_folder(options.out);
 
-  Report report{"Figures", "What the pictures show stands as numbers in CSV files beside them.", {}, origin_lines(-1)};
+  Report report{"Figures", "", {}, origin_lines(-1)};
   if (options.quick) report.foot.push_back("settings: --quick, fewer and longer steps and shorter motions");
   bool failed = false;
-  for (const FigureEntry* entry : entries) {
-    FigureResult result = entry->compute(request);
+  std::vector<std::filesystem::path> written;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    FigureResult result = entries[k]->compute(request);
     progress.clear();
-    std::string pictures;
-    for (const PanelPlot& plot : result.plots) pictures += fmt::format("![{}]({}.svg)\n\n", plot.title, plot.file);
-    if (const std::string why = write_plots(result.plots, options.out, report.foot); !why.empty()) {
-      if (!options.quiet) print_notice(why);
-      pictures = fmt::format("({})\n\n", why);
-    }
-    if (!result.tables.empty()) result.tables.front().text = pictures + result.tables.front().text;
-    for (const std::string& failure : result.failures) {
-      const std::string sentence = fmt::format("no figure for {}", failure);
-      print_error(sentence);
-      result.tables.front().text += "\n\n" + sentence;
-      failed = true;
-    }
-    if (!options.quiet) fmt::print("{}\n", entry->name);
-    for (const std::string& line : result.summary)
-      if (!options.quiet) fmt::print("  {}\n", line);
-    for (Table& table : result.tables) report.tables.push_back(std::move(table));
+    failed = !add_figure(*entries[k], std::move(result), options, report) || failed;
+    // After each, so that those of a run that is interrupted stand there.
+    report.text = kText;
+    if (k + 1 < entries.size())
+      report.text += fmt::format("\n\nIncomplete: {} of {} figures so far.", k + 1, entries.size());
+    written = write_report(report, options.out, "figures");
   }
-  const auto written = write_report(report, options.out, "figures");
   if (!options.quiet) fmt::print("{}\n", written.front().string());
   return failed ? kNumericsFailed : kDone;
 }

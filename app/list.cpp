@@ -2,15 +2,26 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/json_output.h"
+#include "app/options.h"
+#include "app/terminal.h"
 #include "formulations/registry.h"
 #include "integrators/integrator.h"
 #include "integrators/jacobian_policy.h"
+#include "integrators/settings_reader.h"
 #include "linsolve/registry.h"
 
 namespace poinsot::app {
 namespace {
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  bool json = false, quiet = false;
+};
 
 template <class Table>
 void print_table(const char* title, const Table& table) {
@@ -32,18 +43,57 @@ void print_table(const char* title, const Table& table) {
   }
 }
 
+template <class Table>
+Json listed(const Table& table) {
+  Json list = Json::array();
+  for (const auto& entry : table) {
+    Json& one = list.emplace_back(Json{{"name", entry.name}, {"about", entry.about}});
+    if constexpr (requires { entry.controls_error; }) {
+      one["analysis"] = find_setting("analysis")->names()[static_cast<std::size_t>(entry.analysis)];
+      one["order"] = entry.order;
+      one["controls_error"] = entry.controls_error;
+      one["parameters"] = one["refuses"] = Json::array();
+      for (const MethodParameter& p : entry.parameters)
+        one["parameters"].push_back(
+            {{"name", p.name}, {"about", p.about}, {"default", p.by_default}, {"least", p.least}, {"most", p.most}});
+      for (const FormulationEntry& formulation : formulations())
+        if (const auto refusal = refusal_of(entry, formulation.name))
+          one["refuses"].push_back({{"formulation", refusal->formulation}, {"why", refusal->why}});
+    }
+  }
+  return list;
+}
+
+void print_lists() {
+  print_table("formulations", formulations());
+  print_table("integrators", integrators());
+  print_table("linear solvers", linear_solvers());
+  print_table("linear systems", linear_systems());
+  print_table("jacobians", jacobians());
+}
+
+Json lists() {
+  return {{"formulations", listed(formulations())},
+          {"integrators", listed(integrators())},
+          {"linear_solvers", listed(linear_solvers())},
+          {"linear_systems", listed(linear_systems())},
+          {"jacobians", listed(jacobians())}};
+}
+
 }  // namespace
 
 void add_list(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("list", "formulations, integrators, linear solvers and Newton matrices there are");
-  command->callback([&status] {
-    print_table("formulations", formulations());
-    print_table("integrators", integrators());
-    print_table("linear solvers", linear_solvers());
-    print_table("linear systems", linear_systems());
-    print_table("jacobians", jacobians());
-    status = 0;
+  const auto options = std::make_shared<Options>();
+  add_json(*command, options->json);
+  add_quiet(*command, options->quiet);
+  command->callback([options, &status] {
+    if (options->json)
+      print_json(stdout, lists());
+    else if (!options->quiet)
+      print_lists();
+    status = kDone;
   });
 }
 

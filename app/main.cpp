@@ -1,14 +1,23 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "app/commands.h"
+#include "app/signals.h"
 #include "app/terminal.h"
 #include "bench/study/output_file.h"
 #include "core/blas.h"
@@ -57,15 +66,84 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   return fmt::format("{}; see {} --help", what, command);
 }
 
+// A descriptor that was closed would become that of the next file opened. What is put in its place takes nothing and
+// gives nothing, so that text that is lost is noticed.
+void hold_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(descriptor, F_GETFD) < 0) (void)!open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+constexpr const char* kNoMemory = "the memory does not suffice";
+
+// Where an exception can be handed on to nobody, memory that ran out included.
+[[noreturn]] void end_at_once() {
+  study::remove_unfinished();
+  const char* what = "an internal error";
+  try {
+    if (const std::exception_ptr now = std::current_exception()) std::rethrow_exception(now);
+  } catch (const std::bad_alloc&) {
+    what = kNoMemory;
+  } catch (...) {
+  }
+  for (const char* text : {"poinsot: ", what, "\n"})
+    if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;
+  _exit(app::kNumericsFailed);
+}
+
+int parse_and_run(CLI::App& app, int argc, char** argv, const int& status) {
+  using namespace poinsot::app;
+  try {
+    hold_blas_to_one_thread();
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_help) {
+    return app.exit(asked_for_help);
+  } catch (const CLI::ParseError& error) {
+    print_error(usage_error(app, error));
+    return kWrongInput;
+  }
+  return status;
+}
+
+// The exit status, whatever happens.
+int run_program(CLI::App& app, int argc, char** argv, const int& status) {
+  using namespace poinsot::app;
+  try {
+    const int ended = parse_and_run(app, argc, argv, status);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return ended;
+    print_error(fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
+    return ended == kDone ? kNumericsFailed : ended;
+  } catch (const InputError& error) {
+    print_error(error.what());
+    return kWrongInput;
+  } catch (const std::filesystem::filesystem_error& error) {  // a folder that may not be read, a loop of links
+    print_error(fmt::format("{}: {}", error.path1().string(), error.code().message()));
+    return kWrongInput;
+  } catch (const std::system_error& error) {  // of fmt::print
+    print_error(fmt::format("standard output: cannot be written: {}", error.code().message()));
+  } catch (const study::OutputError& error) {
+    print_error(error.what());
+  } catch (const std::bad_alloc&) {
+    print_error(kNoMemory);
+  } catch (const std::length_error&) {  // of a container
+    print_error(kNoMemory);
+  } catch (const std::exception& error) {
+    print_error(error.what());
+  }
+  return kNumericsFailed;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace poinsot::app;
+  hold_standard_descriptors();
+  catch_signals();
+  std::set_terminate(end_at_once);
   int status = kDone;
   CLI::App app("Poinsot: constrained rigid multibody dynamics in three formulations", "poinsot");
   app.footer(
       "Exit status: 0 done; 2 the input is wrong and nothing was written; 3 the numerics failed and what was computed\n"
-      "up to there is kept, marked incomplete.");
+      "up to there is kept, marked incomplete; 128 + n ended by signal n (Ctrl-C 130), likewise.");
   app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   add_run(app, status);
@@ -78,28 +156,11 @@ int main(int argc, char** argv) {
   add_chart(app, status);
   add_advise(app, status);
   add_figures(app, status);
+  add_completion(app, status);
+  add_manual(app, status);
   for (CLI::App* command : app.get_subcommands({}))
     for (CLI::Option* option : command->get_options())
       if (option->get_items_expected_max() == 0) option->disable_flag_override();
 
-  study::remove_unfinished_when_interrupted();
-  try {
-    hold_blas_to_one_thread();
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked_for_help) {
-    return app.exit(asked_for_help);
-  } catch (const CLI::ParseError& error) {
-    print_error(usage_error(app, error));
-    return kWrongInput;
-  } catch (const InputError& error) {
-    print_error(error.what());
-    return kWrongInput;
-  } catch (const std::bad_alloc&) {
-    print_error("the memory does not suffice for this scene");
-    return kNumericsFailed;
-  } catch (const std::exception& error) {
-    print_error(error.what());
-    return kInternalError;
-  }
-  return status;
+  return run_program(app, argc, argv, status);
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/commands.h"
+#include "app/options.h"
 #include "app/terminal.h"
 #include "bench/study/output_file.h"
 #include "core/input_error.h"
@@ -17,6 +18,7 @@ namespace {
 struct Options {
   std::string structure, out;
   int bodies = 100;
+  bool quiet = false;
 };
 
 std::string structures() {
@@ -54,8 +56,9 @@ void add_make(CLI::App& app, int& status) {
   command->add_option("STRUCTURE", options->structure, "one of:" + about)->required()->type_name("");
   command->add_option("--bodies", options->bodies, fmt::format("at least so many (default {})", options->bodies))
       ->type_name("N");
-  command->add_option("--out", options->out, "the scene file (default: the standard output)")->type_name("FILE");
-  options->out = "/dev/stdout";
+  command->add_option("--out", options->out, "the scene file (default: -, the standard output)")->type_name("FILE");
+  options->out = "-";
+  add_quiet(*command, options->quiet);
   command->callback([options, &status] { status = make(*options); });
 }
 

@@ -13,7 +13,8 @@ namespace fs = std::filesystem;
 namespace {
 
 bool holds_models(const fs::path& directory) {
-  return fs::exists(directory / fmt::format("{}.json", kMechanisms.front().file));
+  std::error_code none;  // one that may not be looked into holds none
+  return fs::exists(directory / fmt::format("{}.json", kMechanisms.front().file), none);
 }
 
 }  // namespace

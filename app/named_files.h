@@ -12,10 +12,11 @@ struct NamedFile {
   std::filesystem::path path;  // empty: there is none
 };
 
-// FILE.json beside FILE.csv; none beside a device.
+// FILE.run.json beside FILE.csv; none beside a device.
 std::filesystem::path record_beside(const std::filesystem::path& file);
 
-// Throws InputError where an output is an input or another output; devices take several.
+// Throws InputError where an output is an input or another output. Devices take several, a descriptor that stands open
+// (the standard output) takes one.
 void refuse_overwriting(std::initializer_list<NamedFile> inputs, std::initializer_list<NamedFile> outputs);
 
 }  // namespace poinsot::app

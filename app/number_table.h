@@ -2,7 +2,7 @@
 //
 // CSV has a header line and 17 significant digits: what is read back is what was computed. The .npy (format 1.0) holds
 // the same numbers as one array of rows × columns, little-endian float64 in rows ('<f8', C order); the names of the
-// columns are in the run record. Its header, of kNpyHeader bytes, says how many rows there are, and is written last.
+// columns are in the run record. Its header, of kNpyHeader bytes, says how many rows there are on the disk.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +24,13 @@ class NumberTable {
   NumberTable(const std::filesystem::path& file, const std::vector<std::string>& columns);
 
   void write(double value);  // the next of the row, which ends with the last column
-  void commit();
+  study::OutputFile& file() { return file_; }
 
  private:
-  std::string npy_header() const;
-
   study::OutputFile file_;
   const bool npy_;
   const std::size_t columns_;
   std::size_t column_ = 0;  // next
-  std::int64_t rows_ = 0;
 };
 
 }  // namespace poinsot::app

@@ -18,7 +18,7 @@ std::string option_of(std::string_view setting) {
 }  // namespace
 
 void add_scene(CLI::App& command, std::string& file) {
-  command.add_option("scene", file, "scene file")->required()->type_name("SCENE");
+  command.add_option("scene", file, "scene file; -: the standard input")->required()->type_name("SCENE");
 }
 
 void add_set(CLI::App& command, std::vector<std::string>& given) {

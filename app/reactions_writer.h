@@ -15,7 +15,7 @@ class ReactionsWriter {
   ReactionsWriter(const std::filesystem::path& file, const Model& model);  // throws InputError
 
   void write(const Sample& sample);
-  void commit() { file_.commit(); }
+  study::OutputFile& file() { return file_; }
 
  private:
   study::OutputFile file_;

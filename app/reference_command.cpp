@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/json_output.h"
 #include "app/named_files.h"
 #include "app/options.h"
 #include "app/run_record.h"
@@ -19,6 +20,7 @@ namespace poinsot::app {
 using namespace study;
 namespace {
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 constexpr int kRows = 100;  // of the trajectory, where --every does not say
 
@@ -26,7 +28,7 @@ struct Options {
   std::string scene, out, end, every, cache = user_cache().string();
   std::vector<std::string> set;
   int digits = ReferenceSettings{}.digits;
-  bool quiet = false;
+  bool json = false, quiet = false;
 };
 
 std::string row(const std::string& name, const PerQuantity& difference) {
@@ -35,14 +37,14 @@ std::string row(const std::string& name, const PerQuantity& difference) {
   return text + "\n";
 }
 
-void print_agreement(const Scene& scene, const Reference& r, const ReferenceSettings& settings) {
-  fmt::print("{}: reference at {} times to t = {:g} s\n", printable(scene.name), r.motion.t.size(), settings.end);
-  fmt::print("  {:<46}", "largest difference, relative to the motion");
-  for (const auto quantity : kQuantities) fmt::print("{:>14}", quantity);
-  fmt::print("\n");
+void print_agreement(std::FILE* out, const Scene& scene, const Reference& r, const ReferenceSettings& settings) {
+  fmt::print(out, "{}: reference at {} times to t = {:g} s\n", printable(scene.name), r.motion.t.size(), settings.end);
+  fmt::print(out, "  {:<46}", "largest difference, relative to the motion");
+  for (const auto quantity : kQuantities) fmt::print(out, "{:>14}", quantity);
+  fmt::print(out, "\n");
   for (const Reference::Method& m : r.methods)
     if (m.failure.empty())
-      fmt::print("{}",
+      fmt::print(out, "{}",
                  row(fmt::format("{} in {}, rtol {:.0e} against {:.0e}", m.integrator, m.formulation, m.loose, m.tight),
                      m.apart));
   const auto others = [&](const auto& print) {
@@ -50,24 +52,25 @@ void print_agreement(const Scene& scene, const Reference& r, const ReferenceSett
       if (m.failure.empty() && &m != &r.of()) print(m);
   };
   others([&](const Reference::Method& m) {
-    fmt::print("{}", row(fmt::format("{} in {} against {} in {}", m.integrator, m.formulation, r.of().integrator,
-                                     r.of().formulation),
-                         m.from_given));
+    fmt::print(out, "{}",
+               row(fmt::format("{} in {} against {} in {}", m.integrator, m.formulation, r.of().integrator,
+                               r.of().formulation),
+                   m.from_given));
   });
   const std::size_t quantities = kQuantities.size() - r.motion.lambda.front().empty();  // no multipliers, no digits
   others([&](const Reference::Method& m) {
-    fmt::print("  {:<46}", fmt::format("digits that agree with {} in {}", m.integrator, m.formulation));
-    for (std::size_t k = 0; k < quantities; ++k) fmt::print("{:>14.1f}", digits(m.from_given[k]));
-    fmt::print("\n");
+    fmt::print(out, "  {:<46}", fmt::format("digits that agree with {} in {}", m.integrator, m.formulation));
+    for (std::size_t k = 0; k < quantities; ++k) fmt::print(out, "{:>14.1f}", digits(m.from_given[k]));
+    fmt::print(out, "\n");
   });
-  fmt::print("  given is {} in {} with rtol {:.0e}: {}\n", r.of().integrator, r.of().formulation, r.of().tight,
+  fmt::print(out, "  given is {} in {} with rtol {:.0e}: {}\n", r.of().integrator, r.of().formulation, r.of().tight,
              r.nearest < 0 ? "no other method confirms it" : "its two tolerances are least apart");
 }
 
-std::string record(const Scene& scene, const Reference& r, const ReferenceSettings& settings) {
-  nlohmann::ordered_json json;
+Json record(const Scene& scene, const Reference& r, const ReferenceSettings& settings) {
+  Json json;
   const auto named = [](const PerQuantity& difference) {
-    nlohmann::ordered_json object;
+    Json object;
     for (std::size_t k = 0; k < kQuantities.size(); ++k) object[std::string(kQuantities[k])] = difference[k];
     return object;
   };
@@ -84,8 +87,8 @@ std::string record(const Scene& scene, const Reference& r, const ReferenceSettin
                                {"difference_of_tolerances", named(m.apart)},
                                {"difference_from_given", named(m.from_given)}});
   add_origin(json);
-  json["scene"] = nlohmann::ordered_json::parse(scene.source, nullptr, true, true);
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  json["scene"] = Json::parse(scene.source, nullptr, true, true);
+  return json;
 }
 
 int run(const Options& options) {
@@ -118,13 +121,19 @@ int run(const Options& options) {
   }
   if (trajectory) {
     for (std::size_t k = 0; k < r.motion.t.size(); ++k) trajectory->write(r.motion.t[k], r.motion.bodies[k]);
-    trajectory->commit();
+    trajectory->file().complete();
   }
   if (beside) {
-    beside->write(record(scene, r, settings));
-    beside->commit();
+    beside->write(record(scene, r, settings).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    beside->complete();
   }
-  if (!options.quiet) print_agreement(scene, r, settings);
+  if (trajectory) trajectory->file().commit();
+  if (beside) beside->commit();
+  std::FILE* const out = text_stream({options.out});
+  if (options.json)
+    print_json(out, record(scene, r, settings));
+  else if (!options.quiet)
+    print_agreement(out, scene, r, settings);
   return kDone;
 }
 
@@ -144,9 +153,10 @@ void add_reference(CLI::App& app, int& status) {
       ->type_name("N");
   command
       ->add_option("--out", options->out,
-                   "the motion, CSV, as `poinsot run` writes it; beside it .json with the evidence")
+                   "the motion, CSV, as `poinsot run` writes it; beside it .run.json with the evidence")
       ->type_name("FILE.csv");
   add_cache(*command, options->cache);
+  add_json(*command, options->json);
   add_quiet(*command, options->quiet);
   command->footer(
       "Several methods, each at two tolerances: what they differ by is stated for positions, velocities, accelerations "

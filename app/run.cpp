@@ -7,14 +7,15 @@
 #include "app/named_files.h"
 #include "app/options.h"
 #include "app/progress_line.h"
-#include "app/reactions_writer.h"
+#include "app/run_files.h"
 #include "app/run_record.h"
 #include "app/settings_options.h"
-#include "app/signals_writer.h"
-#include "app/state_saver.h"
+#include "app/signals.h"
 #include "app/terminal.h"
-#include "app/trajectory_writer.h"
-#include "bench/study/output_file.h"
+#include "app/verification_text.h"
+#include "bench/study/verification.h"
+#include "core/input_error.h"
+#include "core/json_document.h"
 #include "core/printable.h"
 #include "core/scene_reader.h"
 #include "integrators/simulate.h"
@@ -29,7 +30,7 @@ struct Options {
   std::vector<std::string> set;
   std::string columns, bodies;  // of the trajectory
   SettingsOptions settings;
-  bool quiet = false;
+  bool verify = false, quiet = false;
 };
 
 // The motion at the last output time, for the summary: of the first bodies.
@@ -56,13 +57,13 @@ void print_summary(const Scene& scene, const Settings& settings, const Outcome& 
              settings.formulation, kinematics ? "" : ", " + settings.integrator, settings.linear_solver, settings.step);
   fmt::print("t = {:g} s\n", last.t);
   std::size_t width = 4;
-  for (const Body& body : scene.bodies) width = std::max(width, body.name.size());
+  for (const Body& body : scene.bodies) width = std::max(width, printable(body.name).size());
   const auto row = [](const Vector3& x) { return fmt::format("{:12.6g} {:12.6g} {:12.6g}", x.x(), x.y(), x.z()); };
   fmt::print("  {:<{}}  {:>38}  {:>38}  {:>38}\n", "body", width, "position, m", "velocity, m/s",
              "angular velocity (body), rad/s");
   for (std::size_t b = 0; b < last.bodies.size(); ++b)
-    fmt::print("  {:<{}}  {}  {}  {}\n", scene.bodies[b].name, width, row(last.bodies[b].r), row(last.bodies[b].rd),
-               row(last.bodies[b].w));
+    fmt::print("  {:<{}}  {}  {}  {}\n", printable(scene.bodies[b].name), width, row(last.bodies[b].r),
+               row(last.bodies[b].rd), row(last.bodies[b].w));
   if (const std::size_t more = scene.bodies.size() - last.bodies.size(); more > 0 && !last.bodies.empty())
     fmt::print("  ... and {} more; --out FILE.csv writes all\n", more);
   const double steps = static_cast<double>(std::max<std::int64_t>(s.steps, 1));
@@ -79,11 +80,32 @@ void print_summary(const Scene& scene, const Settings& settings, const Outcome& 
              s.violation.velocity);
 }
 
+// What the run's status says to whoever reads it, where it did not come to its end by itself.
+void tell_interruption(const RunFiles& files, Status& status) {
+  const bool interrupted = status.failure == Failure::interrupted;
+  if (files.lost().empty() && !interrupted) return;
+  const std::string at = interrupted ? fmt::format(" at t = {:.9g} s", status.time) : "";
+  const std::string kept = files.any() && files.lost().empty() ? "; what was computed up to there is kept" : "";
+  status = {Failure::interrupted, status.time,
+            fmt::format("{}{}{}", files.lost().empty() ? signal_text() : "the run was stopped", at, kept)};
+  if (!files.lost().empty()) status.message += ": " + files.lost();
+}
+
+// Messages of what comes after reading name the scene, too.
+Outcome simulate_file(const Options& options, const Scene& scene, const Settings& settings, const Observer& observe) {
+  try {
+    return simulate(scene, settings, observe);
+  } catch (const InputError& refused) {
+    throw InputError(fmt::format("{}: {}", shown_input(options.scene), refused.what()));
+  }
+}
+
 int run(const Options& options) {
   std::vector<std::string> notices;
   Settings settings = options.settings.resolve(notices);
   settings.reactions = !options.reactions.empty();
   settings.signals = !options.signals.empty();
+  check_numbers(settings);
   Scene scene = read_scene(options.scene, values_set(options.set));
   // Beside the trajectory, or beside the first of the others that is asked for.
   fs::path named = options.out;
@@ -98,30 +120,26 @@ int run(const Options& options) {
                       {"the run record", record_file}});
   const TrajectoryContent content(scene, options.columns, options.bodies);
 
-  std::optional<TrajectoryWriter> trajectory;
-  std::optional<ReactionsWriter> reactions;
-  std::optional<SignalsWriter> signals;
-  std::optional<StateSaver> state;
-  std::optional<OutputFile> record;
-  if (!options.out.empty()) trajectory.emplace(options.out, scene, content);
-  if (!options.reactions.empty()) reactions.emplace(options.reactions, compile(scene));
-  if (!options.signals.empty()) signals.emplace(options.signals, compile(scene));
-  if (!options.save_state.empty()) state.emplace(options.save_state, scene);
-  if (!record_file.empty())
-    record.emplace(record_file);
-  else
-    std::string().swap(scene.source);  // memory of large scenes
-
-  const bool summary = !trajectory && !reactions && !signals && !options.quiet;
-  LastState last;
   Outcome outcome;
+  std::optional<Verification> verification;
+  const std::string how_accurate = accuracy(settings);
+  ColumnsByOption columns;
+  const auto record = [&](bool running) {
+    return to_json(RunRecord{options.scene, scene, to_json(settings), outcome, how_accurate,
+                             verification ? &*verification : nullptr, running, columns});
+  };
+  RunFiles files({options.out, options.reactions, options.signals, options.save_state, record_file}, scene, content,
+                 [&] { return record(true); });
+  columns = files.unnamed_columns();
+  const bool summary = !files.any() && !options.quiet;
+  if (record_file.empty()) std::string().swap(scene.source);  // memory of large scenes
+  LastState last;
+  std::optional<Deferred> deferred;  // from the first sample on there is something to keep
   {
     ProgressLine progress("s", !options.quiet);
-    outcome = simulate(scene, settings, [&](const Sample& sample) {
-      if (trajectory) trajectory->write(sample);
-      if (reactions) reactions->write(sample);
-      if (signals) signals->write(sample);
-      if (state) state->keep(sample);
+    outcome = simulate_file(options, scene, settings, [&](const Sample& sample) {
+      if (!deferred) deferred.emplace();
+      files.write(sample);
       if (summary) {
         last.t = sample.t;
         last.bodies.resize(std::min(kShown, scene.bodies.size()));
@@ -131,25 +149,26 @@ int run(const Options& options) {
     });
   }
   outcome.notices.insert(outcome.notices.begin(), notices.begin(), notices.end());
-
-  if (record) {
-    RunRecord told{options.scene, scene, to_json(settings), outcome};
-    if (trajectory && is_npy(options.out)) told.columns.emplace_back("--out", trajectory->columns());
-    if (signals && is_npy(options.signals)) told.columns.emplace_back("--signals", signals->columns());
-    record->write(to_json(told));
-  }
-  if (trajectory) trajectory->commit();
-  if (reactions) reactions->commit();
-  if (signals) signals->commit();
-  if (state && outcome.status.ok()) state->commit();
-  if (record) record->commit();
+  files.complete(outcome.status.ok());
+  tell_interruption(files, outcome.status);
+  if (options.verify && outcome.status.ok())
+    verification = verify(scene, settings);
+  else if (options.verify)
+    verification.emplace().failure = "the run did not come to its end";
+  files.commit(record_file.empty() ? "" : record(false));
 
   if (!options.quiet)
     for (const std::string& notice : outcome.notices) print_notice(notice);
-  if (summary) print_summary(scene, settings, outcome, last);
-  if (outcome.status.ok()) return kDone;
-  print_error(outcome.status.message);
-  return kNumericsFailed;
+  if (summary) {
+    print_summary(scene, settings, outcome, last);
+    fmt::print("accuracy: {}{}\n", how_accurate, options.verify ? "" : "; --verify");
+  }
+  if (verification && !options.quiet)
+    print(text_stream({options.out, options.reactions, options.signals, options.save_state}), *verification);
+  if (!outcome.status.ok()) print_error(outcome.status.message);
+  if (caught_signal() != 0 && (!outcome.status.ok() || verification)) return signal_status();
+  if (outcome.status.ok() && !files.lost().empty()) print_error(files.lost());  // the record
+  return outcome.status.ok() && files.lost().empty() ? kDone : kNumericsFailed;
 }
 
 }  // namespace
@@ -163,7 +182,7 @@ void add_run(CLI::App& app, int& status) {
   command
       ->add_option(
           "--out", options->out,
-          "trajectory, CSV (NumPy's array where it ends in .npy); the run record is written beside it as .json")
+          "trajectory, CSV (NumPy's array where it ends in .npy); the run record is written beside it as .run.json")
       ->type_name("FILE.csv");
   command
       ->add_option("--columns", options->columns,
@@ -179,10 +198,14 @@ void add_run(CLI::App& app, int& status) {
       ->type_name("FILE.csv");
   command->add_option("--save-state", options->save_state, "the scene as it stands at the end, to run on from")
       ->type_name("FILE.json");
+  command->add_flag(
+      "--verify", options->verify,
+      "compute it again with half the step, or a tenth of the tolerances, and tell how far apart they are");
   add_quiet(*command, options->quiet);
   command->footer(
       "Without --out, --reactions and --signals a short summary is printed. Numbers may be constant expressions, as\n"
-      "in scenes: --step 1/1000 --end 2*pi.");
+      "in scenes: --step 1/1000 --end 2*pi. - is the standard input as SCENE and the standard output as FILE.csv.\n"
+      "`tail -f FILE.csv` follows a run. Ctrl-C ends it and keeps what was computed.");
   command->callback([options, &status] { status = run(*options); });
 }
 

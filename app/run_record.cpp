@@ -5,6 +5,24 @@
 #include "core/provenance.h"
 
 namespace poinsot::app {
+namespace {
+
+nlohmann::ordered_json packed(const study::Verification& verification) {
+  nlohmann::ordered_json json;
+  json["against"] = verification.against;
+  json["failure"] = verification.failure;
+  json["times"] = verification.times;
+  json["quantities"] = nlohmann::ordered_json::array();
+  for (const auto& q : verification.quantities) {
+    json["quantities"].push_back(
+        {{"quantity", q.name}, {"unit", q.unit}, {"apart", q.apart}, {"where", q.where}, {"t", q.t}});
+    if (q.order) json["quantities"].back()["order"] = *q.order;
+    if (q.error) json["quantities"].back()["error"] = *q.error;
+  }
+  return json;
+}
+
+}  // namespace
 
 void add_origin(nlohmann::ordered_json& json) {
   const Provenance& origin = provenance();
@@ -27,11 +45,13 @@ std::string to_json(const RunRecord& record) {
   const Statistics& s = record.outcome.statistics;
 
   Json json;
-  json["status"] = name(failure);
-  json["incomplete"] = failure != Failure::none;
-  json["message"] = message;
+  json["status"] = record.running ? "running" : name(failure);
+  json["incomplete"] = record.running || failure != Failure::none;
+  json["message"] = record.running ? "the run goes on, or was killed; the files hold what it computed" : message;
   if (failure != Failure::none) json["failure_time"] = time;
   json["notices"] = record.outcome.notices;
+  json["accuracy"] = record.accuracy;
+  if (record.verification) json["verify"] = packed(*record.verification);
   json["reactions_undetermined"] = !record.outcome.undetermined_reactions.empty();
   json["undetermined_reactions"] = record.outcome.undetermined_reactions;
   auto linear = nlohmann::ordered_json::array();

@@ -7,17 +7,24 @@
 #include <utility>
 #include <vector>
 
+#include "bench/study/verification.h"
 #include "core/scene.h"
 #include "integrators/simulate.h"
 
 namespace poinsot::app {
+
+// Of files without a header.
+using ColumnsByOption = std::vector<std::pair<std::string, std::vector<std::string>>>;
 
 struct RunRecord {
   std::filesystem::path scene_file;
   const Scene& scene;
   std::string configuration;  // JSON, as resolved: a configuration file that repeats the run
   const Outcome& outcome;
-  std::vector<std::pair<std::string, std::vector<std::string>>> columns = {};  // by option, of files without a header
+  std::string accuracy;
+  const study::Verification* verification = nullptr;
+  bool running = false;  // the run goes on
+  ColumnsByOption columns = {};
 };
 
 std::string to_json(const RunRecord& record);

@@ -31,13 +31,14 @@ int scale(const Options& options) {
   progress.clear();
 
   Report report = scale_report(all, options.repetitions, core);
+  bool failed = false;
   if (const std::string why = write_plots({scaling_plot(all)}, options.out, report.foot); why.empty()) {
     report.text += "\n\n![Cost over the number of bodies](scaling_plot.svg)";
   } else {
-    if (!options.quiet) print_notice(why);
+    print_error(why);
+    failed = true;
     report.text += fmt::format("\n\n({})", why);
   }
-  bool failed = false;
   for (const Missing& one : missing(all)) {
     print_error(one.why);
     report.text += "\n\n" + one.why;

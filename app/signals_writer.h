@@ -17,7 +17,7 @@ class SignalsWriter {
 
   const std::vector<std::string>& columns() const { return names_; }
   void write(const Sample& sample);
-  void commit() { table_.commit(); }
+  study::OutputFile& file() { return table_.file(); }
 
  private:
   std::vector<std::string> names_;

@@ -14,9 +14,8 @@ void StateSaver::keep(const Sample& sample) {
   for (std::size_t k = 0; k < twists_.size(); ++k) twists_[k] = sample.problem.twist(static_cast<int>(k));
 }
 
-void StateSaver::commit() {
+void StateSaver::write() {
   file_.write(saved_scene(scene_, time_, bodies_, twists_));
-  file_.commit();
 }
 
 }  // namespace poinsot::app

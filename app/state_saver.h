@@ -14,7 +14,8 @@ class StateSaver {
   StateSaver(const std::filesystem::path& file, const Scene& scene);  // throws InputError
 
   void keep(const Sample& sample);
-  void commit();  // of a run that came to its end
+  void write();  // of a run that came to its end
+  study::OutputFile& file() { return file_; }
 
  private:
   study::OutputFile file_;

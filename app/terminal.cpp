@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 #include <string>
 
+#include "bench/study/output_file.h"
 #include "core/printable.h"
 
 namespace poinsot::app {
@@ -29,18 +31,34 @@ std::string shown(std::string_view sentence) {
   return text;
 }
 
+void say(std::string_view who, std::string_view sentence) noexcept {
+  try {
+    const std::string line = fmt::format("{} {}\n", who, shown(sentence));
+    std::fwrite(line.data(), 1, line.size(), stderr);
+  } catch (const std::bad_alloc&) {  // as it is, then
+    std::fwrite(sentence.data(), 1, sentence.size(), stderr);
+    std::fputc('\n', stderr);
+  }
+}
+
 }  // namespace
 
 bool stderr_is_terminal() {
   return isatty(STDERR_FILENO) == 1;
 }
 
-void print_error(std::string_view sentence) {
-  fmt::print(stderr, "{} {}\n", coloured() ? "\x1b[1;31mpoinsot:\x1b[0m" : "poinsot:", shown(sentence));
+void print_error(std::string_view sentence) noexcept {
+  say(coloured() ? "\x1b[1;31mpoinsot:\x1b[0m" : "poinsot:", sentence);
 }
 
-void print_notice(std::string_view sentence) {
-  fmt::print(stderr, "{} {}\n", coloured() ? "poinsot: \x1b[1;33mnote:\x1b[0m" : "poinsot: note:", shown(sentence));
+void print_notice(std::string_view sentence) noexcept {
+  say(coloured() ? "poinsot: \x1b[1;33mnote:\x1b[0m" : "poinsot: note:", sentence);
+}
+
+std::FILE* text_stream(std::initializer_list<std::filesystem::path> outputs) {
+  for (const std::filesystem::path& output : outputs)
+    if (!output.empty() && study::open_descriptor(output) == STDOUT_FILENO) return stderr;
+  return stdout;
 }
 
 }  // namespace poinsot::app

@@ -36,7 +36,7 @@ class TrajectoryWriter {
   const std::vector<std::string>& columns() const { return names_; }
   void write(const Sample& sample);
   void write(double t, std::span<const BodyState> bodies);
-  void commit() { table_.commit(); }
+  study::OutputFile& file() { return table_.file(); }
 
  private:
   void write(const Vector3& x);

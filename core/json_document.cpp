@@ -134,7 +134,12 @@ std::string JsonDocument::text() const {
   return json_->dump();
 }
 
+std::string shown_input(const std::string& file) {
+  return file == "-" ? "standard input" : file;
+}
+
 std::string read_text(const std::string& file) {
+  if (file == "-") return read_text("/dev/stdin");
   std::error_code error;
   if (std::filesystem::is_directory(file, error))
     throw InputError(fmt::format("{}: found a directory, expected a file", file));

@@ -138,7 +138,7 @@ Scene parse_scene(std::string_view text, std::string_view file, const ParameterV
 }
 
 Scene read_scene(const std::filesystem::path& file, const ParameterValues& set) {
-  return parse_scene(read_text(file.string()), file.string(), set);
+  return parse_scene(read_text(file.string()), shown_input(file.string()), set);
 }
 
 Scene with_parameters(const Scene& scene, const std::map<std::string, double>& values) {

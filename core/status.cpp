@@ -24,6 +24,8 @@ std::string_view name(Failure failure) {
       return "step_size_too_small";
     case Failure::refused:
       return "refused";
+    case Failure::interrupted:
+      return "interrupted";
   }
   return "unknown";
 }

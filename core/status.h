@@ -17,6 +17,7 @@ enum class Failure {
   singular_position,        // the mechanism starts where its constraints depend on one another, and no branch is chosen
   step_size_too_small,      // error control asks for steps that do not advance the time
   refused,                  // the chosen linear solver does not take this system
+  interrupted,              // from outside (core/interruption.h): nothing is wrong with what was computed
 };
 
 // The failure's name as it stands in the run record: "ok", "not_converged", ...

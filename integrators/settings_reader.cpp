@@ -104,7 +104,9 @@ bool in_range(const SettingEntry& entry, double value) {
 }
 
 void set_number(const SettingEntry& entry, double value, const Source& source, Settings& settings) {
-  if (!in_range(entry, value)) source.expected(allowed_number(entry));
+  constexpr double kBeyondMeasure = 1e-100;  // a bound that says nothing to one who gives 0
+  const bool positive = value <= 0 && entry.least > 0 && entry.least < kBeyondMeasure;
+  if (!in_range(entry, value)) source.expected(positive ? "a number greater than 0" : allowed_number(entry));
   if (const auto* number = std::get_if<double Settings::*>(&entry.member)) {
     settings.*(*number) = value;
   } else if (const auto* optional = std::get_if<std::optional<double> Settings::*>(&entry.member)) {
@@ -238,7 +240,7 @@ void set_setting(const SettingEntry& entry, std::string_view text, Settings& set
 }
 
 void read_settings(const std::filesystem::path& file, Settings& settings) {
-  parse_settings(read_text(file.string()), file.string(), settings);
+  parse_settings(read_text(file.string()), shown_input(file.string()), settings);
 }
 
 void parse_settings(std::string_view text, std::string_view file, Settings& settings) {

@@ -58,7 +58,7 @@ double angle_rate(const Attached& a, const Attached& b, const Attached& c) {
 
 // What pulls the ends of a spring together, N, or turns body j of a torsion spring back, N m.
 template <class AnySpring>
-double effort(const AnySpring& spring, double x, double rate, double t) {
+double spring_effort(const AnySpring& spring, double x, double rate, double t) {
   if (spring.law) return spring.law->law(Arguments<double>{t, x, rate}).F;
   return spring.stiffness * x + spring.damping * rate;
 }
@@ -219,7 +219,7 @@ void Signals::add_springs() {
     const double rate = length > 0 ? d.x.dot(d.rate) / length : 0;
     add(length);
     add(rate);
-    add(length > 0 ? effort(s, length - s.length, rate, sample_->t) : 0);  // of no length, it pulls in no direction
+    add(length > 0 ? spring_effort(s, length - s.length, rate, sample_->t) : 0);  // of no length, it pulls in no direction
   }
   for (std::size_t k = 0; k < model.torsions.size(); ++k) {
     const TorsionElement& t = model.torsions[k];
@@ -228,7 +228,7 @@ void Signals::add_springs() {
                                    direction(bodies_, t.spring.j, t.c_j));
     add(angle);
     add(rate);
-    add(effort(t.spring, angle - t.spring.angle, rate, sample_->t));
+    add(spring_effort(t.spring, angle - t.spring.angle, rate, sample_->t));
   }
 }
 

@@ -43,7 +43,8 @@ std::string names(const char* key) {
 
 TEST_F(WrongInput, Usage) {
   const std::string commands =
-      "run, check, list, tables, make, scale, reference, chart, advise, figures; see poinsot --help";
+      "run, check, list, tables, make, scale, reference, chart, advise, figures, completion, manual; see poinsot "
+      "--help";
   expect_refused({}, "poinsot: found no command, expected one of " + commands);
   expect_refused({"fly"}, "poinsot: found \"fly\", expected one of " + commands);
   expect_refused({"--fly"}, "poinsot: found \"--fly\", expected one of " + commands);
@@ -162,25 +163,24 @@ TEST_F(WrongInput, OutputPaths) {
     arguments.insert(arguments.begin(), {"run", "pendulum.json"});
     expect_refused(arguments, "poinsot: " + message);
   };
-  refused({"--out", "no/such/a.csv"}, "no/such/a.csv: cannot be written: No such file or directory");
+  refused({"--out", "pendulum.json/a.csv"}, "pendulum.json: the folder cannot be made: Not a directory");
   refused({"--out", "."}, ".: cannot be written: it is a directory; give a file name");
-  refused({"--out", "a.csv", "--reactions", "no/r.csv"}, "no/r.csv: cannot be written: No such file or directory");
-  refused({"--out", "pendulum.csv"},
-          "pendulum.json: the run record would overwrite the scene; choose another name or folder for the output");
+  refused({"--out", "no/such/a.csv", "--reactions", "."}, ".: cannot be written: it is a directory; give a file name");
   refused({"--out", "pendulum.json"},
           "pendulum.json: --out would overwrite the scene; choose another name or folder for the output");
   refused({"--out", "a.csv", "--reactions", "./a.csv"},
           "a.csv: --out and --reactions would be the same file; choose different names");
-  refused({"--out", "a.json"}, "a.json: --out and the run record would be the same file; choose different names");
+  refused({"--out", "r.csv", "--reactions", "r.run.json"},
+          "r.run.json: --reactions and the run record would be the same file; choose different names");
 }
 
 TEST_F(WrongInput, KinematicsOfAMechanismThatCanMove) {
   const Result result = poinsot({"run", "pendulum.json", "--analysis", "kinematics", "--out", "a.csv"});
   EXPECT_EQ(result.status, 2);
-  EXPECT_EQ(
-      result.err,
-      "poinsot: kinematics needs a mechanism without degrees of freedom, this one has 1; add drivers, or use analysis "
-      "dynamics\n");
+  EXPECT_EQ(result.err,
+            "poinsot: pendulum.json: kinematics needs a mechanism without degrees of freedom, this one has 1; add "
+            "drivers, or use analysis "
+            "dynamics\n");
   EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
 }
 

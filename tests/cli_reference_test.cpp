@@ -45,7 +45,7 @@ TEST_F(ReferenceCommand, GivesTheMotionAndHowManyDigitsAgree) {
     EXPECT_NEAR(std::stod(f[2]), std::cos(angle(t)), 1e-11);
     EXPECT_NEAR(std::stod(f[3]), std::sin(angle(t)), 1e-11);
   }
-  const auto record = read_json("motion.json");
+  const auto record = read_json("motion.run.json");
   for (const char* quantity : {"position", "velocity", "acceleration", "multiplier"}) {
     EXPECT_LT(record["agreement"][quantity].get<double>(), 1e-11) << quantity;
     for (const auto& method : record["methods"]) EXPECT_EQ(method["failure"], "");
@@ -106,7 +106,7 @@ TEST_F(ReferenceCommand, TakesRoundingForNoMotion) {
     const Result result =
         poinsot({"reference", scene + ".json", "--end", "1", "--cache", "", "--quiet", "--out", scene + "_motion.csv"});
     ASSERT_EQ(result.status, 0) << result.err;
-    const auto record = read_json(scene + "_motion.json");
+    const auto record = read_json(scene + "_motion.run.json");
     for (const char* quantity : {"position", "velocity", "acceleration", "multiplier"})
       EXPECT_LT(record["agreement"][quantity].get<double>(), 1e-9) << scene << ": " << quantity;
   }
@@ -123,7 +123,7 @@ TEST_F(ReferenceCommand, WhereTheTolerancesAskForTooMuchGoesBackToSuchAsPass) {
       poinsot({"reference", "jump.json", "--end", "0.3", "--every", "0.3", "--cache", "", "--out", "motion.csv"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NEAR(std::stod(fields(lines(read("motion.csv")).back())[1]), 1e4 * 0.2 * 0.2, 1e-8);
-  const auto record = read_json("motion.json");
+  const auto record = read_json("motion.run.json");
   int went_back = 0;
   for (const auto& method : record["methods"]) {
     EXPECT_EQ(method["failure"], "") << method;

@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstring>
 
 #include "command_line.h"
 #include "core/provenance.h"
@@ -23,9 +22,9 @@ TEST_F(Run, PrintsASummaryWithoutAnOutputFile) {
   const Result result = poinsot({"run", "pendulum.json", "--end", "0.1"});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.err, "");
-  for (const char* part :
-       {"pendulum: dynamics, rA, implicit_euler, auto, h = 0.001 s", "t = 0.1 s", "rod",
-        "block on the whole matrix: ", "100 steps", "Newton iterations", "assembly", "largest violation"})
+  for (const char* part : {"pendulum: dynamics, rA, implicit_euler, auto, h = 0.001 s", "t = 0.1 s", "rod",
+                           "block on the whole matrix: ", "100 steps", "Newton iterations", "assembly",
+                           "largest violation", "\naccuracy: not estimated; --verify\n"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
   EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
 }
@@ -44,7 +43,7 @@ TEST_F(Run, TheCommandLineWinsOverTheConfiguration) {
   const Result result = poinsot(
       {"run", "pendulum.json", "--config", "config.json", "--formulation", "reps", "--end", "0.2", "--out", "a.csv"});
   ASSERT_EQ(result.status, 0) << result.err;
-  const nlohmann::json used = read_json("a.json")["configuration"];
+  const nlohmann::json used = read_json("a.run.json")["configuration"];
   EXPECT_EQ(used["formulation"], "reps");
   EXPECT_EQ(used["jacobian"], "simplified");
   EXPECT_EQ(used["step"], 0.005);
@@ -56,11 +55,13 @@ TEST_F(Run, TheCommandLineWinsOverTheConfiguration) {
 TEST_F(Run, TheRecordSaysWhereTheNumbersComeFrom) {
   const Result result = poinsot({"run", "pendulum.json", "--end", "0.1", "--out", "a.csv", "--reactions", "r.csv"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(files(), (std::vector<std::string>{"a.csv", "a.json", "pendulum.json", "r.csv"}));
-  const nlohmann::json record = read_json("a.json");
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.csv", "a.run.json", "pendulum.json", "r.csv"}));
+  const nlohmann::json record = read_json("a.run.json");
   EXPECT_EQ(record["status"], "ok");
   EXPECT_EQ(record["incomplete"], false);
   EXPECT_EQ(record["message"], "");
+  EXPECT_EQ(record["accuracy"], "not estimated");
+  EXPECT_FALSE(record.contains("verify"));
   EXPECT_EQ(record["scene"], nlohmann::json::parse(kPendulum, nullptr, true, true));
   EXPECT_EQ(record["scene_file"], "pendulum.json");
   const Provenance& origin = provenance();
@@ -102,7 +103,7 @@ TEST_F(Run, AnAbsoluteToleranceThatIsNotGivenFollowsTheRelativeOne) {
   const auto atol = [&](std::vector<std::string> options) {
     options.insert(options.begin(), {"run", "pendulum.json", "--integrator", "dop853", "--out", "motion.csv"});
     EXPECT_EQ(poinsot(options).status, 0);
-    return read_json("motion.json")["configuration"]["atol"].get<double>();
+    return read_json("motion.run.json")["configuration"]["atol"].get<double>();
   };
   EXPECT_DOUBLE_EQ(atol({}), 1e-10);
   EXPECT_DOUBLE_EQ(atol({"--rtol", "1e-12"}), 1e-14);
@@ -114,7 +115,7 @@ TEST_F(Run, TheRecordedConfigurationRepeatsTheRun) {
                      "--out", "a.csv"})
                 .status,
             0);
-  write("again.json", read_json("a.json")["configuration"].dump());
+  write("again.json", read_json("a.run.json")["configuration"].dump());
   const Result again = poinsot({"run", "pendulum.json", "--config", "again.json", "--out", "b.csv"});
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_TRUE(read("a.csv") == read("b.csv"));
@@ -154,8 +155,8 @@ TEST_F(Run, AStepThatDoesNotDivideTheEndIsShortenedWithANotice) {
             "poinsot: note: end 0.1 s is not a multiple of step 0.03 s: the step is shortened to 0.025 s, so that step "
             "4 lands "
             "on the end exactly\n");
-  EXPECT_EQ(read_json("a.json")["configuration"]["step"], 0.025);
-  EXPECT_EQ(read_json("a.json")["notices"].size(), 1u);
+  EXPECT_EQ(read_json("a.run.json")["configuration"]["step"], 0.025);
+  EXPECT_EQ(read_json("a.run.json")["notices"].size(), 1u);
   const std::vector<std::string> rows = lines(read("a.csv"));
   ASSERT_EQ(rows.size(), 6u);
   EXPECT_EQ(std::stod(fields(rows.back())[0]), 0.1);
@@ -163,7 +164,13 @@ TEST_F(Run, AStepThatDoesNotDivideTheEndIsShortenedWithANotice) {
 
 TEST_F(Run, ReactionsAloneHaveTheirRecordBesideThem) {
   ASSERT_EQ(poinsot({"run", "pendulum.json", "--end", "0.01", "--reactions", "r.csv"}).status, 0);
-  EXPECT_EQ(files(), (std::vector<std::string>{"pendulum.json", "r.csv", "r.json"}));
+  EXPECT_EQ(files(), (std::vector<std::string>{"pendulum.json", "r.csv", "r.run.json"}));
+}
+
+TEST_F(Run, AScenesOwnNameServesForTheTrajectory) {
+  ASSERT_EQ(poinsot({"run", "pendulum.json", "--end", "0.01", "--out", "pendulum.csv"}).status, 0);
+  EXPECT_EQ(files(), (std::vector<std::string>{"pendulum.csv", "pendulum.json", "pendulum.run.json"}));
+  EXPECT_EQ(read("pendulum.json"), kPendulum);
 }
 
 TEST_F(Run, ADeviceIsWrittenDirectly) {
@@ -194,7 +201,7 @@ TEST_F(Run, WhatWasComputedBeforeANumericalFailureIsKept) {
     ASSERT_EQ(lines(result.err).size(), 1u) << result.err;
     EXPECT_TRUE(result.err.starts_with("poinsot: ")) << result.err;
     EXPECT_NE(result.err.find("t = "), std::string::npos) << result.err;
-    const nlohmann::json record = read_json("a.json");
+    const nlohmann::json record = read_json("a.run.json");
     EXPECT_NE(record["status"], "ok");
     EXPECT_EQ(record["incomplete"], true);
     EXPECT_EQ("poinsot: " + record["message"].get<std::string>() + "\n", result.err);
@@ -204,19 +211,9 @@ TEST_F(Run, WhatWasComputedBeforeANumericalFailureIsKept) {
     const double last = std::stod(fields(rows.back())[0]);
     EXPECT_LT(last, 1.05);
     EXPECT_NEAR(record["failure_time"].get<double>(), last + 0.01, 1e-9);
-    EXPECT_EQ(files(), (std::vector<std::string>{"a.csv", "a.json", "overstretched.json", "pendulum.json", "r.csv"}));
+    EXPECT_EQ(files(),
+              (std::vector<std::string>{"a.csv", "a.run.json", "overstretched.json", "pendulum.json", "r.csv"}));
   }
-}
-
-TEST_F(Run, AnInterruptedRunLeavesNothing) {
-  const pid_t child = start({"run", "pendulum.json", "--end", "1e6", "--every", "1", "--out", "a.csv"});
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-  while (files().size() < 3 && std::chrono::steady_clock::now() < deadline) usleep(1000);  // a.csv and a.json begin
-  kill(child, SIGINT);
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
-  EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
 }
 
 // Reads what the program writes to a terminal until `part` comes up, or for a minute.

@@ -16,9 +16,12 @@ namespace poinsot::study {
 namespace fs = std::filesystem;
 namespace {
 
-// Empty where nothing can be read.
+constexpr std::uintmax_t kLargest = 4'000'000'000;  // bytes of a file that is read
+
+// Empty where nothing can be read; only files are: a pipe would be waited for.
 std::string content(const fs::path& file) {
-  if (fs::is_directory(file)) return {};
+  std::error_code none;
+  if (!fs::is_regular_file(file, none) || fs::file_size(file, none) > kLargest) return {};
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -71,7 +74,7 @@ fs::path Cache::file(std::string_view key) const {
 }
 
 std::optional<std::string> Cache::find(std::string_view key, std::vector<std::string>& notices) const {
-  if (folder_.empty() || !fs::exists(file(key))) return {};
+  if (std::error_code none; folder_.empty() || !fs::exists(fs::symlink_status(file(key), none))) return {};
   std::string text = content(file(key));
   const std::size_t line = text.find('\n') + 1;
   const std::string_view rest = std::string_view(text).substr(line);
@@ -86,15 +89,14 @@ std::optional<std::string> Cache::find(std::string_view key, std::vector<std::st
 
 void Cache::keep(std::string_view key, std::string_view data, std::vector<std::string>& notices) const {
   if (folder_.empty()) return;
-  std::error_code error;
-  fs::create_directories(folder_, error);
   try {
+    if (is_device(file(key))) throw InputError(fmt::format("{}: found no file, expected one", file(key).string()));
     OutputFile out(file(key));
     out.write(head(key, data));
     out.write(key);
     out.write(data);
     out.commit();
-  } catch (const InputError& refused) {
+  } catch (const std::runtime_error& refused) {  // a folder or a disk that takes nothing
     notices.push_back(fmt::format("the result is not kept for the next time: {}", refused.what()));
   }
 }

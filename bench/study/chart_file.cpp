@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 #include <limits>
 
@@ -18,6 +20,8 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kColumns = 22;
+constexpr const char* kUnfinished =
+    "# incomplete: the sweep goes on or was interrupted; the same command goes on with it";
 
 std::string header() {
   std::string line = "formulation,integrator,linear_solver,parameter,value,status";
@@ -107,7 +111,7 @@ bool ChartRow::of(const Case& one) const {
 ChartFile::ChartFile(fs::path file, std::vector<std::string> notes, bool fresh)
     : file_(std::move(file)), notes_(std::move(notes)) {
   for (std::string& note : notes_) note = on_one_line(note);
-  if (!fresh && fs::exists(file_) && !fs::is_directory(file_)) read();
+  if (std::error_code none; !fresh && fs::is_regular_file(file_, none)) read();
   write_all(nullptr);
   out_.open(file_, std::ios::app | std::ios::binary);
 }
@@ -127,9 +131,10 @@ void ChartFile::read() {
     if (lines[k] != expected)
       refuse(fmt::format("measured otherwise, there it says \"{}\", now \"{}\"", lines[k].substr(2), notes_[k]));
   }
-  if (lines.size() <= notes_.size() || lines[notes_.size()] != header())
-    refuse("the file is not the beginning of this chart");
-  for (std::size_t k = notes_.size() + 1; k < lines.size(); ++k) {
+  std::size_t head = notes_.size();
+  if (head < lines.size() && lines[head] == kUnfinished) ++head;
+  if (lines.size() <= head || lines[head] != header()) refuse("the file is not the beginning of this chart");
+  for (std::size_t k = head + 1; k < lines.size(); ++k) {
     const std::vector<std::string> f = fields(lines[k]);
     if (f.size() != kColumns) refuse(fmt::format("line {} is not a row of a chart", k + 1));
     if (f[5] != "reference") rows_.push_back(row_of(f));
@@ -139,6 +144,7 @@ void ChartFile::read() {
 void ChartFile::write_all(const Reference* reference) const {
   OutputFile file(file_);
   for (const std::string& note : notes_) file.write(fmt::format("# {}\n", note));
+  if (!reference) file.write(fmt::format("{}\n", kUnfinished));
   file.write(header() + "\n");
   if (reference) {
     ChartRow row{
@@ -161,7 +167,7 @@ void ChartFile::add(const Case& one, const Measured& measured) {
   rows_.push_back({s.formulation, s.integrator, s.linear_solver, one.parameter(), one.value(), measured, {}});
   rows_.back().measured.status = on_one_line(measured.status);
   out_ << line(rows_.back()) << std::flush;
-  if (!out_) throw InputError(fmt::format("{}: cannot be written", file_.string()));
+  if (!out_) throw OutputError(fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(errno)));
 }
 
 void ChartFile::finish(const Reference& reference) {

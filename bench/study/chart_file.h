@@ -1,7 +1,8 @@
 // The CSV of a work-precision chart: notes on where the numbers come from, a row per case, the front at the end.
 //
 // Rows are appended as they are measured, so that an interrupted sweep goes on where it stopped. The notes come first
-// and must be the same then: numbers of two programs, machines or settings do not stand in one file. Columns: the case
+// and must be the same then: numbers of two programs, machines or settings do not stand in one file. Until the sweep is
+// finished a note after them says that it is not. Columns: the case
 // (formulation, integrator, linear_solver, parameter, value), its status ("ok", "reference" for how far the reference
 // can be trusted, or why there are no figures), errors of the four quantities, constraint violation, energy drift,
 // seconds and their spread, counts, and by quantity whether the case is on the front (1, 0).

@@ -1,10 +1,12 @@
 #include "bench/study/isolated_run.h"
 
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstring>
 
 #include "core/input_error.h"
@@ -73,6 +75,7 @@ IsolatedRun run_isolated(const SceneGenerator& generator, int bodies, const Sett
   const pid_t child = fork();
   if (child < 0) return {"no process could be made"};
   if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // interrupted with the program
     const Answer out = answer(generator, bodies, settings);
     const bool written = write(ends[1], &out, sizeof out) == static_cast<ssize_t>(sizeof out);
     _exit(written ? 0 : 1);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "integrators/settings_reader.h"
 
@@ -81,19 +82,33 @@ std::string packed(const Reference& reference) {
   return json.dump();
 }
 
-Reference unpacked(const std::string& data, std::size_t bodies) {
+// Whatever a file holds that has the right checksum: a motion of this scene, or an exception.
+Reference unpacked(const std::string& data, const Scene& scene, const ReferenceSettings& asked) {
+  const auto require = [](bool right) {
+    if (!right) throw std::out_of_range("what is kept is not of this scene");
+  };
   const Json json = Json::parse(data);
   Reference reference;
   for (const Json& m : json.at("methods"))
     reference.methods.push_back({m.at(0), m.at(1), m.at(2), m.at(3), m.at(4), unpacked(m.at(5)), unpacked(m.at(6))});
   reference.given = json.at("given");
   reference.nearest = json.at("nearest");
+  const auto is_method = [&](int m) { return m >= -1 && m < static_cast<int>(reference.methods.size()); };
+  require(is_method(reference.given) && is_method(reference.nearest));
   reference.agreement = unpacked(json.at("agreement"));
   reference.motion.t = json.at("t").get<std::vector<double>>();
   reference.motion.lambda = json.at("lambda").get<std::vector<std::vector<double>>>();
   const auto numbers = json.at("bodies").get<std::vector<double>>();
+  const std::size_t times = reference.motion.t.size(), bodies = scene.bodies.size(), rows = compile(scene).rows.size();
+  std::size_t of_body = 0;
+  BodyState one;
+  each_number(one, [&](double) { ++of_body; });
+  require(reference.motion.lambda.size() == times && numbers.size() == times * bodies * of_body);
+  for (const auto& lambda : reference.motion.lambda) require(lambda.size() == rows);
+  require(reference.given < 0 ||
+          (times > 0 && reference.motion.t.front() == 0 && reference.motion.t.back() == asked.end));
   auto next = numbers.begin();
-  reference.motion.bodies.assign(reference.motion.t.size(), std::vector<BodyState>(bodies));
+  reference.motion.bodies.assign(times, std::vector<BodyState>(bodies));
   for (auto& states : reference.motion.bodies)
     for (BodyState& body : states) each_number(body, [&](double& x) { x = *next++; });
   return reference;
@@ -183,7 +198,14 @@ Reference reference(const Scene& scene, const ReferenceSettings& settings, const
                     std::vector<std::string>& notices) {
   if (scene.source.empty()) return compute(scene, settings);
   const std::string key = reference_key(scene, settings, program_identity());
-  if (const auto kept = cache.find(key, notices)) return unpacked(*kept, scene.bodies.size());
+  if (const auto kept = cache.find(key, notices)) {
+    try {
+      return unpacked(*kept, scene, settings);
+    } catch (const std::exception&) {
+      notices.push_back(
+          fmt::format("{} does not hold this reference, which is computed again", cache.file(key).string()));
+    }
+  }
   const Reference computed = compute(scene, settings);
   cache.keep(key, packed(computed), notices);
   return computed;

@@ -87,6 +87,7 @@ std::vector<fs::path> write_report(const Report& report, const fs::path& directo
     files.push_back(std::make_unique<OutputFile>(directory / (table.file + ".csv")));
     files.back()->write(csv(table, report.foot));
   }
+  for (const auto& file : files) file->complete();  // all or none
   std::vector<fs::path> written;
   for (const auto& file : files) {
     file->commit();

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/input_error.h"
+#include "core/json_document.h"
 #include "core/scene_reader.h"
 #include "integrators/start/initial_state.h"
 
@@ -15,7 +16,7 @@ Scene read_startable_scene(const std::filesystem::path& file, const ParameterVal
   try {
     (void)find_initial_state(std::make_shared<const Model>(compile(scene)), Settings{});
   } catch (const InputError& refused) {
-    throw InputError(fmt::format("{}: {}", file.string(), refused.what()));
+    throw InputError(fmt::format("{}: {}", shown_input(file.string()), refused.what()));
   }
   return scene;
 }

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/check.h"
+#include "core/interruption.h"
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
@@ -135,6 +136,7 @@ class Session {
     Creeping creeping(settings_.end);
     double t = 0;
     while (t < settings_.end) {
+      if (interruption_requested) return interrupted(t);
       if (IDASolve(ida_.get(), settings_.end, &t, y_.get(), y_dot_.get(), IDA_ONE_STEP) < 0) {
         if (Status status = go_on(); !status.ok()) return status;
         continue;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/interruption.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/sample_times.h"
@@ -31,6 +32,7 @@ Status controlled_steps(Method& method, const StepRule& rule, const Settings& se
   int rejections = 0;  // in a row
   while (method.state().t < end) {
     const double t = method.state().t;
+    if (interruption_requested) return interrupted(t);
     const double to = t + 1.01 * h >= end ? end : t + h;
     h = to - t;
     if (creeping.tries(t, h)) return step_too_small(t, h, {});

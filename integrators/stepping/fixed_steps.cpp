@@ -1,5 +1,6 @@
 #include "integrators/stepping/fixed_steps.h"
 
+#include "core/interruption.h"
 #include "integrators/stepping/accept.h"
 
 namespace poinsot {
@@ -21,6 +22,10 @@ Status FixedSteps::march() {
   const bool discrete = problem_.has_discrete_state();
   Status status = begin();
   for (std::int64_t n = 1; n <= grid_.steps && status.ok(); ++n) {
+    if (interruption_requested) {
+      status = interrupted(x_.t);
+      break;
+    }
     if (rewritten_) {
       rewritten_ = false;
       if (status = resume(); !status.ok()) break;

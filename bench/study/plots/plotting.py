@@ -38,7 +38,7 @@ MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", "*"]
 def read(path):
     """The rows as dictionaries by the header's names, and the notes."""
     with open(path, encoding="utf-8", newline="") as file:
-        lines = file.read().splitlines()
+        lines = file.read().split("\n")  # a name may hold other ends of lines
     notes = [line.lstrip("# ") for line in lines if line.startswith("#")]
     return list(csv.DictReader(line for line in lines if line and not line.startswith("#"))), notes
 

@@ -1,0 +1,63 @@
+// What a run leaves: trajectory, reactions, signals, the state at its end and the record beside them, begun together
+// and ended together.
+//
+// Rows go to files of other names until it is certain that there is a run (half a second of it); then the files take
+// their names, a record says "running", and from there on what was computed stands in them, at most a second late:
+// `tail -f FILE.csv` shows it. A file that takes no more (a full disk) keeps its complete rows, and the run is asked to
+// come to an end.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/reactions_writer.h"
+#include "app/run_record.h"
+#include "app/signals_writer.h"
+#include "app/state_saver.h"
+#include "app/trajectory_writer.h"
+
+namespace poinsot::app {
+
+class RunFiles {
+ public:
+  struct Names {
+    std::filesystem::path trajectory, reactions, signals, state, record;  // empty: not asked for
+  };
+  // `running`: the record's text while the run goes on. Throws InputError.
+  RunFiles(const Names& names, const Scene& scene, const TrajectoryContent& content,
+           std::function<std::string()> running);
+
+  bool any() const { return trajectory_ || reactions_ || signals_; }  // that grow with the run
+  ColumnsByOption unnamed_columns() const;
+
+  void write(const Sample& sample);
+  void flush();
+  // Nothing is written any more but the record; the state only of a run that came to its end.
+  void complete(bool ended);
+  void commit(const std::string& record);
+
+  const std::string& lost() const { return lost_; }  // why a file did not take everything; empty: all did
+
+ private:
+  // What a file does not take is remembered, and the run asked to end.
+  void guarded(study::OutputFile& file, const std::function<void()>& act);
+  // Does it with every file that grows.
+  void with_files(void (study::OutputFile::*act)());
+
+  using Clock = std::chrono::steady_clock;
+  std::optional<TrajectoryWriter> trajectory_;
+  std::optional<ReactionsWriter> reactions_;
+  std::optional<SignalsWriter> signals_;
+  std::optional<StateSaver> state_;
+  std::filesystem::path record_name_;
+  std::optional<study::OutputFile> record_;
+  std::function<std::string()> running_;  // empty once it is written
+  Clock::time_point next_;
+  std::string lost_;
+};
+
+}  // namespace poinsot::app

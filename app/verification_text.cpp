@@ -1,0 +1,33 @@
+#include "app/verification_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/printable.h"
+
+namespace poinsot::app {
+
+void print(std::FILE* out, const study::Verification& verification) {
+  using Quantity = study::Verification::Quantity;
+  const auto& all = verification.quantities;
+  if (all.empty()) {
+    fmt::print(out, "not verified: {}\n", printable(verification.failure));
+    return;
+  }
+  fmt::print(out, "verified against {}: apart by at most, of {} times\n", verification.against, verification.times);
+  const bool orders = std::ranges::any_of(all, [](const Quantity& q) { return q.order.has_value(); });
+  for (const Quantity& q : all) {
+    fmt::print(out, "  {:<20} {:>8.2g} {:<7}", q.name, q.apart, q.unit);
+    if (q.apart > 0) fmt::print(out, " {} at t = {:g} s", printable(q.where), q.t);
+    if (q.order) fmt::print(out, ", order {:.2f}", *q.order);
+    if (q.error) fmt::print(out, ", so the error is about {:.2g}", *q.error);
+    fmt::print(out, "\n");
+  }
+  if (!verification.failure.empty())
+    fmt::print(out, "  the order is not known: {}\n", printable(verification.failure));
+  else if (verification.steps && !orders)
+    fmt::print(out, "  the differences are too small to show an order\n");
+}
+
+}  // namespace poinsot::app

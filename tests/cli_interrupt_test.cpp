@@ -1,0 +1,211 @@
+// Interrupted and killed: what was computed is kept in complete rows and marked, nothing half-written remains, and the
+// exit status says by which signal.
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <csignal>
+
+#include "command_line.h"
+
+namespace poinsot::test {
+namespace {
+namespace fs = std::filesystem;
+
+class Interrupted : public CommandLine {
+ protected:
+  Interrupted() { write("pendulum.json", kPendulum); }
+
+  template <class Condition>
+  static bool wait_for(const Condition& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!condition() && std::chrono::steady_clock::now() < deadline) usleep(2000);
+    return condition();
+  }
+
+  bool exists(const std::string& file) const { return fs::exists(folder() / file); }
+  std::uintmax_t size(const std::string& file) const { return exists(file) ? fs::file_size(folder() / file) : 0; }
+
+  void expect_complete_rows(const std::string& file) const {
+    const std::string text = read(file);
+    ASSERT_FALSE(text.empty()) << file;
+    EXPECT_EQ(text.back(), '\n') << file;
+    const std::vector<std::string> rows = lines(text);
+    for (const std::string& row : rows) ASSERT_EQ(fields(row).size(), fields(rows[0]).size()) << file << row;
+  }
+
+  // Files of other names, at any depth.
+  std::vector<std::string> leftovers() const {
+    std::vector<std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(folder()))
+      if (entry.path().filename().string().starts_with(".poinsot")) found.push_back(entry.path());
+    return found;
+  }
+
+  // The whole of a command in the folder, as a shell takes it; POINSOT is the program.
+  int shell(const std::string& commands) const {
+    const std::string line = fmt::format("cd '{}' && export POINSOT='{}' && bash -c '{}' 2> .said.shell",
+                                         folder().string(), POINSOT_PROGRAM, commands);
+    const int status = std::system(line.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+};
+
+const std::vector<std::string> kLong{"run", "pendulum.json", "--end", "1e6",         "--every",
+                                     "0.1", "--out",         "a.csv", "--reactions", "r.csv"};
+
+TEST_F(Interrupted, ARunKeepsWhatWasComputed) {
+  for (const auto& [signal, name] : {std::pair{SIGINT, "SIGINT"},
+                                     {SIGTERM, "SIGTERM"},
+                                     {SIGQUIT, "SIGQUIT"},
+                                     {SIGHUP, "SIGHUP"},
+                                     {SIGXCPU, "SIGXCPU"},
+                                     {SIGUSR1, "SIGUSR1"}}) {
+    SCOPED_TRACE(name);
+    for (const char* file : {"a.csv", "r.csv", "a.run.json"}) fs::remove(folder() / file);
+    const pid_t child = start(kLong);
+    ASSERT_TRUE(wait_for([&] { return exists("a.run.json") && exists("r.csv") && size("a.csv") > 0; }));
+    kill(child, signal);
+    const Result result = finish(child);
+    EXPECT_EQ(result.status, 128 + signal);
+    EXPECT_TRUE(result.err.starts_with(fmt::format("poinsot: interrupted by {}", name))) << result.err;
+    EXPECT_NE(result.err.find("; what was computed up to there is kept\n"), std::string::npos) << result.err;
+    EXPECT_EQ(files(), (std::vector<std::string>{"a.csv", "a.run.json", "pendulum.json", "r.csv"}));
+    expect_complete_rows("a.csv");
+    expect_complete_rows("r.csv");
+    EXPECT_EQ(lines(read("a.csv")).size(), lines(read("r.csv")).size());
+    const nlohmann::json record = read_json("a.run.json");
+    EXPECT_EQ(record["status"], "interrupted");
+    EXPECT_EQ(record["incomplete"], true);
+    EXPECT_EQ("poinsot: " + record["message"].get<std::string>() + "\n", result.err);
+    EXPECT_GT(record["statistics"]["steps"], 0);
+    EXPECT_LT(std::stod(fields(lines(read("a.csv")).back())[0]), record["failure_time"].get<double>() + 1e-9);
+  }
+}
+
+TEST_F(Interrupted, TheFileGrowsWhileTheRunGoesOnAndTheRecordSaysSo) {
+  const pid_t child = start(kLong);
+  ASSERT_TRUE(wait_for([&] { return size("a.csv") > 0 && exists("a.run.json"); }));
+  EXPECT_EQ(read_json("a.run.json")["status"], "running");
+  EXPECT_EQ(read_json("a.run.json")["incomplete"], true);
+  for (int n = 0; n < 3; ++n) {
+    const auto before = size("a.csv"), of_reactions = size("r.csv");
+    const auto began = std::chrono::steady_clock::now();
+    EXPECT_TRUE(wait_for([&] { return size("a.csv") > before && size("r.csv") > of_reactions; }));
+    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));  // on a machine that is busy
+  }
+  kill(child, SIGKILL);  // nothing can be done then; what stands there says so
+  waitpid(child, nullptr, 0);
+  EXPECT_EQ(read_json("a.run.json")["status"], "running");
+  EXPECT_EQ(leftovers(), std::vector<std::string>{});
+}
+
+TEST_F(Interrupted, EveryIntegratorAsksOnceAStep) {
+  for (const char* integrator : {"implicit_euler", "dop853", "radau5", "ida"}) {
+    const pid_t child = start({"run", "pendulum.json", "--integrator", integrator, "--formulation", "rp", "--end",
+                               "1e6", "--every", "1e5", "--out", "a.csv"});
+    usleep(300000);
+    kill(child, SIGTERM);
+    EXPECT_EQ(finish(child).status, 128 + SIGTERM) << integrator;
+  }
+}
+
+TEST_F(Interrupted, WithNothingComputedNothingIsWritten) {
+  ASSERT_EQ(mkfifo((folder() / "scene.json").c_str(), 0600), 0);  // nobody writes to it
+  const auto before = files();
+  const pid_t child = start({"run", "scene.json", "--out", "new/a.csv"});
+  usleep(100000);
+  kill(child, SIGINT);
+  const Result result = finish(child);
+  EXPECT_EQ(result.status, 130);
+  EXPECT_EQ(result.err, "poinsot: interrupted by SIGINT\n");
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Interrupted, AnIgnoredSignalStaysIgnored) {
+  EXPECT_EQ(shell("trap \"\" HUP; $POINSOT run pendulum.json --end 20 --every 1 --out a.csv & "
+                  "sleep 0.1; kill -HUP $!; wait $!"),
+            0);
+}
+
+TEST_F(Interrupted, AReaderThatGoesAwayEndsTheRun) {
+  EXPECT_EQ(shell("$POINSOT run pendulum.json --end 1e6 --out - | head -n 2 > rows; exit ${PIPESTATUS[0]}"),
+            128 + SIGPIPE);
+  EXPECT_EQ(lines(read("rows")).size(), 2u);
+  EXPECT_EQ(shell("$POINSOT list | true; exit ${PIPESTATUS[0]}") % (128 + SIGPIPE), 0);
+}
+
+// A limit on the size of files stands for a full disk; with the signal ignored it is one.
+TEST_F(Interrupted, AFullDiskKeepsTheRowsThereWasRoomFor) {
+  const std::string run = "ulimit -f 64; $POINSOT run pendulum.json --end 10 --out a.csv";
+  EXPECT_EQ(shell("trap \"\" XFSZ; " + run), 3);
+  const std::string said = read(".said.shell");
+  expect_complete_rows("a.csv");
+  const std::size_t rows = lines(read("a.csv")).size() - 1;
+  EXPECT_GT(rows, 100u);
+  EXPECT_NE(
+      said.find(fmt::format("a.csv: cannot be written: File too large; what is kept of it ends with row {}", rows)),
+      std::string::npos)
+      << said;
+  EXPECT_EQ(read_json("a.run.json")["incomplete"], true);
+  EXPECT_EQ(read_json("a.run.json")["status"], "interrupted");
+  EXPECT_EQ(shell(run), 128 + SIGXFSZ);
+  expect_complete_rows("a.csv");
+  EXPECT_EQ(leftovers(), std::vector<std::string>{});
+}
+
+TEST_F(Interrupted, AChartSaysThatItIsNotFinished) {
+  const std::vector<std::string> command{"chart",
+                                         "pendulum.json",
+                                         "--quick",
+                                         "--end",
+                                         "0.5",
+                                         "--cache",
+                                         "cache",
+                                         "--out",
+                                         "out",
+                                         "--formulations",
+                                         "rA",
+                                         "--integrators",
+                                         "implicit_euler,dop853"};
+  const pid_t child = start(command);
+  ASSERT_TRUE(wait_for([&] { return size("out/pendulum.csv") > 0; }));
+  kill(child, SIGINT);
+  EXPECT_EQ(finish(child).status, 130);
+  EXPECT_NE(read("out/pendulum.csv").find("\n# incomplete: "), std::string::npos);
+  EXPECT_EQ(leftovers(), std::vector<std::string>{});
+  const Result whole = poinsot(command);
+  EXPECT_TRUE(whole.status == 0 || whole.err.find("matplotlib") != std::string::npos) << whole.err;
+  EXPECT_EQ(read("out/pendulum.csv").find("# incomplete"), std::string::npos);
+}
+
+TEST_F(Interrupted, TablesFiguresAndScaleLeaveNothingHalf) {
+  for (const char* command : {"tables", "figures", "scale"}) {
+    SCOPED_TRACE(command);
+    const pid_t child = start({command, "--out", "out"});
+    usleep(400000);
+    kill(child, SIGTERM);
+    const Result result = finish(child);
+    EXPECT_EQ(result.status, 143);
+    EXPECT_EQ(result.err, "poinsot: interrupted by SIGTERM\n");
+    EXPECT_EQ(leftovers(), std::vector<std::string>{});
+    // Nothing goes on by itself.
+    EXPECT_EQ(kill(-child, 0), -1);
+  }
+}
+
+TEST_F(Interrupted, AnExistingFileKeepsItsModeAndIsReplacedAtOnce) {
+  write("a.csv", "before");
+  fs::permissions(folder() / "a.csv", fs::perms::owner_read | fs::perms::owner_write);
+  ASSERT_EQ(poinsot({"run", "pendulum.json", "--end", "0.01", "--out", "a.csv"}).status, 0);
+  EXPECT_EQ(fs::status(folder() / "a.csv").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(lines(read("a.csv")).size(), 12u);
+  // Wrong input leaves it as it was.
+  write("a.csv", "before");
+  EXPECT_EQ(poinsot({"run", "pendulum.json", "--analysis", "kinematics", "--out", "a.csv"}).status, 2);
+  EXPECT_EQ(read("a.csv"), "before");
+  EXPECT_EQ(leftovers(), std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace poinsot::test
