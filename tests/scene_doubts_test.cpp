@@ -1,0 +1,73 @@
+// What is told of a scene though it is sound, and what is not.
+#include "core/scene_doubts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace poinsot {
+namespace {
+
+using testing::ElementsAre;
+
+Scene two_rods() {
+  Scene scene;
+  for (const char* name : {"a", "b"}) {
+    Body body;
+    body.name = name;
+    body.mass = 1;
+    body.inertia = Vector3(1e-3, 0.083, 0.083).asDiagonal();
+    body.position = {scene.bodies.empty() ? 0.5 : 1.5, 0, 0};
+    scene.bodies.push_back(body);
+  }
+  Joint hinge;
+  hinge.i = 0, hinge.j = 1;
+  hinge.point = {1, 0, 0}, hinge.axis = {0, 1, 0};
+  scene.joints.push_back(hinge);
+  return scene;
+}
+
+std::vector<std::string> doubts(const Scene& scene) {
+  return scene_doubts(compile(scene));
+}
+
+TEST(SceneDoubts, are_none_of_rods_and_planar_bodies) {
+  Scene scene = two_rods();
+  scene.bodies[0].inertia = Vector3(0, 2, 2).asDiagonal();
+  scene.bodies[1].inertia = Vector3(0.3333, 0.6667, 1).asDiagonal();
+  EXPECT_THAT(doubts(scene), ElementsAre());
+}
+
+TEST(SceneDoubts, are_moments_that_no_body_has) {
+  Scene scene = two_rods();
+  scene.bodies[1].inertia << 2, 0.5, 0, 0.5, 2, 0, 0, 0, 5;
+  EXPECT_THAT(doubts(scene), ElementsAre("body 'b' has the principal moments 1.5, 2.5 and 5, and no body has one that "
+                                         "exceeds the sum of the others"));
+  scene.bodies[0].inertia = Vector3(4, 2, 0).asDiagonal();
+  EXPECT_THAT(doubts(scene), ElementsAre(testing::MatchesRegex("body 'a' .*; 1 more like it")));
+}
+
+TEST(SceneDoubts, are_masses_and_lengths_far_apart) {
+  Scene scene = two_rods();
+  scene.bodies[1].mass = 1e6;
+  EXPECT_THAT(doubts(scene), ElementsAre("masses are six orders of magnitude apart: 1 kg of 'a', 1e+06 kg of 'b'"));
+  scene = two_rods();
+  scene.bodies[1].position[0] = 1 + 0.4e-6;
+  EXPECT_THAT(doubts(scene),
+              ElementsAre("lengths are six orders of magnitude apart: 'b' is held 4e-07 m from its centre "
+                          "of mass, 'a' 0.5 m"));
+  scene.bodies[1].position[0] = 1 + 1e-15;  // the rounding of a joint at the centre of mass
+  EXPECT_THAT(doubts(scene), ElementsAre());
+}
+
+TEST(SceneDoubts, are_numbers_whose_squares_overflow) {
+  Scene scene = two_rods();
+  scene.gravity[2] = -1e200;
+  const Model model = compile(scene);
+  EXPECT_EQ(overflowing(model), "the scene has a gravity of 1e+200, whose square is beyond the numbers of a computer");
+  EXPECT_THAT(scene_doubts(model), ElementsAre(overflowing(model)));
+  scene.gravity[2] = -1e150;
+  EXPECT_EQ(overflowing(compile(scene)), "");
+}
+
+}  // namespace
+}  // namespace poinsot

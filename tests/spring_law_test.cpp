@@ -1,0 +1,134 @@
+// Springs with a law, and runs that come to where a function has no value.
+#include "formulations/spring_law.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+// A rod that swings on a spring and turns against a torsion spring.
+std::string sprung(const std::string& spring, const std::string& torsion) {
+  return fmt::format(R"j({{"scene": 1, "name": "sprung", "gravity": [0, 0, -9.81], "bodies": [
+    {{"name": "rod", "mass": 2, "inertia": [0.2, 0.3, 0.1], "position": [0.3, 0.1, -1.2], "velocity": [0.5, 0, 0.2],
+      "angular_velocity": [0.3, 1, 0.1]}},
+    {{"name": "disc", "mass": 1, "inertia": [0.05, 0.05, 0.1], "position": [0.3, 0.1, -1.7]}}],
+    "joints": [{{"type": "revolute", "bodies": ["rod", "disc"], "point": [0.3, 0.1, -1.7], "axis": [0, 1, 0]}}],
+    "forces": [{{"type": "spring", "bodies": ["ground", "rod"], "s_i": [0, 0, 0], "s_j": [0, 0, 0.4], "length": 0.7, {}}},
+               {{"type": "torsion_spring", "bodies": ["rod", "disc"], "axis": [0, 1, 0], "angle": 0.4, {}}}]}})j",
+                     spring, torsion);
+}
+
+Settings accurate(std::string_view formulation, std::string_view integrator) {
+  Settings s;
+  s.formulation = formulation;
+  s.integrator = integrator;
+  s.rtol = 1e-10;
+  s.end = 1;
+  s.every = 0.25;
+  return s;
+}
+
+class SpringLaws : public testing::TestWithParam<const char*> {};
+
+TEST_P(SpringLaws, linear_ones_are_linear_springs) {
+  const Scene linear =
+      parse_scene(sprung(R"j("stiffness": 60, "damping": 3)j", R"j("stiffness": 4, "damping": 0.2)j"), "a");
+  const Scene laws = parse_scene(sprung(R"j("law": "60*x + 3*v")j", R"j("law": "v/5 + 4*x")j"), "b");
+  for (const char* integrator : {"dop853", "radau5"}) {
+    const auto a = motion(linear, accurate(GetParam(), integrator)), b = motion(laws, accurate(GetParam(), integrator));
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k)
+      for (std::size_t body = 0; body < 2; ++body)
+        EXPECT_LT((a[k].bodies[body].r - b[k].bodies[body].r).norm(), 1e-8) << integrator << " " << a[k].t;
+  }
+}
+
+TEST_P(SpringLaws, without_rate_and_time_conserve_energy) {
+  const Scene scene = parse_scene(sprung(R"j("law": "30*x + 200*x^3 + 20*max(0, x)")j", R"j("law": "5*sin(x)")j"), "a");
+  double first = 0, drift = 0, kinetic = 0;
+  const Outcome outcome = simulate(scene, accurate(GetParam(), "dop853"), [&](const Sample& sample) {
+    if (sample.t == 0) first = sample.problem.energy();
+    drift = std::max(drift, std::abs(sample.problem.energy() - first));
+    std::vector<BodyState> bodies(2);
+    sample.problem.to_bodies(sample.a, bodies);
+    kinetic = std::max(kinetic, bodies[0].rd.squaredNorm());
+  });
+  ASSERT_TRUE(outcome.status.ok()) << outcome.status.message;
+  EXPECT_LT(drift, 1e-7);
+  EXPECT_GT(kinetic, 0.3);  // it moves
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SpringLaws, testing::Values("rA", "rp", "reps"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(SpringLaw, stores_the_integral_of_its_force) {
+  const auto stored = [](const char* law, double x) { return law_potential(Expression::parse_law(law), x, 2); };
+  EXPECT_NEAR(stored("3*x", -0.5), 0.375, 1e-15);
+  EXPECT_NEAR(stored("5*sin(x) + 7*v", 2), 5 * (1 - std::cos(2.0)), 1e-14);
+  EXPECT_NEAR(stored("100*max(0, x - 0.3)", 1), 50 * 0.49, 1e-12);
+  EXPECT_NEAR(stored("t*x + 1", 1), 2, 1e-15);
+  EXPECT_EQ(stored("x", 0), 0);
+}
+
+// Where a function ends, so does the run: with its name, its text and the time.
+struct Fault {
+  const char *what, *scene, *message;
+};
+constexpr Fault kFaults[] = {
+    {"a pole", R"j("forces": [{"type": "force", "name": "push", "body": "rod", "point": [0,0,0], "force": [0, "1/(0.5 - t)", 0]}]})j",
+     "at t = 0\\.[45].* s force 'push', component y: '1/\\(0\\.5 - t\\)' is not finite; end the run before, or change "
+     "the function"
+},
+    {"a table that ends", R"j("tables": {"road": {"points": [[0, 0], [0.2, 1], [0.4, 0]]}},
+      "drivers": [{"type": "angle", "name": "motor", "bodies": ["ground", "rod"], "axis": [0, 0, 1], "angle": "road(t)"}]
+})",
+     "at t = 0\\.4.* s driver 'motor': 'road\\(t\\)': table 'road' has no value at 0\\.4.*: its points go from 0 to "
+     "0\\.4; .*"
+},
+    {"a length that ends", R"j("drivers": [{"type": "distance", "name": "rope", "bodies": ["ground", "rod"], "s_i": [1, 0, -1],
+      "s_j": [0, 0, 0], "length": "1 - 2*t"}]})j",
+     "at t = 0\\.[45].* s driver 'rope': the length '1 - 2\\*t' is .* m, expected a positive one; .*"},
+    {"a law", R"j("forces": [{"type": "spring", "name": "rope", "bodies": ["ground", "rod"], "s_i": [0, 0, 0], "s_j": [0, 0, 0],
+      "length": 0.9, "law": "10*sqrt(x)"}]
+})",
+     "at t = .* s force 'rope': '10\\*sqrt\\(x\\)' is not finite at x = -.*, v = .*; .*"
+}
+,
+}
+;
+
+TEST(SpringLaw, runs_end_where_a_function_does) {
+  for (const Fault& fault : kFaults) {
+    const Scene scene = parse_scene(std::string(
+                                        R"j({"scene": 1, "gravity": [0, 0, 0], "bodies": [{"name": "rod", "mass": 1,
+      "inertia": [1, 1, 1], "position": [1, 0, 0]}, {"name": "free", "mass": 1, "inertia": [1, 1, 1],
+      "position": [5, 0, 0]}], )j") + fault.scene,
+                                    "fault.json");
+for (const char* integrator : {"implicit_euler", "dop853", "radau5"}) {
+  Settings settings = accurate("rA", integrator);
+  settings.step = 0.01;
+  settings.end = 2;
+  settings.every = 0;
+  const Recorded run = test::run(scene, settings);
+  EXPECT_EQ(run.outcome.status.failure, Failure::not_finite) << fault.what << " " << integrator;
+  EXPECT_THAT(run.outcome.status.message, testing::MatchesRegex(fault.message)) << fault.what << " " << integrator;
+  for (const Snapshot& sample : run.samples) EXPECT_TRUE(sample.bodies[0].r.allFinite());
+}
+}
+}
+
+TEST(SpringLaw, a_start_without_a_value_says_so) {
+  const Scene scene = parse_scene(R"j({"scene": 1, "bodies": [{"name": "rod", "mass": 1, "inertia": [1, 1, 1],
+    "position": [1, 0, 0]}], "drivers": [{"type": "angle", "bodies": ["ground", "rod"], "axis": [0, 0, 1],
+    "angle": "sqrt(t)"}]
+})", "start.json");
+  EXPECT_EQ(simulate(scene, Settings{}).status.message,
+            "at t = 0 s driver 'angle1': the first derivative of 'sqrt(t)' is not finite; end the run before, or change "
+            "the function");
+}
+
+}  // namespace
+}  // namespace poinsot::test
