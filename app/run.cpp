@@ -140,6 +140,8 @@ int run(const Options& options) {
   if (reactions) reactions->commit();
   if (signals) signals->commit();
   if (state && outcome.status.ok()) state->commit();
+  if (state && !outcome.status.ok())
+    outcome.notices.push_back(options.save_state + " is not written: the run did not come to its end");
   if (record) record->commit();
 
   if (!options.quiet)
