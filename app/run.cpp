@@ -149,6 +149,8 @@ int run(const Options& options) {
     });
   }
   outcome.notices.insert(outcome.notices.begin(), notices.begin(), notices.end());
+  if (!options.save_state.empty() && !outcome.status.ok())
+    outcome.notices.push_back(options.save_state + " is not written: the run did not come to its end");
   files.complete(outcome.status.ok());
   tell_interruption(files, outcome.status);
   if (options.verify && outcome.status.ok())

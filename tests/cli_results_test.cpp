@@ -79,8 +79,8 @@ TEST_F(CliResults, AnNpyHoldsTheNumbersOfTheCsv) {
     EXPECT_EQ(x, std::stod(field));
   }
   std::string names;
-  for (const std::string name : nlohmann::json::parse(read("x.json"))["columns"]["--out"])
-    names += (names.empty() ? "" : ",") + name;
+  const nlohmann::json record = read_json("x.json");
+  for (const auto& name : record["columns"]["--out"]) names += (names.empty() ? "" : ",") + name.get<std::string>();
   EXPECT_EQ(names, header);
 }
 

@@ -42,19 +42,22 @@ TEST(Signals, ADrivenPendulumNeedsTheTorqueOfTheClosedForm) {
       scene_from(R"json("bodies": [{"name": "rod", "mass": 3, "inertia": [1, 0.01, 1], "position": [0, 1, 0]}],
     "joints": [{"type": "revolute", "name": "hinge", "bodies": ["ground", "rod"], "point": [0, 0, 0], "axis": [1, 0, 0]}],
     "drivers": [{"type": "angle", "name": "motor", "bodies": ["ground", "rod"], "axis": [1, 0, 0], "angle": "4*t^2"}])json");
-  Columns c = signals_of(scene, controlled("dop853", "rA", 1e-11, 2, 0.1));
-  for (std::size_t n = 0; n < c["t"].size(); ++n) {
-    const double t = c["t"][n], phi = 4 * t * t, rate = 8 * t;
-    const double moment = 4 * 8 + 3 * 9.81 * std::cos(phi);
-    EXPECT_NEAR(c["hinge.angle"][n], phi, 1e-8) << t;  // sixteen radians: the turns are counted
-    EXPECT_NEAR(c["hinge.angle_rate"][n], rate, 1e-8) << t;
-    EXPECT_NEAR(c["motor.value"][n], phi, 1e-12) << t;
-    EXPECT_NEAR(c["motor.effort"][n], moment, 1e-6) << t;
-    EXPECT_NEAR(c["motor.power"][n], moment * rate, 1e-5) << t;
-    EXPECT_NEAR(c["kinetic"][n], 0.5 * 4 * rate * rate, 1e-6) << t;
-    EXPECT_NEAR(c["potential"][n], 3 * 9.81 * std::sin(phi), 1e-6) << t;
-    EXPECT_NEAR(c["Lx"][n], 4 * rate, 1e-7) << t;
-    EXPECT_NEAR(c["py"][n], -3 * std::sin(phi) * rate, 1e-7) << t;
+  for (const char* formulation : {"rA", "rp", "reps"}) {
+    Columns c = signals_of(scene, controlled("dop853", formulation, 1e-11, 2, 0.1));
+    for (std::size_t n = 0; n < c["t"].size(); ++n) {
+      const double t = c["t"][n], phi = 4 * t * t, rate = 8 * t;
+      const double moment = 4 * 8 + 3 * 9.81 * std::cos(phi);
+      EXPECT_NEAR(c["hinge.angle"][n], phi, 1e-8)
+          << formulation << " at " << t;  // sixteen radians: the turns are counted
+      EXPECT_NEAR(c["hinge.angle_rate"][n], rate, 1e-8) << formulation << " at " << t;
+      EXPECT_NEAR(c["motor.value"][n], phi, 1e-12) << formulation << " at " << t;
+      EXPECT_NEAR(c["motor.effort"][n], moment, 1e-6) << formulation << " at " << t;
+      EXPECT_NEAR(c["motor.power"][n], moment * rate, 1e-5) << formulation << " at " << t;
+      EXPECT_NEAR(c["kinetic"][n], 0.5 * 4 * rate * rate, 1e-6) << formulation << " at " << t;
+      EXPECT_NEAR(c["potential"][n], 3 * 9.81 * std::sin(phi), 1e-6) << formulation << " at " << t;
+      EXPECT_NEAR(c["Lx"][n], 4 * rate, 1e-7) << formulation << " at " << t;
+      EXPECT_NEAR(c["py"][n], -3 * std::sin(phi) * rate, 1e-7) << formulation << " at " << t;
+    }
   }
 }
 
