@@ -80,15 +80,14 @@ void print_summary(const Scene& scene, const Settings& settings, const Outcome& 
              s.violation.velocity);
 }
 
-// What the run's status says to whoever reads it, where it did not come to its end by itself.
-void tell_interruption(const RunFiles& files, Status& status) {
-  const bool interrupted = status.failure == Failure::interrupted;
-  if (files.lost().empty() && !interrupted) return;
-  const std::string at = interrupted ? fmt::format(" at t = {:.9g} s", status.time) : "";
-  const std::string kept = files.any() && files.lost().empty() ? "; what was computed up to there is kept" : "";
-  status = {Failure::interrupted, status.time,
-            fmt::format("{}{}{}", files.lost().empty() ? signal_text() : "the run was stopped", at, kept)};
-  if (!files.lost().empty()) status.message += ": " + files.lost();
+// What the status says where the run was interrupted, or a file did not take everything.
+void tell_interruption(const RunFiles& files, double end, Status& status) {
+  if (status.failure == Failure::interrupted)
+    status.message = fmt::format("{} at t = {:.9g} s{}", files.lost().empty() ? signal_text() : "stopped", status.time,
+                                 files.any() && files.lost().empty() ? "; what was computed up to there is kept" : "");
+  if (files.lost().empty()) return;
+  if (status.ok()) status = {Failure::interrupted, end, ""};
+  status.message += (status.message.empty() ? "" : ": ") + files.lost();
 }
 
 // Messages of what comes after reading name the scene, too.
@@ -152,7 +151,7 @@ int run(const Options& options) {
   if (!options.save_state.empty() && !outcome.status.ok())
     outcome.notices.push_back(options.save_state + " is not written: the run did not come to its end");
   files.complete(outcome.status.ok());
-  tell_interruption(files, outcome.status);
+  tell_interruption(files, settings.end, outcome.status);
   if (options.verify && outcome.status.ok())
     verification = verify(scene, settings);
   else if (options.verify)

@@ -1,5 +1,6 @@
 // Results kept from run to run: what is found, what is not, and what a reference is kept by.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -62,6 +63,49 @@ TEST_F(Kept, a_file_of_another_key_is_none) {
   fs::rename(cache().file("key"), cache().file("other key"));
   EXPECT_EQ(cache().find("other key", notices_), std::nullopt);
   EXPECT_EQ(notices_.size(), 1u);
+}
+
+TEST_F(Kept, what_is_no_file_is_not_waited_for) {
+  fs::create_directories(folder_ / "kept");
+  ASSERT_EQ(mkfifo(cache().file("key").c_str(), 0600), 0);
+  EXPECT_EQ(cache().find("key", notices_), std::nullopt);
+  cache().keep("key", "data", notices_);
+  EXPECT_THAT(notices_, testing::ElementsAre(testing::HasSubstr("is damaged or belongs to something else"),
+                                             testing::HasSubstr("found no file, expected one")));
+}
+
+// With the right key and checksum, as anybody can write them.
+TEST_F(Kept, a_forged_reference_is_computed_again) {
+  Scene scene;
+  scene.name = "falling";
+  scene.gravity = {0, 0, -9.81};
+  Body& body = scene.bodies.emplace_back();
+  body.name = "body";
+  body.mass = 1;
+  body.inertia = Vector3(1, 2, 3).asDiagonal();
+  scene.source = "any text stands for it";
+  const study::ReferenceSettings settings{1, 0.5, 6};
+  const study::Reference right = study::reference(scene, settings, cache(), notices_);
+  ASSERT_EQ(right.motion.t.size(), 3u);
+  EXPECT_TRUE(notices_.empty());
+  const std::string key = study::reference_key(scene, settings, study::program_identity());
+  const std::string kept = cache().find(key, notices_).value();
+  const auto with = [&](const std::string& part, const std::string& other) {
+    std::string forged = kept;
+    const std::size_t at = forged.find(part);
+    check(at != std::string::npos, "the part is there");
+    return forged.replace(at, part.size(), other);
+  };
+  for (const std::string& forged :
+       {std::string(), std::string("{}"), std::string("[1, 2]"), with("\"given\":", "\"given\":7"),
+        with("\"t\":[", "\"t\":[0.0,"), with("\"bodies\":[", "\"bodies\":[1.0,"),
+        with("\"lambda\":[", "\"lambda\":[[],"), with("\"nearest\":", "\"nearest\":9")}) {
+    cache().keep(key, forged, notices_);
+    notices_.clear();
+    const study::Reference again = study::reference(scene, settings, cache(), notices_);
+    EXPECT_THAT(notices_, testing::ElementsAre(testing::HasSubstr("does not hold this reference"))) << forged;
+    EXPECT_EQ(again.motion.bodies.back()[0].r.z(), right.motion.bodies.back()[0].r.z());
+  }
 }
 
 TEST_F(Kept, without_a_folder_nothing_is_kept) {

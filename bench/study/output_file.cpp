@@ -144,6 +144,8 @@ OutputFile::OutputFile(fs::path target, BinaryRows binary) : binary_(std::move(b
     descriptor_ = open_device(place.path);
   } else {
     real_ = place.path;
+    struct stat there {};  // a name that is too long would not be noticed before the end
+    if (lstat(real_.c_str(), &there) != 0 && errno != ENOENT && errno != ENOTDIR) refuse(target_, std::strerror(errno));
     if (fs::exists(real_, error) && access(real_.c_str(), W_OK) != 0) refuse(target_, std::strerror(errno));
     const fs::path folder = target_.parent_path();
     if (!folder.empty()) folders_ = make_folders(folder);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kTimes = 1000;     // at most so many are compared,
 constexpr std::int64_t kStates = 500000;  // and so many states of bodies kept of a run
-constexpr double kRounding = 1e-13;       // of a quantity's size: below, its distances show no order
+constexpr double kRounding = 1e-13;       // relative: distances below show no order
 constexpr double kLeastOrder = 0.5;       // below, no error follows from it
 
 bool controls_error(const Settings& settings) {
@@ -147,7 +147,7 @@ double common_interval(const Scene& scene, const Settings& settings) {
       std::clamp<std::int64_t>(kStates / std::max<std::int64_t>(1, std::ssize(scene.bodies)), 1, kTimes);
   double interval = settings.every > 0 ? settings.every : settings.step;
   if (settings.every == 0 && controls_error(settings)) interval = settings.end / static_cast<double>(times);
-  return interval * std::max(1.0, std::ceil(settings.end / interval / static_cast<double>(times)));
+  return interval * std::max(1.0, std::ceil(settings.end / interval / static_cast<double>(times) - kRounding));
 }
 
 }  // namespace
