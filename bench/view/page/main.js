@@ -130,7 +130,8 @@ function start() {
   }
   data.bodies.forEach((body, b) => {
     const item = element("li");
-    item.append(element("span", "", { className: "chip", style: `background:${two ? OVERLAY[0] : PALETTE[b % PALETTE.length]}` }), element("span", body.name));
+    if (!two) item.append(element("span", "", { className: "chip", style: `background:${PALETTE[b % PALETTE.length]}` }));
+    item.append(element("span", body.name));
     by("bodies").append(item);
   });
 

@@ -39,7 +39,7 @@ export function sources(data, motions) {
   const all = [{ name: "mechanism", quantities: data.curves.map((curve, k) => ({ ...curve, curves: column((m) => m.curveColumn(k)) })) }];
   if (data.apart) {
     const values = floats(data.apart), n = values.length / 3, t = motions[0].t.slice(0, n);
-    const part = (k) => [{ t, motion: 1, values: () => values.subarray(k * n, (k + 1) * n) }];
+    const part = (k) => [{ t, motion: null, values: () => values.subarray(k * n, (k + 1) * n) }];
     all.unshift({ name: "how far the two are apart", quantities: [
       { name: "largest distance of a body", unit: "m", curves: part(0) }, { name: "largest angle of a body", unit: "rad", curves: part(1) }] });
   }
@@ -118,8 +118,8 @@ class Plot {
       axes: [{ ...axis, label: "t, s", labelSize: 16, size: 34, values: (_, v) => v.map(tick) },
              { ...axis, label: what.unit, labelSize: 18, size: 62, values: (_, v) => v.map(level) }],
       series: [{}, ...this.curves.map((curve) => ({
-        stroke: colour(curve.motion === 0 ? "first" : "second"), width: 1.6, dash: curve.motion === 1 && !board.alone ? [7, 4] : undefined,
-        spanGaps: true, points: { show: false } }))],
+        stroke: colour(curve.motion === null ? "ink" : curve.motion === 0 ? "first" : "second"), width: 1.6,
+        dash: curve.motion === 1 ? [7, 4] : undefined, spanGaps: true, points: { show: false } }))],
     }, drawn, this.picture);
     this.now = document.createElement("div");
     this.now.className = "now";

@@ -20,8 +20,12 @@ function slide(joint, motion) {
   return [least, most];
 }
 
+const turned = ({ type, i, j, s_i, s_j, axis_i, axis_j }) =>
+  ({ type, i: j, j: i, s_i: s_j, s_j: s_i, axis_i: axis_j, axis_j: axis_i });
+
 // [body, kind, matrix, role] of a joint's parts.
-function joint(one, motion, u) {
+function joint(given, motion, u) {
+  const one = given.j < 0 ? turned(given) : given;  // what slides is not the ground
   const { i, j, s_i, s_j, axis_i, axis_j } = one;
   const rod = (radius) => {
     const [least, most] = slide(one, motion);
