@@ -2,17 +2,24 @@
 
 #include <fmt/format.h>
 
-#include "bench/study/trajectory_columns.h"
+#include <array>
+
 #include "core/so3.h"
 
 namespace poinsot::app {
 using namespace study;
+namespace {
+
+constexpr std::array kColumns{"x",  "y",  "z",  "e0", "e1", "e2", "e3",  "vx",  "vy", "vz",
+                              "wx", "wy", "wz", "ax", "ay", "az", "alx", "aly", "alz"};
+
+}  // namespace
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file, const Scene& scene)
     : file_(file), states_(scene.bodies.size()) {
   file_.write("t");
   for (const Body& body : scene.bodies)
-    for (const std::string_view column : kTrajectoryColumns) file_.write_field(fmt::format("{}.{}", body.name, column));
+    for (const char* column : kColumns) file_.write_field(fmt::format("{}.{}", body.name, column));
   file_.write("\n");
 }
 
