@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "bench/study/trajectory_columns.h"
 #include "bench/view/comparison.h"
 #include "bench/view/symbols.h"
+#include "bench/view/trajectory_columns.h"
 #include "core/provenance.h"
 #include "core/scene_types.h"
 #include "core/so3.h"
@@ -189,7 +189,7 @@ Json packed(const std::vector<Apart>& apart) {
 std::string page_data(const Model& model, const std::string& about, std::span<const Motion> motions) {
   bool many = false;
   for (const Motion& motion : motions) many = many || motion.frames.size() * model.bodies.size() > kManyPoses;
-  const std::size_t stored = many ? study::kPoseColumns : study::kTrajectoryColumns.size();
+  const std::size_t stored = many ? kPoseColumns : kTrajectoryColumns.size();
 
   Json data;
   data["program"] = fmt::format("poinsot {}", provenance().version);
@@ -200,7 +200,7 @@ std::string page_data(const Model& model, const std::string& about, std::span<co
   data["symbols"] = json(symbols(model));
   data["loads"] = loads(model);
   data["body_columns"] = Json::array();
-  for (std::size_t k = 0; k < stored; ++k) data["body_columns"].push_back(study::kTrajectoryColumns[k]);
+  for (std::size_t k = 0; k < stored; ++k) data["body_columns"].push_back(kTrajectoryColumns[k]);
   data["curves"] = Json::array();
   for (const Curve& curve : kCurves) data["curves"].push_back({{"name", curve.name}, {"unit", curve.unit}});
   data["motions"] = Json::array();

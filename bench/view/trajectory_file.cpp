@@ -11,12 +11,11 @@
 #include <vector>
 
 #include "bench/study/csv.h"
-#include "bench/study/trajectory_columns.h"
+#include "bench/view/trajectory_columns.h"
 #include "core/input_error.h"
 #include "core/so3.h"
 
 namespace poinsot::view {
-using study::kTrajectoryColumns;
 namespace {
 
 constexpr double kNoRotation = 1e-3;  // how far from 1 the norm of Euler parameters in a file may be

@@ -1,4 +1,4 @@
-// Reads back what `poinsot run --out` has written: a trajectory of a scene as CSV (bench/study/trajectory_columns.h).
+// Reads back what `poinsot run --out` has written: a trajectory of a scene as CSV (bench/view/trajectory_columns.h).
 #pragma once
 
 #include <filesystem>

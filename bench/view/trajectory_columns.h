@@ -8,10 +8,10 @@
 #include <cstddef>
 #include <string_view>
 
-namespace poinsot::study {
+namespace poinsot::view {
 
 inline constexpr std::array<std::string_view, 19> kTrajectoryColumns{
     "x", "y", "z", "e0", "e1", "e2", "e3", "vx", "vy", "vz", "wx", "wy", "wz", "ax", "ay", "az", "alx", "aly", "alz"};
 inline constexpr std::size_t kPoseColumns = 7;
 
-}  // namespace poinsot::study
+}  // namespace poinsot::view
