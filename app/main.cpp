@@ -148,6 +148,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   add_run(app, status);
   add_check(app, status);
+  add_view(app, status);
   add_list(app, status);
   add_tables(app, status);
   add_make(app, status);

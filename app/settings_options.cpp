@@ -32,6 +32,11 @@ void SettingsOptions::add_to(CLI::App& command) {
   }
 }
 
+std::string SettingsOptions::first_given() const {
+  if (!config_file_.empty()) return "--config";
+  return given_.empty() ? "" : option_name(*given_.front().first);
+}
+
 Settings SettingsOptions::resolve(std::vector<std::string>& notices) const {
   Settings settings;
   if (!config_file_.empty()) read_settings(config_file_, settings);

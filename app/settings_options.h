@@ -16,6 +16,8 @@ class SettingsOptions {
   void add_to(CLI::App& command);
 
   const std::string& config_file() const { return config_file_; }
+  // The option given first, "--step"; empty where there is none.
+  std::string first_given() const;
   // Defaults, then the file, then the command line; the time grid fitted. Throws InputError.
   Settings resolve(std::vector<std::string>& notices) const;
 

@@ -31,7 +31,7 @@ function(poinsot_add_library name)
   install(TARGETS ${library} EXPORT poinsot)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   install(DIRECTORY ./ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/poinsot/${folder} FILES_MATCHING PATTERN "*.h"
-          PATTERN plots EXCLUDE)
+          PATTERN plots EXCLUDE PATTERN page EXCLUDE)
 endfunction()
 
 install(EXPORT poinsot NAMESPACE poinsot:: FILE poinsotTargets.cmake DESTINATION ${poinsot_package})

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that building and testing need, those that are missing only, and says which.
+# Installs the Debian packages that building and testing need, those that are missing only, and says which. Arguments are
+# further packages.
 set -euo pipefail
 
 packages=(
@@ -9,6 +10,9 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev                    # tests and benchmarks
   python3 python3-jsonschema python3-matplotlib clang-format    # schema, plots, layout of the source
 )
+# npm comes from elsewhere, too: the page of `poinsot view` is bundled with it.
+command -v npm >/dev/null || packages+=(npm)
+packages+=("$@")
 
 missing=()
 for package in "${packages[@]}"; do

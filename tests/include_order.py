@@ -1,13 +1,13 @@
-"""Includes point one way: core <- linsolve <- formulations <- integrators <- bench/study <- bench/paper <- app, and within
-integrators from the seam through stepping, start and methods to what stands beside them. The benchmark binaries, bench/*,
-may include everything up to bench/study. Only the program knows CLI11. Prints every breach."""
+"""Includes point one way: core <- linsolve <- formulations <- integrators <- bench/study <- bench/view <- bench/paper <- app,
+and within integrators from the seam through stepping, start and methods to what stands beside them. The benchmark binaries,
+bench/*, may include everything up to bench/study. Only the program knows CLI11. Prints every breach."""
 
 import pathlib
 import posixpath
 import re
 import sys
 
-LAYERS = ["core", "linsolve", "formulations", "integrators", "bench/study", "bench/paper", "app"]
+LAYERS = ["core", "linsolve", "formulations", "integrators", "bench/study", "bench/view", "bench/paper", "app"]
 BENCHMARKS = "bench"  # tests may include anything
 
 

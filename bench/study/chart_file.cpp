@@ -11,6 +11,7 @@
 #include <iterator>
 #include <limits>
 
+#include "bench/study/csv.h"
 #include "bench/study/output_file.h"
 #include "core/input_error.h"
 
@@ -55,22 +56,6 @@ std::string line(const ChartRow& row) {
     f.push_back(m.ok() ? std::to_string(n) : "");
   for (const bool on : row.front) f.push_back(m.ok() ? std::to_string(on) : "");
   return fmt::format("{}\n", fmt::join(f, ","));
-}
-
-std::vector<std::string> fields(std::string_view line) {
-  std::vector<std::string> result(1);
-  bool quoted = false;
-  for (std::size_t k = 0; k < line.size(); ++k) {
-    if (line[k] == '"' && quoted && k + 1 < line.size() && line[k + 1] == '"')
-      result.back() += line[++k];
-    else if (line[k] == '"')
-      quoted = !quoted;
-    else if (line[k] == ',' && !quoted)
-      result.emplace_back();
-    else
-      result.back() += line[k];
-  }
-  return result;
 }
 
 double number(const std::string& field) {
@@ -135,7 +120,7 @@ void ChartFile::read() {
   if (head < lines.size() && lines[head] == kUnfinished) ++head;
   if (lines.size() <= head || lines[head] != header()) refuse("the file is not the beginning of this chart");
   for (std::size_t k = head + 1; k < lines.size(); ++k) {
-    const std::vector<std::string> f = fields(lines[k]);
+    const std::vector<std::string> f = csv_fields(lines[k]);
     if (f.size() != kColumns) refuse(fmt::format("line {} is not a row of a chart", k + 1));
     if (f[5] != "reference") rows_.push_back(row_of(f));
   }
