@@ -59,6 +59,7 @@ std::string to_json(const RunRecord& record) {
                           {"factor", s.seconds.factor},
                           {"solve", s.seconds.solve},
                           {"other", s.seconds.other}}},
+                        {"largest_rotation", s.largest_rotation},
                         {"violation", {{"position", s.violation.position}, {"velocity", s.violation.velocity}}}};
   add_origin(json);
   json["configuration"] = Json::parse(record.configuration);

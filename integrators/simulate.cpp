@@ -83,7 +83,17 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
   if (!outcome.status.ok()) return outcome;
   const Eigen::VectorXd q_start = state.q;
-  outcome.status = integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics});
+  const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
+  outcome.status =
+      integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, rotation.senseless});
+  const double largest = outcome.statistics.largest_rotation;
+  if (outcome.status.ok() && largest > rotation.wrong) {
+    outcome.notices.push_back(fmt::format(
+        "a body turns by up to {:.2g} rad in a step: from {:.2g} rad on {} in formulation {} loses or "
+        "invents more than 3 % of a free body's rotation in a turn, in space at least; a step below {:.2g} "
+        "s, or error control, does not",
+        largest, rotation.wrong, integrator.name, formulation.name, 0.9 * settings.step * rotation.wrong / largest));
+  }
   const Failure failure = outcome.status.failure;
   if (settings.analysis == Analysis::dynamics &&
       (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {

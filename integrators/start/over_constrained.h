@@ -69,6 +69,8 @@ class OverConstrained final : public Problem {
     kept_->reaction(group, lambda, force, moment);
   }
   double energy() const override { return kept_->energy(); }
+  double fastest_turn() const override { return kept_->fastest_turn(); }
+  CountedTurn counted_turn() const override { return kept_->counted_turn(); }
   std::string describe_unknown(int k) const override { return kept_->describe_unknown(k); }
 
   bool has_discrete_state() const override { return true; }

@@ -6,6 +6,7 @@
 
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/step_control.h"
+#include "integrators/stepping/turning.h"
 #include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
 
@@ -293,6 +294,7 @@ Status RadauStepper::newton(const State& from, double to, Linearized& linear) {
 Status RadauStepper::attempt(double to, double& error) {
   h_ = to - state_.t;
   if (Status status = stages(state_, to, step_); !status.ok()) return status;
+  if (turns_too_far(problem_, h_)) return {Failure::rotation_too_large, to, {}};  // it stands at the last stage
   end_of_step(state_, to, next_);
   set_scale(state_, next_.q, next_.v);
   return error_of(state_, h_, error);
