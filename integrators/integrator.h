@@ -50,6 +50,22 @@ struct Sample {
 };
 using Observer = std::function<void(const Sample&)>;
 
+// How far a body may turn in a step of fixed length, rad, by the space of the formulation's coordinates: as measured on
+// free bodies over one turn (integrators/README.md).
+struct Rotations {
+  struct Limit {
+    double wrong = kUnlimited;      // from here on |ω| is off by more than 3 % after a turn, without any load
+    double senseless = kUnlimited;  // from here on by more than half, or Newton's method fails
+  };
+  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+  Limit lie_group = {}, vector_space = {}, charts = {};
+
+  const Limit& in(CoordinateSpace space) const {
+    return space == CoordinateSpace::lie_group ? lie_group : space == CoordinateSpace::charts ? charts : vector_space;
+  }
+};
+
 // What an integrator is given: the problem, how to solve it, and where what it finds goes.
 struct Run {
   Problem& problem;
@@ -79,22 +95,6 @@ struct MethodParameter {
   double of(const Settings& settings) const {
     const auto given = settings.parameters.find(name);
     return given == settings.parameters.end() ? by_default : given->second;
-  }
-};
-
-// How far a body may turn in a step of fixed length, rad, by the space of the formulation's coordinates: as measured on
-// free bodies over one turn (integrators/README.md).
-struct Rotations {
-  struct Limit {
-    double wrong = kUnlimited;      // from here on |ω| is off by more than 3 % after a turn, without any load
-    double senseless = kUnlimited;  // from here on by more than half, or Newton's method fails
-  };
-  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-
-  Limit lie_group = {}, vector_space = {}, charts = {};
-
-  const Limit& in(CoordinateSpace space) const {
-    return space == CoordinateSpace::lie_group ? lie_group : space == CoordinateSpace::charts ? charts : vector_space;
   }
 };
 

@@ -23,7 +23,8 @@ constexpr double kHalfTurn = std::numbers::pi;
 constexpr Rotations kOfImplicitEuler{{0.075, kHalfTurn}, {0.01, 0.56}, {0.042, kHalfTurn}};
 constexpr Rotations kOfHalfImplicit{{0.075, kHalfTurn}, {0.024, 1.0}, {0.0075, kHalfTurn}};
 constexpr Rotations kOfRattle{{1.8, kHalfTurn}, {1.0, 1.0}, {0.24, kHalfTurn}};
-constexpr Rotations kOfAlpha{{1.0, kHalfTurn}, {1.0, 1.8}, {0.1, kHalfTurn}};
+constexpr Rotations kOfAlpha{{1.0, kHalfTurn}, {1.0, 2.4}, {0.1, kHalfTurn}};
+constexpr Rotations kOfAlphaI2{{1.0, kHalfTurn}, {1.3, 1.8}, {0.1, kHalfTurn}};
 
 constexpr IntegratorEntry kIntegrators[] = {
     {"implicit_euler",
@@ -68,7 +69,7 @@ constexpr IntegratorEntry kIntegrators[] = {
      Analysis::dynamics, 2, make_generalized_alpha, false, false, kOfGeneralizedAlpha, kOfAlpha},
     {"generalized_alpha_i2",
      "the same in stabilized index 2: velocities are kept on the constraints, too; any formulation", Analysis::dynamics,
-     2, make_generalized_alpha_i2, false, false, kOfGeneralizedAlpha, kOfAlpha},
+     2, make_generalized_alpha_i2, false, false, kOfGeneralizedAlpha, kOfAlphaI2},
     {"kinematics", "of a mechanism without degrees of freedom: Newton for the position, linear solves for the rates",
      Analysis::kinematics, 0, make_kinematics},
 };

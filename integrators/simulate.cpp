@@ -11,6 +11,7 @@
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
+#include "integrators/start/driven_pose.h"
 #include "integrators/start/first_state.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
@@ -82,6 +83,12 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   outcome.status = find_first_state(start, settings, *problem, state);
   std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
   if (!outcome.status.ok()) return outcome;
+  if (settings.analysis == Analysis::dynamics) {  // kinematics finds its pose itself
+    problem->set_position(0, span(state.q));
+    problem->set_velocity(span(state.v));
+    outcome.status = check_driven_pose(*problem, state.a());
+    if (!outcome.status.ok()) return outcome;
+  }
   const Eigen::VectorXd q_start = state.q;
   const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
   outcome.status =

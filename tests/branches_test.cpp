@@ -180,5 +180,33 @@ TEST(Branches, a_platform_driven_through_its_flat_pose_stops) {
     }
 }
 
+TEST(Branches, drivers_that_ask_for_the_pose_half_a_turn_off_or_a_negative_length_are_refused) {
+  Scene sled;
+  sled.bodies.push_back({"sled", 1, Matrix3::Identity(), {1, 0, 0}});
+  Joint guide;
+  guide.type = JointType::translational, guide.i = kGround, guide.j = 0, guide.axis = {1, 0, 0};
+  sled.joints.push_back(guide);
+  Driver length;
+  length.name = "length", length.type = DriverType::distance, length.i = kGround, length.j = 0;
+  length.value = Expression::parse("-1 - t");
+  sled.drivers.push_back(length);
+  Scene crank;
+  add_bar(crank, "crank", Vector3::Zero(), {1, 0, 0});
+  add_joint(crank, JointType::revolute, kGround, 0, Vector3::Zero());
+  Driver motor;
+  motor.name = "motor", motor.i = kGround, motor.j = 0, motor.axis = {0, 0, 1};
+  motor.value = Expression::parse("pi + t");
+  crank.drivers.push_back(motor);
+  for (const char* formulation : kFormulations)
+    for (const Scene& scene : {sled, crank})
+      for (const IntegratorEntry& integrator : integrators()) {
+        Settings settings = kinematics(formulation, 0.01, 0.02);
+        settings.analysis = integrator.analysis, settings.integrator = integrator.name;
+        if (refusal_of(integrator, formulation)) continue;
+        EXPECT_EQ(run(scene, settings).outcome.status.failure, Failure::inconsistent_state)
+            << formulation << ' ' << integrator.name;
+      }
+}
+
 }  // namespace
 }  // namespace poinsot::test

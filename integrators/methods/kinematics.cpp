@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "integrators/jacobian_policy.h"
+#include "integrators/start/driven_pose.h"
 #include "integrators/start/singular_position.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/fixed_steps.h"
@@ -47,6 +48,7 @@ class Kinematics final : public FixedSteps {
   Status begin() override {
     clock_.start();
     if (Status status = find(0, settings_.tolerance); !status.ok()) return status;
+    if (Status status = check_driven_pose(problem_, x_.a()); !status.ok()) return status;
     orientation_ = system_.orientation();
     if (problem_.has_discrete_state()) {
       if (Status status = accept(problem_); !status.ok()) return status;
