@@ -79,6 +79,7 @@ std::string to_json(const RunRecord& record) {
                           {"factor", s.seconds.factor},
                           {"solve", s.seconds.solve},
                           {"other", s.seconds.other}}},
+                        {"largest_rotation", s.largest_rotation},
                         {"violation", {{"position", s.violation.position}, {"velocity", s.violation.velocity}}}};
   for (const auto& [option, names] : record.columns) json["columns"][option] = names;
   add_origin(json);

@@ -20,6 +20,8 @@ std::string_view name(Failure failure) {
       return "constraint_lost";
     case Failure::singular_position:
       return "singular_position";
+    case Failure::rotation_too_large:
+      return "rotation_too_large";
     case Failure::step_size_too_small:
       return "step_size_too_small";
     case Failure::refused:

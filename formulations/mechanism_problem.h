@@ -204,6 +204,31 @@ class MechanismProblem final : public Problem {
     return Torsion<F, double>::angle(c, c.elements->followed[k], c.followed[k]);
   }
 
+  double fastest_turn() const override {
+    double square = 0;
+    for (const auto& rate : mechanism_.c.rate) square = std::max(square, rate.w.squaredNorm());
+    return std::sqrt(square);
+  }
+  CountedTurn counted_turn() const override {
+    const auto& c = mechanism_.c;
+    const Elements& e = *c.elements;
+    const auto turn = [&](int body) {
+      return body == kGround ? Vector3(Vector3::Zero()) : c.rate[static_cast<std::size_t>(body)].wg;
+    };
+    CountedTurn fastest;
+    for (std::size_t k = 0; k < e.torsions.size(); ++k) {
+      const TorsionSpringElement& spring = e.torsions[k];
+      const Vector3 axis = c.s[static_cast<std::size_t>(spring.a)].cross(c.s[static_cast<std::size_t>(spring.b)]);
+      const double rate = std::abs(axis.dot(turn(spring.j) - turn(spring.i)));
+      if (rate > fastest.rate) fastest = {rate, static_cast<int>(k), -1};
+    }
+    for (const AngleRow& k : e.angle) {
+      const double rate = std::abs(c.f[static_cast<std::size_t>(k.f)].fd);
+      if (rate > fastest.rate) fastest = {rate, -1, e.model_row[static_cast<std::size_t>(k.row)]};
+    }
+    return fastest;
+  }
+
   std::string describe_unknown(int k) const override {
     const Elements& e = *mechanism_.c.elements;
     if (k < nv_) return body_name(k / M::kV);

@@ -44,6 +44,13 @@ struct StepScale {
   double position = 0;
 };
 
+// The angle that turns fastest of those a step must not turn by half a turn, because positions tell them up to full or
+// half turns only: of torsion springs and of driven angles.
+struct CountedTurn {
+  double rate = 0;                // rad/s
+  int torsion = -1, driver = -1;  // which: index of the model's torsion spring, or of its row
+};
+
 class Problem {
  public:
   virtual ~Problem() = default;
@@ -122,6 +129,9 @@ class Problem {
   // Angle of a torsion spring of the model, and of an angle that is followed: rad, with full turns.
   virtual double twist(int torsion) const = 0;
   virtual double followed_angle(int of) const = 0;
+  // The largest |ω| of a body, rad/s. Needs the velocity.
+  virtual double fastest_turn() const = 0;
+  virtual CountedTurn counted_turn() const = 0;  // needs the velocity
   // How messages speak of unknown k of the step's linear system: a body's coordinates or a constraint row.
   virtual std::string describe_unknown(int k) const = 0;
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 
 #include "core/registry.h"
 #include "core/status.h"
+#include "formulations/formulation.h"
 #include "formulations/problem.h"
 #include "integrators/settings.h"
 #include "integrators/state.h"
@@ -36,6 +38,7 @@ struct Statistics {
   struct {
     double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
   } violation;
+  double largest_rotation = 0;     // rad, of a body in an accepted step: h |ω| at its end
   std::vector<LinearWork> linear;  // which linear solvers factored which systems; the busiest first
 };
 
@@ -47,6 +50,22 @@ struct Sample {
 };
 using Observer = std::function<void(const Sample&)>;
 
+// How far a body may turn in a step of fixed length, rad, by the space of the formulation's coordinates: as measured on
+// free bodies over one turn (integrators/README.md).
+struct Rotations {
+  struct Limit {
+    double wrong = kUnlimited;      // from here on |ω| is off by more than 3 % after a turn, without any load
+    double senseless = kUnlimited;  // from here on by more than half, or Newton's method fails
+  };
+  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+  Limit lie_group = {}, vector_space = {}, charts = {};
+
+  const Limit& in(CoordinateSpace space) const {
+    return space == CoordinateSpace::lie_group ? lie_group : space == CoordinateSpace::charts ? charts : vector_space;
+  }
+};
+
 // What an integrator is given: the problem, how to solve it, and where what it finds goes.
 struct Run {
   Problem& problem;
@@ -55,6 +74,7 @@ struct Run {
   State& state;  // consistent at 0
   const Observer& observe;
   Statistics& statistics;
+  double most_rotation = Rotations::kUnlimited;  // rad of a body in a step of fixed length, beyond which it stops
 };
 
 class Integrator {
@@ -87,6 +107,7 @@ struct IntegratorEntry {
   bool controls_error = false;      // chooses its steps by rtol and atol; `step` and `tolerance` mean nothing to it
   bool needs_vector_space = false;  // of coordinates with their rates as velocities: CoordinateSpace::vector_space
   std::span<const MethodParameter> parameters = {};
+  Rotations rotations = {};
 };
 
 Registry<IntegratorEntry>& integrators();

@@ -1,5 +1,7 @@
 #include "formulations/registry.h"
 
+#include <numbers>
+
 #include "integrators/integrator.h"
 #include "integrators/methods/dop853.h"
 #include "integrators/methods/dopri5.h"
@@ -16,9 +18,24 @@ namespace {
 
 constexpr std::span<const MethodParameter> kOfGeneralizedAlpha(&kSpectralRadius, 1);
 
+// Rotation about an axis that stays is exact in rA and reps, whatever its angle: only half a turn makes no sense there.
+constexpr double kHalfTurn = std::numbers::pi;
+constexpr Rotations kOfImplicitEuler{{0.075, kHalfTurn}, {0.01, 0.56}, {0.042, kHalfTurn}};
+constexpr Rotations kOfHalfImplicit{{0.075, kHalfTurn}, {0.024, 1.0}, {0.0075, kHalfTurn}};
+constexpr Rotations kOfRattle{{1.8, kHalfTurn}, {1.0, 1.0}, {0.24, kHalfTurn}};
+constexpr Rotations kOfAlpha{{1.0, kHalfTurn}, {1.0, 2.4}, {0.1, kHalfTurn}};
+constexpr Rotations kOfAlphaI2{{1.0, kHalfTurn}, {1.3, 1.8}, {0.1, kHalfTurn}};
+
 constexpr IntegratorEntry kIntegrators[] = {
-    {"implicit_euler", "the paper's: index 3, first order, fixed step; any formulation, any linear solver",
-     Analysis::dynamics, 1, make_implicit_euler},
+    {"implicit_euler",
+     "the paper's: index 3, first order, fixed step; any formulation, any linear solver",
+     Analysis::dynamics,
+     1,
+     make_implicit_euler,
+     false,
+     false,
+     {},
+     kOfImplicitEuler},
     {"dopri5", "explicit Runge-Kutta pair of order 5(4) with error control and projection; non-stiff; any formulation",
      Analysis::dynamics, 5, make_dopri5, true},
     {"dop853",
@@ -31,16 +48,28 @@ constexpr IntegratorEntry kIntegrators[] = {
     {"half_implicit",
      "half-implicit Euler with the constraints at the new position: first order, fixed step; symplectic in plane "
      "motion",
-     Analysis::dynamics, 1, make_half_implicit},
+     Analysis::dynamics,
+     1,
+     make_half_implicit,
+     false,
+     false,
+     {},
+     kOfHalfImplicit},
     {"rattle",
      "second order, fixed step, constraints kept in positions and velocities; symplectic in rA and rp: for long runs",
-     Analysis::dynamics, 2, make_rattle},
+     Analysis::dynamics,
+     2,
+     make_rattle,
+     false,
+     false,
+     {},
+     kOfRattle},
     {"generalized_alpha",
      "on the Lie group, index 3: second order, fixed step, damping by spectral_radius; any formulation",
-     Analysis::dynamics, 2, make_generalized_alpha, false, false, kOfGeneralizedAlpha},
+     Analysis::dynamics, 2, make_generalized_alpha, false, false, kOfGeneralizedAlpha, kOfAlpha},
     {"generalized_alpha_i2",
      "the same in stabilized index 2: velocities are kept on the constraints, too; any formulation", Analysis::dynamics,
-     2, make_generalized_alpha_i2, false, false, kOfGeneralizedAlpha},
+     2, make_generalized_alpha_i2, false, false, kOfGeneralizedAlpha, kOfAlphaI2},
     {"kinematics", "of a mechanism without degrees of freedom: Newton for the position, linear solves for the rates",
      Analysis::kinematics, 0, make_kinematics},
 };

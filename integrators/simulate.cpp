@@ -15,6 +15,7 @@
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
 #include "integrators/signals.h"
+#include "integrators/start/driven_pose.h"
 #include "integrators/start/first_state.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
@@ -103,9 +104,25 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
   explain(outcome.status, *problem);
   if (!outcome.status.ok()) return outcome;
+  if (settings.analysis == Analysis::dynamics) {  // kinematics finds its pose itself
+    problem->set_position(0, span(state.q));
+    problem->set_velocity(span(state.v));
+    outcome.status = check_driven_pose(*problem, state.a());
+    if (!outcome.status.ok()) return outcome;
+  }
   const Eigen::VectorXd q_start = state.q;
-  outcome.status = integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics});
+  const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
+  outcome.status =
+      integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, rotation.senseless});
   explain(outcome.status, *problem);
+  const double largest = outcome.statistics.largest_rotation;
+  if (outcome.status.ok() && largest > rotation.wrong) {
+    outcome.notices.push_back(fmt::format(
+        "a body turns by up to {:.2g} rad in a step: from {:.2g} rad on {} in formulation {} loses or "
+        "invents more than 3 % of a free body's rotation in a turn, in space at least; a step below {:.2g} "
+        "s, or error control, does not",
+        largest, rotation.wrong, integrator.name, formulation.name, 0.9 * settings.step * rotation.wrong / largest));
+  }
   const Failure failure = outcome.status.failure;
   if (settings.analysis == Analysis::dynamics &&
       (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {

@@ -48,6 +48,7 @@ class Auto final : public LinearSolver {
     return solver_ ? solver_->statistics() : LinearSolver::statistics();
   }
   std::string_view picked() const override { return picked_; }
+  std::uint64_t orientation() override { return solver_ ? solver_->orientation() : 0; }
   Helper helper() const override { return solver_ ? solver_->helper() : Helper(); }
 
  private:

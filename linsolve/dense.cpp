@@ -38,6 +38,13 @@ constexpr Kernels kKernels[] = {kernels<6>(),  kernels<7>(),  kernels<9>(),  ker
                                 kernels<13>(), kernels<14>(), kernels<22>(), kernels<26>(), kernels<0>()};
 
 class Dense final : public ScaledLu {
+ public:
+  std::uint64_t orientation() override {
+    bool negative = odd(0, n_, [this](int k) { return order_[static_cast<std::size_t>(k)]; });
+    for (double inverse : inverse_) negative ^= inverse < 0;
+    return negative ? 2 : 1;
+  }
+
  private:
   LinearStatus do_symbolic() override {
     n_ = layout().n;

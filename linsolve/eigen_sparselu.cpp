@@ -28,6 +28,9 @@ class Factors : public Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> {
 };
 
 class EigenSparseLu final : public ScaledLu {
+ public:
+  std::uint64_t orientation() override { return lu_.signDeterminant() < 0 ? 2 : 1; }
+
  private:
   LinearStatus do_symbolic() override {
     const int n = layout().n;

@@ -32,6 +32,7 @@ LinearStatus Klu::do_symbolic() {
   constexpr int kLargestSearched = 20000;
   release();
   fresh_pivots_.assign(static_cast<std::size_t>(layout().n), 0);
+  first_place_.clear();
   if (layout().n <= kLargestSearched) symbolic_ = analyze_as(0, true);
   rival_ = analyze_as(1, false);
   if (!symbolic_) std::swap(symbolic_, rival_);
@@ -57,7 +58,31 @@ LinearStatus Klu::do_fresh() {
   statistics_.factor_nonzeros = entries(*numeric_);
   std::ranges::copy(pivots(), fresh_pivots_.begin());
   fresh_growth_ = reciprocal_growth();
+  order_known_ = false;
   return {};
+}
+
+// Rows stay in their diagonal block whatever the pivots, and the order of the columns stays.
+std::uint64_t Klu::orientation() {
+  const int *first = symbolic_->R, *row_at = numeric_->Pnum;
+  const std::size_t blocks = static_cast<std::size_t>(symbolic_->nblocks);
+  if (first_place_.empty()) {
+    first_place_.resize(fresh_pivots_.size());
+    for (int k = 0; k < layout().n; ++k) first_place_[static_cast<std::size_t>(row_at[k])] = k;
+  }
+  if (!order_known_) {
+    reversed_.resize(blocks);
+    const auto to = [&](int k) { return first_place_[static_cast<std::size_t>(row_at[k])]; };
+    for (std::size_t b = 0; b < blocks; ++b) reversed_[b] = odd(first[b], first[b + 1], to);
+    order_known_ = true;
+  }
+  std::uint64_t all = 1;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    bool negative = reversed_[b] != 0;
+    for (int k = first[b]; k < first[b + 1]; ++k) negative ^= pivots()[static_cast<std::size_t>(k)] < 0;
+    all = 0x9E3779B97F4A7C15U * all + (negative ? 2 : 1);
+  }
+  return all;
 }
 
 void Klu::compare() {

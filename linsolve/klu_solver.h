@@ -19,6 +19,7 @@ class Klu final : public ScaledLu {
  public:
   Klu();
   ~Klu() override;
+  std::uint64_t orientation() override;
 
  private:
   LinearStatus do_symbolic() override;
@@ -42,6 +43,9 @@ class Klu final : public ScaledLu {
   void release();
 
   std::vector<double> fresh_pivots_;
+  std::vector<int> first_place_;  // of every row, by the first pivots chosen
+  std::vector<char> reversed_;    // by diagonal block: the rows' order is an odd permutation of the first one
+  bool order_known_ = false;      // reversed_ is that of the last fresh factorization
   double fresh_growth_ = 0;
   klu_common common_;
   klu_symbolic *symbolic_ = nullptr, *rival_ = nullptr;

@@ -65,6 +65,10 @@ class LinearSolver {
   // Of a solver that chooses another one to do its work: that one's name, from analyze() on.
   virtual std::string_view picked() const { return {}; }
   virtual Helper helper() const { return {}; }
+  // Of the factored matrix: stays the same, from one factorization to another after one analyze(), as long as the
+  // determinant of no diagonal block that the solver works on by itself (at least: of the whole) changes its sign.
+  // 0 where the solver does not know.
+  virtual std::uint64_t orientation() { return 0; }
   State state() const { return state_; }
   int size() const { return n_; }
   virtual const LinearStatistics& statistics() const { return statistics_; }

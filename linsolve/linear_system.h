@@ -49,6 +49,8 @@ class LinearSystem {
   std::span<double> values() { return jacobian_ ? jacobian_->values() : whole_->values(); }
   bool factored() const;  // solve() may be called
   void add_work(std::vector<LinearWork>& work) const;
+  // LinearSolver::orientation() of the whole matrix; 0 where another was factored.
+  std::uint64_t orientation() { return by_jacobian_ || !whole_ ? 0 : whole_->orientation(); }
   // Of the solver of the last factorization.
   const LinearStatistics& statistics() const {
     return by_jacobian_ ? jacobian_->solver().statistics() : whole_->statistics();

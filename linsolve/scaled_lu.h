@@ -31,6 +31,22 @@ class ScaledLu : public LinearSolver {
   virtual double pivot(int k) = 0;
   virtual int pivot_column(int k) = 0;
 
+  // Whether the permutation k → to(k) of [first, last) is odd.
+  template <class To>
+  bool odd(int first, int last, To&& to) {
+    bool answer = false;
+    seen_.resize(static_cast<std::size_t>(layout_.n));
+    for (int k = first; k < last; ++k) seen_[static_cast<std::size_t>(k)] = 0;
+    for (int k = first; k < last; ++k) {
+      if (seen_[static_cast<std::size_t>(k)]) continue;
+      seen_[static_cast<std::size_t>(k)] = 1;
+      for (int next = to(k); next != k; next = to(next)) {  // a cycle of n is n − 1 exchanges
+        seen_[static_cast<std::size_t>(next)] = 1;
+        answer = !answer;
+      }
+    }
+    return answer;
+  }
   const CscLayout& layout() const { return layout_; }
   std::span<double> scaled() { return scaled_; }
   static LinearStatus singular(int unknown);
@@ -50,6 +66,7 @@ class ScaledLu : public LinearSolver {
   Equilibration equilibration_;
   Condition condition_;
   std::vector<double> scaled_;
+  std::vector<char> seen_;
   bool scaling_known_ = false;  // from earlier values
   bool pivots_known_ = false;
   bool examined_ = false;  // the condition was found good before; now smaller pivots than these raise doubts:

@@ -20,12 +20,20 @@ class Umfpack final : public ScaledLu {
   }
   ~Umfpack() override { release(); }
 
+  std::uint64_t orientation() override {
+    bool negative = odd(0, layout().n, [this](int k) { return rows_[static_cast<std::size_t>(k)]; }) !=
+                    odd(0, layout().n, [this](int k) { return columns_[static_cast<std::size_t>(k)]; });
+    for (double pivot : pivots_) negative ^= pivot < 0;
+    return negative ? 2 : 1;
+  }
+
  private:
   LinearStatus do_symbolic() override {
     release();
     const auto n = static_cast<std::size_t>(layout().n);
     x_.assign(n, 0);
     pivots_.assign(n, 0);
+    rows_.assign(n, 0);
     columns_.assign(n, 0);
     index_work_.assign(n, 0);
     work_.assign(5 * n, 0);
@@ -42,7 +50,7 @@ class Umfpack final : public ScaledLu {
       if (LinearStatus status = library_status(answer); !status.ok()) return status;
     statistics_.factor_nonzeros = static_cast<std::int64_t>(info[UMFPACK_LNZ] + info[UMFPACK_UNZ]) - layout().n;
     int reciprocal = 0;
-    check(umfpack_di_get_numeric(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, columns_.data(),
+    check(umfpack_di_get_numeric(nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, rows_.data(), columns_.data(),
                                  pivots_.data(), &reciprocal, nullptr, numeric_) == UMFPACK_OK,
           "UMFPACK shows its pivots");
     return {};
@@ -74,7 +82,7 @@ class Umfpack final : public ScaledLu {
   }
 
   std::vector<double> x_, pivots_, work_;
-  std::vector<int> columns_, index_work_;
+  std::vector<int> rows_, columns_, index_work_;
   double control_[UMFPACK_CONTROL];
   void *symbolic_ = nullptr, *numeric_ = nullptr;
 };

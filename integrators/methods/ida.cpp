@@ -17,6 +17,7 @@
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/stabilized_index2.h"
 #include "integrators/stepping/step_control.h"
+#include "integrators/stepping/turning.h"
 #include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
 
@@ -120,6 +121,7 @@ class Session {
   Status integrate() {
     clock_.start();
     consistent_.stand(at_);
+    limit_turn();
     give_out();
     const Status status = advance();
     count();
@@ -144,6 +146,8 @@ class Session {
       ++statistics_.steps;
       double h = 0;
       IDAGetLastStep(ida_.get(), &h);
+      statistics_.largest_rotation = std::max(statistics_.largest_rotation, h * problem_.fastest_turn());
+      limit_turn();
       if (creeping.tries(t, h)) return step_too_small(t, h, {});
       creeping.completed(h);
       for (; settings_.every > 0 && times.next() < t; times.pass()) {
@@ -159,6 +163,12 @@ class Session {
       if (Status status = accept(t); !status.ok()) return status;
     }
     return {};
+  }
+
+  // The next step by how fast counted angles turn now, with room for their getting faster.
+  void limit_turn() {
+    const double rate = problem_.counted_turn().rate;
+    if (rate > 0) IDASetMaxStep(ida_.get(), 0.5 * kMostCounted / rate);
   }
 
   // After a failure of IDA: again from the last point, at the tolerance itself.

@@ -2,14 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "integrators/jacobian_policy.h"
+#include "integrators/start/driven_pose.h"
+#include "integrators/start/singular_position.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/fixed_steps.h"
+#include "integrators/stepping/turning.h"
 
 namespace poinsot {
 namespace {
+
+// A step is certain up to this ratio of the first two corrections (by Newton and Kantorovich the solution is the only
+// one about the prediction then), and up to this turn of a driven angle.
+constexpr double kContraction = 0.25;
+constexpr double kTurn = 1;
+constexpr double kShortest = 0x1p-24;  // part of a step; positions beside a singular one are known to rounding's root
 
 // Numbers are those of the paper's equations.
 class Kinematics final : public FixedSteps {
@@ -18,9 +28,13 @@ class Kinematics final : public FixedSteps {
       : FixedSteps(run),
         refresh_(jacobians().require(settings_.jacobian).refresh),
         system_(problem_, run.systems.add(), MatrixKind::kinematic, run.statistics, clock_),
+        rows_change_(
+            std::ranges::any_of(problem_.model().rows, [](const Row& row) { return row.alternate != nullptr; })),
         delta_(nc_),
         q_next_(problem_.nq()),
-        dq_(nv_) {
+        dq_(nv_),
+        q_from_(problem_.nq()),
+        v_from_(nv_) {
     if (settings_.reactions || settings_.signals) {
       inverse_dynamics_ = std::make_unique<Consistent>(problem_, settings_.linear());
     } else {
@@ -33,7 +47,9 @@ class Kinematics final : public FixedSteps {
   // The start as given is only where the iteration begins.
   Status begin() override {
     clock_.start();
-    if (Status status = find(0); !status.ok()) return status;
+    if (Status status = find(0, settings_.tolerance); !status.ok()) return status;
+    if (Status status = check_driven_pose(problem_, x_.a()); !status.ok()) return status;
+    orientation_ = system_.orientation();
     if (problem_.has_discrete_state()) {
       if (Status status = accept(problem_); !status.ok()) return status;
     }
@@ -41,16 +57,26 @@ class Kinematics final : public FixedSteps {
   }
 
   Status step(double t) override {
-    if (refresh_ == Refresh::before_step) {  // the original study's codes predict nothing
-      x_.q = q_n_;
-    } else {
-      dq_.noalias() = h_ * v_n_;
-      problem_.retract(span(q_n_), span(dq_), span(x_.q));  // (11)
-    }
-    return find(t);
+    q_from_ = q_n_, v_from_ = v_n_;
+    if (advance(x_.t, t, settings_.tolerance).ok() && certain(t - x_.t, t)) return {};
+    return follow(t);
+  }
+
+  // Coordinates or rows are others: so is what the determinant's sign is compared with.
+  Status resume() override {
+    if (Status status = system_.refresh(x_.t, {}, {}, {}, {}); !status.ok()) return status;
+    orientation_ = system_.orientation();
+    return {};
   }
 
   Problem& stand() override { return problem_; }  // it does after every step
+  // What turns far is followed in shorter steps, but for the torque of springs.
+  Status check_turns(Problem& problem, double t) override {
+    const bool counts = inverse_dynamics_ && !problem.model().torsions.empty();
+    return counts && turns_too_far(problem, h_) ? turned_too_far(problem, t, h_) : Status{};
+  }
+
+  Status check_velocity(Problem&, double) override { return {}; }  // of certain steps
 
   Status complete() override {
     if (!inverse_dynamics_) return {};
@@ -61,13 +87,79 @@ class Kinematics final : public FixedSteps {
   }
 
  private:
-  Status find(double t) {
-    if (Status status = find_position(t); !status.ok()) return status;
+  // From (q_from_, v_from_) at `from` to x_ at t.
+  Status advance(double from, double t, double tolerance) {
+    if (refresh_ == Refresh::before_step) {  // the original study's codes predict nothing
+      x_.q = q_from_;
+    } else {
+      dq_.noalias() = (t - from) * v_from_;
+      problem_.retract(span(q_from_), span(dq_), span(x_.q));  // (11)
+    }
+    return find(t, tolerance);
+  }
+
+  // Whether x_ is where the motion from q_from_ leads, over a time h to t; if so it is what the next is compared with.
+  bool certain(double h, double t) {
+    if (contraction_ > kContraction) return false;
+    const CountedTurn turn = problem_.counted_turn();
+    if (turn.driver >= 0 && h * turn.rate > kTurn) return false;
+    const std::uint64_t here = system_.orientation();
+    if (here != orientation_ && !(rows_change_ && here == orientation_before(t))) return false;
+    orientation_ = here;
+    return true;
+  }
+
+  // Where rows stand in for others at t: the orientation of the position before with the rows of now.
+  std::uint64_t orientation_before(double t) {
+    problem_.set_position(t, span(q_from_));
+    const bool regular = system_.refresh(t, {}, {}, {}, {}).ok();
+    const std::uint64_t before = regular ? system_.orientation() : 0;
+    problem_.set_position(t, span(x_.q));
+    problem_.set_velocity(span(x_.v));
+    return before;
+  }
+
+  // The step to t in as many shorter ones as it takes to be certain of each.
+  Status follow(double t) {
+    double at = x_.t, h = 0.5 * (t - at);
+    const double shortest = kShortest * (t - at);
+    while (at < t) {
+      const double to = at + 1.01 * h >= t ? t : at + h;
+      h = to - at;
+      const double tolerance = std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), 1e-12));
+      Status status = advance(at, to, tolerance);
+      if (status.ok() && certain(h, to)) {
+        at = to;
+        h *= 2;
+        q_from_ = x_.q, v_from_ = x_.v;
+        continue;
+      }
+      h *= 0.5;
+      if (!(h >= shortest && at + h > at)) return status.ok() ? branching(at) : status;
+    }
+    return {};
+  }
+
+  Status branching(double t) {
+    const int row = most_dependent_row(problem_, static_cast<int>(problem_.model_rows().size()), t, span(q_from_));
+    return {Failure::singular_position, t,
+            fmt::format("at t = {:.9g} s the mechanism comes to a singular position{}, from which its motion can go on "
+                        "in more than one way; end before it, or start beyond it on the branch that is meant",
+                        t,
+                        row < 0 ? ""
+                                : fmt::format(", where {} depends on the other constraints",
+                                              problem_.describe_unknown(problem_.nv() + row)))};
+  }
+
+  Status find(double t, double tolerance) {
+    if (Status status = find_position(t, tolerance); !status.ok()) return status;
     return find_rates(t);
   }
 
-  Status find_position(double t) {
-    double correction = 0;
+  Status find_position(double t, double tolerance) {
+    constexpr double kRounding = 1e-10;
+    double correction = 0, first = 0;
+    contraction_ = 0;
     for (int k = 0; k < settings_.max_iterations; ++k) {
       problem_.set_position(t, span(x_.q));
       problem_.position_residual(span(delta_));
@@ -80,11 +172,15 @@ class Kinematics final : public FixedSteps {
       problem_.retract(span(x_.q), span(delta_), span(q_next_));                        // (14a), (12)
       x_.q.swap(q_next_);
       ++run_.statistics.newton_iterations;
+      const double before = correction;
       correction = delta_.norm();
       if (!std::isfinite(correction)) {
         return {Failure::not_finite, t, fmt::format("at t = {:.9g} s the position's correction is not finite", t)};
       }
-      if (correction < settings_.tolerance) return {};
+      if (k == 0) first = correction;
+      if (k == 1 && first > kRounding) contraction_ = correction / first;
+      if (correction < tolerance) return {};
+      if (tolerance < settings_.tolerance && k > 1 && correction > 0.5 * before && correction < kRounding) return {};
     }
     Eigen::Index largest = 0;
     delta_.cwiseAbs().maxCoeff(&largest);
@@ -109,8 +205,12 @@ class Kinematics final : public FixedSteps {
 
   const Refresh refresh_;
   StepSystem system_;
+  const bool rows_change_;
   std::unique_ptr<Consistent> inverse_dynamics_;
   Vector delta_, q_next_, dq_;
+  Vector q_from_, v_from_;  // where a step, or a part of it, begins
+  double contraction_ = 0;  // second correction over the first
+  std::uint64_t orientation_ = 0;
 };
 
 }  // namespace

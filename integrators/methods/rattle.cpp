@@ -46,6 +46,8 @@ class Rattle final : public FixedSteps {
     return problem;
   }
 
+  Problem& last_seen() override { return stand(); }
+
   Status accept(Problem& problem) override {
     bool rewritten = false;
     Status status = problem.accept(x_.t, span(x_.q), span(x_.v), span(rhs_, 0, nv_), span(rhs_, nv_, nc_), rewritten);

@@ -26,11 +26,19 @@ Eigen::VectorXd independent_parts(Problem& problem, double t, std::span<const do
   return inverse.diagonal().cwiseSqrt().cwiseInverse();
 }
 
+constexpr int kLargest = 600;  // of G: a second's work
+
 }  // namespace
+
+int most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q) {
+  if (rows < 1 || problem.nc() > kLargest) return -1;
+  Eigen::Index row = 0;
+  independent_parts(problem, t, q).head(rows).minCoeff(&row);
+  return static_cast<int>(row);
+}
 
 std::string near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
                                    std::span<const double> q) {
-  constexpr int kLargest = 600;  // of G: a second's work
   constexpr double kNear = 0.05;
   if (rows < 2 || problem.nc() > kLargest) return {};
   const Eigen::VectorXd before = independent_parts(problem, 0, q_start), now = independent_parts(problem, t, q);

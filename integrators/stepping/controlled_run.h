@@ -21,7 +21,7 @@ namespace poinsot {
 
 template <class Method, class GiveOut>
 Status controlled_steps(Method& method, const StepRule& rule, const Settings& settings, const GiveOut& give_out,
-                        Statistics& statistics) {
+                        const Problem& problem, Statistics& statistics) {
   constexpr double kForgotten = 0.8;
   const double end = settings.end, smallest = 16 * std::numeric_limits<double>::epsilon() * end;
   SampleTimes times(settings.every, end);
@@ -48,6 +48,7 @@ Status controlled_steps(Method& method, const StepRule& rule, const Settings& se
       continue;
     }
     ++statistics.steps;
+    statistics.largest_rotation = std::max(statistics.largest_rotation, h * problem.fastest_turn());
     rejections = 0;
     usual = std::max(h, kForgotten * usual);
     creeping.completed(h);
@@ -75,7 +76,7 @@ Status controlled_run(Method& method, const StepRule& rule, const Run& run, Phas
   };
   clock.start();
   give_out(method.state());
-  const Status status = controlled_steps(method, rule, run.settings, give_out, run.statistics);
+  const Status status = controlled_steps(method, rule, run.settings, give_out, run.problem, run.statistics);
   finish(clock, run.statistics);
   run.state = method.state();
   return status;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "integrators/stepping/accept.h"
+#include "integrators/stepping/turning.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
@@ -68,6 +69,7 @@ Status ExplicitStepper::evaluate(State& at, const Vector& y, Eigen::Index k) {
   at.v = y.tail(nv);
   problem_.retract(span(q_n_), span(y).first(nv_), span(at.q));
   if (Status status = consistent_.accelerations(at); !status.ok()) return status;
+  if (turns_too_far(problem_, h_)) return {Failure::rotation_too_large, at.t, {}};
   if (project_stages_) {
     bool moved = false;
     if (Status status = consistent_.project(at, moved); !status.ok()) return status;

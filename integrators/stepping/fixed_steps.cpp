@@ -1,7 +1,11 @@
 #include "integrators/stepping/fixed_steps.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "core/interruption.h"
 #include "integrators/stepping/accept.h"
+#include "integrators/stepping/turning.h"
 
 namespace poinsot {
 
@@ -21,6 +25,7 @@ Status FixedSteps::march() {
   if (Status status = prepare(); !status.ok()) return status;
   const bool discrete = problem_.has_discrete_state();
   Status status = begin();
+  if (status.ok()) status = measure_rotation(problem_, 0);
   for (std::int64_t n = 1; n <= grid_.steps && status.ok(); ++n) {
     if (interruption_requested) {
       status = interrupted(x_.t);
@@ -32,7 +37,9 @@ Status FixedSteps::march() {
     }
     q_n_.swap(x_.q);
     v_n_.swap(x_.v);
-    if (status = step(grid_.time(n)); !status.ok()) {
+    status = step(grid_.time(n));
+    if (status.ok()) status = measure_rotation(last_seen(), grid_.time(n));
+    if (!status.ok()) {
       x_.q.swap(q_n_);
       x_.v.swap(v_n_);
       break;
@@ -48,6 +55,29 @@ Status FixedSteps::march() {
   if (!status.ok()) x_.z = run_.state.z;  // not what Newton's method left
   run_.state = x_;
   return status;
+}
+
+Status FixedSteps::measure_rotation(Problem& problem, double t) {
+  const double before = std::exchange(rotation_, h_ * problem.fastest_turn());
+  if (rotation_ > run_.most_rotation) return rotated_too_far(problem, x_.a(), t, h_, run_.most_rotation);
+  if (Status status = check_turns(problem, t); !status.ok()) return status;
+  run_.statistics.largest_rotation = std::max(run_.statistics.largest_rotation, rotation_);
+  if (std::max(before, rotation_) < 0.5 * kMostUnexpected || t == 0) return {};
+  return check_velocity(problem, t);
+}
+
+Status FixedSteps::check_turns(Problem& problem, double t) {
+  return turns_too_far(problem, h_) ? turned_too_far(problem, t, h_) : Status{};
+}
+
+// The rotation in a step is h ω; that of the one before is what the motion leads to.
+Status FixedSteps::check_velocity(Problem& problem, double t) {
+  change_ = x_.v - v_n_;
+  problem.set_velocity(span(change_));
+  const double unexpected = h_ * problem.fastest_turn();
+  problem.set_velocity(span(x_.v));
+  if (unexpected < kMostUnexpected) return {};
+  return turned_unexpectedly(problem, x_.a(), t, h_, unexpected);
 }
 
 Status FixedSteps::begin() {

@@ -31,6 +31,12 @@ class FixedSteps {
   virtual Status step(double t) = 0;
   // The problem that stands at x_.
   virtual Problem& stand();
+  // The problem that stands at the end of the step, or where Newton's method saw it last.
+  virtual Problem& last_seen() { return problem_; }
+  // Whether the step to t turned bodies no further than can be followed; `problem` as last seen.
+  virtual Status check_turns(Problem& problem, double t);
+  // Whether its velocity goes on from that before, as far as it turns bodies.
+  virtual Status check_velocity(Problem& problem, double t);
   // Brings the discrete state up to date; `problem` stands at x_ before and after.
   virtual Status accept(Problem& problem);
   // Before the step that follows an accept() which has rewritten coordinates or rows.
@@ -56,7 +62,11 @@ class FixedSteps {
   Vector q_n_, v_n_;  // where the step began
 
  private:
+  Status measure_rotation(Problem& problem, double t);
+
   bool rewritten_ = false;
+  double rotation_ = 0;  // of the last step, the largest of a body
+  Vector change_;
 };
 
 // An integrator each of whose runs is an object of type Method, made from the run.

@@ -6,6 +6,7 @@
 
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/step_control.h"
+#include "integrators/stepping/turning.h"
 #include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
 
@@ -152,6 +153,7 @@ Status RadauStepper::settle() {
     if (Status status = prepare(); !status.ok()) return status;
   }
   if (!fast_) step_.h = 0;
+  counted_ = problem_.counted_turn().rate;
   component_sizes(problem_, span(state_.q), span(state_.v), span(sizes_));
   return {};
 }
@@ -293,6 +295,9 @@ Status RadauStepper::newton(const State& from, double to, Linearized& linear) {
 Status RadauStepper::attempt(double to, double& error) {
   h_ = to - state_.t;
   if (Status status = stages(state_, to, step_); !status.ok()) return status;
+  if (h_ * counted_ >= kMostCounted || turns_too_far(problem_, h_)) {  // it stands at the last stage
+    return {Failure::rotation_too_large, to, {}};
+  }
   end_of_step(state_, to, next_);
   set_scale(state_, next_.q, next_.v);
   return error_of(state_, h_, error);

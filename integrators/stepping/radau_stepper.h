@@ -100,6 +100,7 @@ class RadauStepper {
   Columns R_, V_old_, dQ_old_, rates_;
   bool fast_ = false;
   double convergence_ = 1;  // θ/(1 − θ)
+  double counted_ = 0;      // rate of the fastest counted angle at the state, rad/s
   Vector sizes_, sizes_next_, scale_, change_, e_, filtered_;
 };
 

@@ -31,6 +31,7 @@ class TimedSystem {
   // b ← A⁻¹ b.
   Status solve(double t, std::span<double> b);
   bool ready() const { return linear_.factored(); }
+  std::uint64_t orientation() { return linear_.orientation(); }
 
  private:
   Status factor(double t);

@@ -96,6 +96,7 @@ class Solver final : public LinearSolver {
     return {};
   }
 
+  std::uint64_t orientation() override { return answer_ == Answer::handed_over ? klu_->orientation() : 0; }
   Helper helper() const override { return {"klu", klu_.get()}; }
 
   static bool within(const Drift& drift, double range) {

@@ -1,0 +1,55 @@
+#include "integrators/stepping/turning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "core/index.h"
+
+namespace poinsot {
+namespace {
+
+struct Fastest {
+  std::string name;
+  double rate;  // rad/s
+};
+Fastest fastest(const Problem& problem, std::span<const double> a) {
+  std::vector<BodyState> states(index(problem.bodies()));
+  problem.to_bodies(a, states);
+  const auto body = std::ranges::max_element(states, {}, [](const BodyState& state) { return state.w.squaredNorm(); });
+  return {problem.model().bodies[index(static_cast<int>(body - states.begin()))].name, body->w.norm()};
+}
+
+}  // namespace
+
+Status turned_too_far(const Problem& problem, double t, double h) {
+  const CountedTurn turn = problem.counted_turn();
+  const Model& model = problem.model();
+  const std::string name = turn.torsion >= 0
+                               ? "torsion spring '" + model.torsions[index(turn.torsion)].spring.name + "'"
+                               : describe_row(model, turn.driver);
+  return {Failure::rotation_too_large, t,
+          fmt::format("at t = {:.9g} s {} turns at {:.4g} rad/s, by {:.3g} rad in a step: beyond half a turn its turns "
+                      "cannot be counted; try a step of at most {:.2g} s",
+                      t, name, turn.rate, h * turn.rate, 0.3 * kMostCounted / turn.rate)};
+}
+
+Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most) {
+  const auto [name, rate] = fastest(problem, a);
+  return {Failure::rotation_too_large, t,
+          fmt::format("at t = {:.9g} s body '{}' turns by {:.3g} rad in a step; in formulation {} the integrator makes "
+                      "no sense beyond {:.2g}: rotation is lost or invented; try a step of at most {:.2g} s",
+                      t, name, h * rate, problem.formulation(), most, 0.1 * most / rate)};
+}
+
+Status turned_unexpectedly(const Problem& problem, std::span<const double> a, double t, double h, double unexpected) {
+  const auto [name, rate] = fastest(problem, a);
+  return {Failure::rotation_too_large, t,
+          fmt::format("at t = {:.9g} s the step may have ended on another branch than the motion leads to: body '{}' "
+                      "turns by {:.3g} rad in it, a body by {:.3g} rad more or less than in the step before; try a "
+                      "tenth of the step",
+                      t, name, h * rate, unexpected)};
+}
+
+}  // namespace poinsot

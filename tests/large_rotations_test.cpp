@@ -1,0 +1,133 @@
+// What a step turns a body by is measured; where a method cannot follow, the run says so or stops.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+constexpr const char* kFormulations[] = {"rA", "rp", "reps"};
+
+Scene spinning(double rate) {
+  Scene scene;
+  Body body;
+  body.name = "body", body.mass = 1, body.inertia = Vector3(1, 2, 3).asDiagonal();
+  body.angular_velocity = rate * Vector3(0.3, 0.9, 0.3).normalized();
+  scene.bodies.push_back(body);
+  return scene;
+}
+
+// About the fixed axis z, with a torsion spring so soft that it turns `rate` rad and back over pi seconds.
+Scene torsional(double rate) {
+  Scene scene;
+  Body wheel;
+  wheel.name = "wheel", wheel.mass = 1, wheel.inertia = Vector3(1, 1, 1).asDiagonal();
+  wheel.angular_velocity = {0, 0, rate};
+  scene.bodies.push_back(wheel);
+  Joint hinge;
+  hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
+  scene.joints.push_back(hinge);
+  TorsionSpring spring;
+  spring.name = "soft", spring.i = kGround, spring.j = 0, spring.axis = {0, 0, 1}, spring.stiffness = 1;
+  scene.forces.push_back(spring);
+  return scene;
+}
+
+Settings with(std::string_view integrator, std::string_view formulation, double step, double end) {
+  Settings s;
+  s.integrator = integrator, s.formulation = formulation, s.step = step, s.end = end;
+  s.tolerance = 1e-8;
+  return s;
+}
+
+double energy_change(const Recorded& r, const Scene& scene) {
+  const auto energy = [&](const Snapshot& s) { return s.bodies[0].w.dot(scene.bodies[0].inertia * s.bodies[0].w); };
+  return energy(r.samples.back()) / energy(r.samples.front()) - 1;
+}
+
+TEST(LargeRotations, are_measured_and_warned_of_where_the_pair_is_wrong) {
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.controls_error || integrator.analysis != Analysis::dynamics) continue;
+    for (const FormulationEntry& formulation : formulations()) {
+      const double wrong = integrator.rotations.in(formulation.space).wrong;
+      if (!std::isfinite(wrong)) continue;
+      const std::string where = fmt::format("{} {}", integrator.name, formulation.name);
+      for (double part : {0.5, 1.4}) {
+        const Recorded r = run(spinning(1), with(integrator.name, formulation.name, part * wrong, 20 * part * wrong));
+        if (!r.outcome.status.ok()) {
+          EXPECT_GT(part, 1) << where << r.outcome.status.message;
+          continue;
+        }
+        EXPECT_NEAR(r.outcome.statistics.largest_rotation, part * wrong, 0.2 * part * wrong) << where;
+        EXPECT_THAT(r.outcome.notices, testing::SizeIs(part > 1 ? 1 : 0)) << where;
+      }
+    }
+  }
+}
+
+TEST(LargeRotations, what_is_lost_at_the_default_step_is_said) {
+  Settings s;
+  s.formulation = "rp";
+  const Scene scene = spinning(100);
+  const Recorded r = run(scene, s);
+  ASSERT_TRUE(r.outcome.status.ok());
+  EXPECT_LT(energy_change(r, scene), -0.5);
+  EXPECT_THAT(r.outcome.notices, testing::ElementsAre(testing::HasSubstr("turns by up to 0.1 rad in a step")));
+}
+
+TEST(LargeRotations, beyond_what_makes_sense_stop_the_run) {
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.controls_error || integrator.analysis != Analysis::dynamics) continue;
+    for (const char* formulation : kFormulations) {
+      const Recorded r = run(spinning(1), with(integrator.name, formulation, 3.3, 33));
+      EXPECT_EQ(r.outcome.status.failure, Failure::rotation_too_large) << integrator.name << ' ' << formulation;
+      EXPECT_THAT(r.outcome.status.message, testing::HasSubstr("body 'body'"));
+    }
+  }
+}
+
+TEST(TorsionSprings, are_counted_right_by_error_control_whatever_its_steps) {
+  const double rate = 1000;
+  for (const char* integrator : {"dopri5", "dop853", "radau5", "ida"})
+    for (const char* formulation : kFormulations) {
+      if (refusal_of(integrators().require(integrator), formulation)) continue;
+      Settings s = controlled(integrator, formulation, 1e-6, 0.5, 0.1);
+      for (const Snapshot& at : motion(torsional(rate), s))
+        EXPECT_NEAR(at.bodies[0].w.z(), rate * std::cos(at.t), 1e-3 * rate)
+            << integrator << ' ' << formulation << " t = " << at.t;
+    }
+}
+
+TEST(TorsionSprings, that_turn_too_far_in_a_fixed_step_stop_the_run) {
+  for (const char* integrator :
+       {"implicit_euler", "half_implicit", "rattle", "generalized_alpha", "generalized_alpha_i2"})
+    for (const char* formulation : {"rA", "reps"}) {
+      const Recorded r = run(torsional(100), with(integrator, formulation, 0.0305, 0.3));
+      EXPECT_EQ(r.outcome.status.failure, Failure::rotation_too_large) << integrator << ' ' << formulation;
+      EXPECT_THAT(r.outcome.status.message, testing::HasSubstr("torsion spring 'soft'"));
+    }
+}
+
+// A rod on a hinge, let go level, in steps as long as its swing.
+TEST(LargeRotations, a_step_onto_another_branch_stops_the_run) {
+  Scene scene;
+  scene.gravity = {0, -9.81, 0};
+  Body rod;
+  rod.name = "rod", rod.mass = 1, rod.inertia = Vector3(0.001, 1.0 / 12, 1.0 / 12).asDiagonal();
+  rod.position = {0.5, 0, 0};
+  scene.bodies.push_back(rod);
+  Joint hinge;
+  hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
+  scene.joints.push_back(hinge);
+  for (const char* integrator : {"implicit_euler", "half_implicit", "rattle", "generalized_alpha"})
+    for (const char* formulation : kFormulations) {
+      const Recorded r = run(scene, with(integrator, formulation, 0.5, 10));
+      EXPECT_FALSE(r.outcome.status.ok()) << integrator << ' ' << formulation;
+    }
+}
+
+}  // namespace
+}  // namespace poinsot::test
