@@ -62,7 +62,7 @@ TEST_P(SpringLaws, without_rate_and_time_conserve_energy) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SpringLaws, testing::Values("rA", "rp", "reps"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& formulation) { return std::string(formulation.param); });
 
 TEST(SpringLaw, stores_the_integral_of_its_force) {
   const auto stored = [](const char* law, double x) { return law_potential(Expression::parse_law(law), x, 2); };
@@ -123,8 +123,7 @@ for (const char* integrator : {"implicit_euler", "dop853", "radau5"}) {
 TEST(SpringLaw, a_start_without_a_value_says_so) {
   const Scene scene = parse_scene(R"j({"scene": 1, "bodies": [{"name": "rod", "mass": 1, "inertia": [1, 1, 1],
     "position": [1, 0, 0]}], "drivers": [{"type": "angle", "bodies": ["ground", "rod"], "axis": [0, 0, 1],
-    "angle": "sqrt(t)"}]
-})", "start.json");
+    "angle": "sqrt(t)"}]})j", "start.json");
   EXPECT_EQ(simulate(scene, Settings{}).status.message,
             "at t = 0 s driver 'angle1': the first derivative of 'sqrt(t)' is not finite; end the run before, or change "
             "the function");
