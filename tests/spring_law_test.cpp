@@ -123,7 +123,7 @@ TEST(SpringLaw, a_start_without_a_value_says_so) {
     "angle": "sqrt(t)"}]})j",
                                   "start.json");
   EXPECT_EQ(
-      simulate(scene, Settings{}).status.message,
+      run(scene, Settings{}).outcome.status.message,
       "at t = 0 s driver 'angle1': the first derivative of 'sqrt(t)' is not finite; end the run before, or change "
       "the function");
 }
