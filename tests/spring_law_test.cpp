@@ -62,7 +62,7 @@ TEST_P(SpringLaws, without_rate_and_time_conserve_energy) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SpringLaws, testing::Values("rA", "rp", "reps"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& formulation) { return std::string(formulation.param); });
 
 TEST(SpringLaw, stores_the_integral_of_its_force) {
   const auto stored = [](const char* law, double x) { return law_potential(Expression::parse_law(law), x, 2); };
@@ -78,56 +78,54 @@ struct Fault {
   const char *what, *scene, *message;
 };
 constexpr Fault kFaults[] = {
-    {"a pole", R"j("forces": [{"type": "force", "name": "push", "body": "rod", "point": [0,0,0], "force": [0, "1/(0.5 - t)", 0]}]})j",
+    {"a pole",
+     R"j("forces": [{"type": "force", "name": "push", "body": "rod", "point": [0, 0, 0],
+      "force": [0, "1/(0.5 - t)", 0]}]})j",
      "at t = 0\\.[45].* s force 'push', component y: '1/\\(0\\.5 - t\\)' is not finite; end the run before, or change "
-     "the function"
-},
-    {"a table that ends", R"j("tables": {"road": {"points": [[0, 0], [0.2, 1], [0.4, 0]]}},
-      "drivers": [{"type": "angle", "name": "motor", "bodies": ["ground", "rod"], "axis": [0, 0, 1], "angle": "road(t)"}]
-})",
+     "the function"},
+    {"a table that ends",
+     R"j("tables": {"road": {"points": [[0, 0], [0.2, 1], [0.4, 0]]}}, "drivers": [{"type": "angle", "name": "motor",
+      "bodies": ["ground", "rod"], "axis": [0, 0, 1], "angle": "road(t)"}]})j",
      "at t = 0\\.4.* s driver 'motor': 'road\\(t\\)': table 'road' has no value at 0\\.4.*: its points go from 0 to "
-     "0\\.4; .*"
-},
-    {"a length that ends", R"j("drivers": [{"type": "distance", "name": "rope", "bodies": ["ground", "rod"], "s_i": [1, 0, -1],
+     "0\\.4; .*"},
+    {"a length that ends",
+     R"j("drivers": [{"type": "distance", "name": "rope", "bodies": ["ground", "rod"], "s_i": [1, 0, -1],
       "s_j": [0, 0, 0], "length": "1 - 2*t"}]})j",
      "at t = 0\\.[45].* s driver 'rope': the length '1 - 2\\*t' is .* m, expected a positive one; .*"},
-    {"a law", R"j("forces": [{"type": "spring", "name": "rope", "bodies": ["ground", "rod"], "s_i": [0, 0, 0], "s_j": [0, 0, 0],
-      "length": 0.9, "law": "10*sqrt(x)"}]
-})",
-     "at t = .* s force 'rope': '10\\*sqrt\\(x\\)' is not finite at x = -.*, v = .*; .*"
-}
-,
-}
-;
+    {"a law",
+     R"j("forces": [{"type": "spring", "name": "rope", "bodies": ["ground", "rod"], "s_i": [0, 0, 0],
+      "s_j": [0, 0, 0], "length": 0.9, "law": "10*sqrt(x)"}]})j",
+     "at t = .* s force 'rope': '10\\*sqrt\\(x\\)' is not finite at x = -.*, v = .*; .*"},
+};
 
 TEST(SpringLaw, runs_end_where_a_function_does) {
+  const std::string bodies = R"j({"scene": 1, "gravity": [0, 0, 0], "bodies": [
+    {"name": "rod", "mass": 1, "inertia": [1, 1, 1], "position": [1, 0, 0]},
+    {"name": "free", "mass": 1, "inertia": [1, 1, 1], "position": [5, 0, 0]}], )j";
   for (const Fault& fault : kFaults) {
-    const Scene scene = parse_scene(std::string(
-                                        R"j({"scene": 1, "gravity": [0, 0, 0], "bodies": [{"name": "rod", "mass": 1,
-      "inertia": [1, 1, 1], "position": [1, 0, 0]}, {"name": "free", "mass": 1, "inertia": [1, 1, 1],
-      "position": [5, 0, 0]}], )j") + fault.scene,
-                                    "fault.json");
-for (const char* integrator : {"implicit_euler", "dop853", "radau5"}) {
-  Settings settings = accurate("rA", integrator);
-  settings.step = 0.01;
-  settings.end = 2;
-  settings.every = 0;
-  const Recorded run = test::run(scene, settings);
-  EXPECT_EQ(run.outcome.status.failure, Failure::not_finite) << fault.what << " " << integrator;
-  EXPECT_THAT(run.outcome.status.message, testing::MatchesRegex(fault.message)) << fault.what << " " << integrator;
-  for (const Snapshot& sample : run.samples) EXPECT_TRUE(sample.bodies[0].r.allFinite());
-}
-}
+    const Scene scene = parse_scene(bodies + fault.scene, "fault.json");
+    for (const char* integrator : {"implicit_euler", "dop853", "radau5"}) {
+      Settings settings = accurate("rA", integrator);
+      settings.step = 0.01;
+      settings.end = 2;
+      settings.every = 0;
+      const Recorded run = test::run(scene, settings);
+      EXPECT_EQ(run.outcome.status.failure, Failure::not_finite) << fault.what << " " << integrator;
+      EXPECT_THAT(run.outcome.status.message, testing::MatchesRegex(fault.message)) << fault.what << " " << integrator;
+      for (const Snapshot& sample : run.samples) EXPECT_TRUE(sample.bodies[0].r.allFinite());
+    }
+  }
 }
 
 TEST(SpringLaw, a_start_without_a_value_says_so) {
   const Scene scene = parse_scene(R"j({"scene": 1, "bodies": [{"name": "rod", "mass": 1, "inertia": [1, 1, 1],
     "position": [1, 0, 0]}], "drivers": [{"type": "angle", "bodies": ["ground", "rod"], "axis": [0, 0, 1],
-    "angle": "sqrt(t)"}]
-})", "start.json");
-  EXPECT_EQ(simulate(scene, Settings{}).status.message,
-            "at t = 0 s driver 'angle1': the first derivative of 'sqrt(t)' is not finite; end the run before, or change "
-            "the function");
+    "angle": "sqrt(t)"}]})j",
+                                  "start.json");
+  EXPECT_EQ(
+      run(scene, Settings{}).outcome.status.message,
+      "at t = 0 s driver 'angle1': the first derivative of 'sqrt(t)' is not finite; end the run before, or change "
+      "the function");
 }
 
 }  // namespace
