@@ -7,7 +7,8 @@
 
 namespace poinsot {
 
-// Joints may be in the bodies' frames. JSON text that read_scene() turns into the same scene, to the last bit. One line per body and per joint.
+// Joints may be in the bodies' frames. JSON text that read_scene() turns into the same scene, to the last bit. One line
+// per body and per joint.
 std::string to_json(const Scene& scene);
 
 }  // namespace poinsot

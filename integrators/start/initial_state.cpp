@@ -275,51 +275,6 @@ class Assembler {
 
 }  // namespace
 
-std::string describe_residual(const Model& model, int row, double value, int order) {
-  static constexpr const char* kUnits[] = {" rad", " m", " m²", " m", " rad", ""};  // by RowType; of unit directions
-  const RowType type = model.rows[index(row)].type;
-  if (type == RowType::pfaffian) return fmt::format("{:.3g} m/s", value);
-  return fmt::format("{:.3g}{}{}", value, kUnits[static_cast<int>(type)], order == 1 ? "/s" : "");
-}
-
-std::vector<BodyState> given_state(const Model& model) {
-  std::vector<BodyState> states;
-  for (const Body& body : model.bodies) {
-    BodyState state;
-    state.r = body.position;
-    state.A = body.orientation;
-    state.rd = body.velocity;
-    state.w = body.angular_velocity;
-    states.push_back(state);
-  }
-  return states;
-}
-
-Violation violation(const std::shared_ptr<const Model>& model, const std::vector<BodyState>& states) {
-  const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model, {});
-  std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
-  check(problem->from_bodies(states, q, v).ok(), "rA represents every orientation");
-  problem->set_position(0, q);
-  problem->set_velocity(v);
-  std::vector<double> r(static_cast<std::size_t>(problem->nc()));
-  Violation largest;
-  problem->position_residual(r);
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    if (!(std::abs(r[k]) <= largest.position)) {
-      largest.position = std::abs(r[k]);
-      largest.position_row = static_cast<int>(k);
-    }
-  }
-  problem->velocity_residual(r);
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    if (!(std::abs(r[k]) <= largest.velocity)) {
-      largest.velocity = std::abs(r[k]);
-      largest.velocity_row = static_cast<int>(k);
-    }
-  }
-  return largest;
-}
-
 InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings) {
   if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) {
     InitialState none;

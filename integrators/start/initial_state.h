@@ -16,6 +16,7 @@
 #include "core/status.h"
 #include "integrators/settings.h"
 #include "integrators/start/rank.h"
+#include "integrators/start/violation.h"
 
 namespace poinsot {
 
@@ -29,21 +30,5 @@ struct InitialState {
 // Throws InputError where the scene asks for what cannot be: conflicting constraints, a pose far from the constraints,
 // a violated state with Assembly::never.
 InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings);
-
-// The bodies as the model gives them.
-std::vector<BodyState> given_state(const Model& model);
-
-// Largest |Φ| and |G v − ν| of a state, and the model rows where they occur; dropped rows are measured, too.
-struct Violation {
-  double position = 0, velocity = 0;
-  int position_row = -1, velocity_row = -1;
-};
-Violation violation(const std::shared_ptr<const Model>& model, const std::vector<BodyState>& states);
-
-// The residual of a row (order 0) or its rate (1) with its unit, for directions of unit length: "0.242 m²".
-std::string describe_residual(const Model& model, int row, double value, int order);
-
-// Violations up to this are rounding of the scene's numbers and are left as they are (m, rad, m/s, rad/s).
-inline constexpr double kSatisfied = 1e-10;
 
 }  // namespace poinsot
