@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "integrators/jacobian_policy.h"
 #include "integrators/start/driven_pose.h"
@@ -19,7 +20,11 @@ namespace {
 // one about the prediction then), and up to this turn of a driven angle.
 constexpr double kContraction = 0.25;
 constexpr double kTurn = 1;
-constexpr double kShortest = 0x1p-24;  // part of a step; positions beside a singular one are known to rounding's root
+// Where so small a part of a step is not certain the position is examined, and is singular where a row is independent
+// of the others by no more than kSingular of its length: beside a singular position others are known to rounding's
+// root.
+constexpr double kSuspicious = 0x1p-10, kSingular = 1e-6;
+constexpr double kShortest = 0x1p-24;  // part of a step
 
 // Numbers are those of the paper's equations.
 class Kinematics final : public FixedSteps {
@@ -27,7 +32,8 @@ class Kinematics final : public FixedSteps {
   explicit Kinematics(const Run& run)
       : FixedSteps(run),
         refresh_(jacobians().require(settings_.jacobian).refresh),
-        system_(problem_, run.systems.add(), MatrixKind::kinematic, run.statistics, clock_),
+        // (auto answers this hint with klu, which knows determinants' signs)
+        system_(problem_, run.systems.add(Workload::transposed), MatrixKind::kinematic, run.statistics, clock_),
         rows_change_(
             std::ranges::any_of(problem_.model().rows, [](const Row& row) { return row.alternate != nullptr; })),
         delta_(nc_),
@@ -121,34 +127,43 @@ class Kinematics final : public FixedSteps {
 
   // The step to t in as many shorter ones as it takes to be certain of each.
   Status follow(double t) {
-    double at = x_.t, h = 0.5 * (t - at);
-    const double shortest = kShortest * (t - at);
+    const double whole = t - x_.t;
+    double at = x_.t, h = 0.5 * whole;
+    bool examined = false;
+    careful_ = true;
+    Status status;
     while (at < t) {
       const double to = at + 1.01 * h >= t ? t : at + h;
       h = to - at;
-      const double tolerance = std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), 1e-12));
-      Status status = advance(at, to, tolerance);
+      status = advance(at, to, std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), 1e-12)));
       if (status.ok() && certain(h, to)) {
         at = to;
         h *= 2;
+        examined = false;
         q_from_ = x_.q, v_from_ = x_.v;
         continue;
       }
       h *= 0.5;
-      if (!(h >= shortest && at + h > at)) return status.ok() ? branching(at) : status;
+      const bool ends = !(h >= kShortest * whole && at + h > at);
+      if (ends || (h < kSuspicious * whole && !std::exchange(examined, true))) {
+        const DependentRow found =
+            most_dependent_row(problem_, static_cast<int>(problem_.model_rows().size()), at, span(q_from_));
+        if (found.share < kSingular || (ends && status.ok())) status = branching(at, found.row);
+        if (ends || found.share < kSingular) break;
+      }
     }
-    return {};
+    careful_ = false;
+    return status;
   }
 
-  Status branching(double t) {
-    const int row = most_dependent_row(problem_, static_cast<int>(problem_.model_rows().size()), t, span(q_from_));
+  Status branching(double t, int row) const {
+    const std::string which = row < 0 ? ""
+                                      : fmt::format(", where {} depends on the other constraints",
+                                                    problem_.describe_unknown(problem_.nv() + row));
     return {Failure::singular_position, t,
-            fmt::format("at t = {:.9g} s the mechanism comes to a singular position{}, from which its motion can go on "
-                        "in more than one way; end before it, or start beyond it on the branch that is meant",
-                        t,
-                        row < 0 ? ""
-                                : fmt::format(", where {} depends on the other constraints",
-                                              problem_.describe_unknown(problem_.nv() + row)))};
+            fmt::format("at t = {:.9g} s the mechanism comes to a singular position{}: its motion can go on in more "
+                        "than one way, or not at all; end before it, or start beyond it on the branch that is meant",
+                        t, which)};
   }
 
   Status find(double t, double tolerance) {
@@ -157,7 +172,8 @@ class Kinematics final : public FixedSteps {
   }
 
   Status find_position(double t, double tolerance) {
-    constexpr double kRounding = 1e-10;
+    constexpr double kRounding = 1e-7;  // near a singular position, at worst
+    constexpr double kStill = 1e-10;    // no motion to be uncertain of
     double correction = 0, first = 0;
     contraction_ = 0;
     for (int k = 0; k < settings_.max_iterations; ++k) {
@@ -177,10 +193,14 @@ class Kinematics final : public FixedSteps {
       if (!std::isfinite(correction)) {
         return {Failure::not_finite, t, fmt::format("at t = {:.9g} s the position's correction is not finite", t)};
       }
-      if (k == 0) first = correction;
-      if (k == 1 && first > kRounding) contraction_ = correction / first;
+      if (k == 0) {
+        // Beside a singular position corrections are as large as can be, and what they shrink by says nothing.
+        first = correction;
+        if (first > std::sqrt(problem_.bodies()) * std::max(1.0, x_.q.cwiseAbs().maxCoeff())) contraction_ = INFINITY;
+      }
+      if (k == 1 && first > kStill) contraction_ = std::max(contraction_, correction / first);
       if (correction < tolerance) return {};
-      if (tolerance < settings_.tolerance && k > 1 && correction > 0.5 * before && correction < kRounding) return {};
+      if (careful_ && k > 1 && correction > 0.5 * before && correction < kRounding) return {};
     }
     Eigen::Index largest = 0;
     delta_.cwiseAbs().maxCoeff(&largest);
@@ -209,6 +229,7 @@ class Kinematics final : public FixedSteps {
   std::unique_ptr<Consistent> inverse_dynamics_;
   Vector delta_, q_next_, dq_;
   Vector q_from_, v_from_;  // where a step, or a part of it, begins
+  bool careful_ = false;    // in parts of a step
   double contraction_ = 0;  // second correction over the first
   std::uint64_t orientation_ = 0;
 };

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -30,11 +32,20 @@ constexpr int kLargest = 600;  // of G: a second's work
 
 }  // namespace
 
-int most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q) {
-  if (rows < 1 || problem.nc() > kLargest) return -1;
+DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q) {
+  if (rows < 1 || problem.nc() > kLargest) return {};
   Eigen::Index row = 0;
-  independent_parts(problem, t, q).head(rows).minCoeff(&row);
-  return static_cast<int>(row);
+  Eigen::VectorXd shares = independent_parts(problem, t, q).head(rows);
+  // A DP1 row between parallel directions vanishes: of unit vectors, it is shorter than 1 by that alone.
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(problem.nc());
+  for (const Eigen::Triplet<double>& entry : gradient(problem)) squares[entry.row()] += entry.value() * entry.value();
+  for (int k = 0; k < rows; ++k) {
+    const int of = problem.model_rows()[static_cast<std::size_t>(k)];
+    if (problem.model().rows[static_cast<std::size_t>(of)].type == RowType::DP1)
+      shares[k] *= std::min(1.0, std::sqrt(squares[k]));
+  }
+  const double share = shares.minCoeff(&row);
+  return {static_cast<int>(row), share};
 }
 
 std::string near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,

@@ -19,8 +19,12 @@ namespace poinsot {
 std::string near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
                                    std::span<const double> q);
 
-// The row of the first `rows` of G that is the least independent of the others at (t, q); −1 where the mechanism is too
-// large to look at densely. The problem stands there afterwards, at rest.
-int most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q);
+// The row of the first `rows` of G that is the least independent of the others at (t, q), and the part of its length
+// that is; row −1 where the mechanism is too large to look at densely. The problem stands there afterwards, at rest.
+struct DependentRow {
+  int row = -1;
+  double share = 1;
+};
+DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q);
 
 }  // namespace poinsot
