@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -14,6 +15,7 @@
 #include "app/trajectory_writer.h"
 #include "bench/study/output_file.h"
 #include "core/scene_reader.h"
+#include "integrators/settings_reader.h"
 #include "integrators/simulate.h"
 
 namespace poinsot::app {
@@ -47,8 +49,10 @@ std::string description(const LinearWork& w) {
 void print_summary(const Scene& scene, const Settings& settings, const Outcome& outcome, const LastState& last) {
   const Statistics& s = outcome.statistics;
   const bool kinematics = settings.analysis == Analysis::kinematics;
-  fmt::print("{}: {}, {}{}, {}, h = {:g} s\n", scene.name, kinematics ? "kinematics" : "dynamics", settings.formulation,
-             kinematics ? "" : ", " + settings.integrator, settings.linear_solver, settings.step);
+  fmt::print(
+      "{}: {}, {}{}, {}, {}\n", scene.name, kinematics ? "kinematics" : "dynamics", settings.formulation,
+      kinematics ? "" : ", " + settings.integrator, settings.linear_solver,
+      chooses_steps(settings) ? fmt::format("rtol = {:g}", settings.rtol) : fmt::format("h = {:g} s", settings.step));
   fmt::print("t = {:g} s\n", last.t);
   std::size_t width = 4;
   for (const Body& body : scene.bodies) width = std::max(width, body.name.size());
@@ -69,6 +73,8 @@ void print_summary(const Scene& scene, const Settings& settings, const Outcome& 
       "{:.3g} s, {:.3g} us a step: assembly {:.0f} %, factorization {:.0f} %, solve {:.0f} %, the rest {:.0f} %\n",
       s.seconds.total, 1e6 * s.seconds.total / steps, share(s.seconds.assembly), share(s.seconds.factor),
       share(s.seconds.solve), share(s.seconds.other));
+  for (const MethodWork& w : s.methods)
+    fmt::print("{}: t = {:.6g} to {:.6g} s in {} steps\n", w.integrator, w.from, w.to, w.steps);
   for (const LinearWork& w : s.linear) fmt::print("{}\n", description(w));
   fmt::print("largest violation of the constraints: position {:.2g}, velocity {:.2g}\n", s.violation.position,
              s.violation.velocity);
@@ -97,9 +103,15 @@ int run(const Options& options) {
   const bool summary = !trajectory && !reactions && !options.quiet;
   LastState last;
   Outcome outcome;
+  if (!options.quiet) std::ranges::for_each(notices, print_notice);
   {
     ProgressLine progress("s", !options.quiet);
-    outcome = simulate(scene, settings, [&](const Sample& sample) {
+    const auto tell = [&](const std::string& notice) {
+      if (options.quiet) return;
+      progress.clear();
+      print_notice(notice);
+    };
+    const auto observe = [&](const Sample& sample) {
       if (trajectory) trajectory->write(sample);
       if (reactions) reactions->write(sample);
       if (summary) {
@@ -108,7 +120,8 @@ int run(const Options& options) {
         sample.problem.to_bodies(sample.a, last.bodies);
       }
       progress.at({sample.t, settings.end});
-    });
+    };
+    outcome = simulate(scene, settings, observe, tell);
   }
   outcome.notices.insert(outcome.notices.begin(), notices.begin(), notices.end());
 
@@ -117,8 +130,6 @@ int run(const Options& options) {
   if (reactions) reactions->commit();
   if (record) record->commit();
 
-  if (!options.quiet)
-    for (const std::string& notice : outcome.notices) print_notice(notice);
   if (summary) print_summary(scene, settings, outcome, last);
   if (outcome.status.ok()) return kDone;
   print_error(outcome.status.message);

@@ -45,7 +45,11 @@ std::string to_json(const RunRecord& record) {
     if (!w.handed_over_by.empty()) linear.back()["handed_over_by"] = w.handed_over_by;
     if (w.reciprocal_condition > 0) linear.back()["condition"] = 1 / w.reciprocal_condition;
   }
+  auto methods = nlohmann::ordered_json::array();
+  for (const MethodWork& w : s.methods)
+    methods.push_back({{"integrator", w.integrator}, {"from", w.from}, {"to", w.to}, {"steps", w.steps}});
   json["statistics"] = {{"linear", linear},
+                        {"methods", methods},
                         {"steps", s.steps},
                         {"rejected_steps", s.rejected_steps},
                         {"newton_iterations", s.newton_iterations},

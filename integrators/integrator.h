@@ -20,6 +20,13 @@
 
 namespace poinsot {
 
+// What one method did of a run that may have several.
+struct MethodWork {
+  std::string_view integrator;  // by its name
+  double from = 0, to = 0;      // s
+  std::int64_t steps = 0;
+};
+
 // The contract's run statistics. Seconds: total is the time-stepping loop without reading and writing.
 struct Statistics {
   std::int64_t steps = 0, rejected_steps = 0;  // rejected: by error control, done again with a smaller step
@@ -36,7 +43,8 @@ struct Statistics {
   struct {
     double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
   } violation;
-  std::vector<LinearWork> linear;  // which linear solvers factored which systems; the busiest first
+  std::vector<LinearWork> linear;   // which linear solvers factored which systems; the busiest first
+  std::vector<MethodWork> methods;  // of an integrator that picks among the others: which it picked, in turn
 };
 
 // A point of the trajectory. The problem stands at (t, q, v).
@@ -46,6 +54,8 @@ struct Sample {
   std::span<const double> q, v, a, lambda;
 };
 using Observer = std::function<void(const Sample&)>;
+// A sentence the user should know of, the moment it is known.
+using Tell = std::function<void(const std::string& notice)>;
 
 // What an integrator is given: the problem, how to solve it, and where what it finds goes.
 struct Run {
@@ -55,6 +65,7 @@ struct Run {
   State& state;  // consistent at 0
   const Observer& observe;
   Statistics& statistics;
+  const Tell& tell;
 };
 
 class Integrator {
@@ -87,6 +98,7 @@ struct IntegratorEntry {
   bool controls_error = false;      // chooses its steps by rtol and atol; `step` and `tolerance` mean nothing to it
   bool needs_vector_space = false;  // of coordinates with their rates as velocities: CoordinateSpace::vector_space
   std::span<const MethodParameter> parameters = {};
+  bool picks = false;  // among the others: those who compare methods leave it out
 };
 
 Registry<IntegratorEntry>& integrators();

@@ -1,6 +1,7 @@
 #include "formulations/registry.h"
 
 #include "integrators/integrator.h"
+#include "integrators/methods/auto.h"
 #include "integrators/methods/dop853.h"
 #include "integrators/methods/dopri5.h"
 #include "integrators/methods/generalized_alpha.h"
@@ -17,6 +18,15 @@ namespace {
 constexpr std::span<const MethodParameter> kOfGeneralizedAlpha(&kSpectralRadius, 1);
 
 constexpr IntegratorEntry kIntegrators[] = {
+    {"auto",
+     "error control: dop853 while the motion is not stiff, radau5 from where it is, as measured; says which",
+     Analysis::dynamics,
+     0,
+     make_auto,
+     true,
+     false,
+     {},
+     true},
     {"implicit_euler", "the paper's: index 3, first order, fixed step; any formulation, any linear solver",
      Analysis::dynamics, 1, make_implicit_euler},
     {"dopri5", "explicit Runge-Kutta pair of order 5(4) with error control and projection; non-stiff; any formulation",

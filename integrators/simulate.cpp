@@ -15,6 +15,7 @@
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
 #include "integrators/start/singular_position.h"
+#include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
 
@@ -55,9 +56,20 @@ void refuse_free_motion(const Problem& problem) {
   }
 }
 
+// Steps of fixed length go over the switches of the data; error control steps onto them.
+std::string switch_notice(const Model& model, const IntegratorEntry& integrator, const Settings& settings) {
+  if (integrator.controls_error || integrator.analysis == Analysis::kinematics) return "";
+  const double at = SwitchTimes(model, settings.end).first(0, settings.end).before;
+  if (!(at < settings.end)) return "";
+  return fmt::format(
+      "a driver or a force has a kink or a jump at t = {:.6g} s: steps of fixed length go over it, which costs {} its "
+      "order there and misses what is shorter than a step; an integrator with error control steps onto it",
+      at, integrator.name);
+}
+
 }  // namespace
 
-Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe) {
+Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
   check_numbers(settings);
   const FormulationEntry& formulation = formulations().require(settings.formulation);
   LinearSystems systems(settings.linear());
@@ -66,9 +78,13 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
 
   const auto model = std::make_shared<const Model>(compile(scene));
   Outcome outcome;
+  const Tell notice = [&](const std::string& sentence) {
+    outcome.notices.push_back(sentence);
+    if (tell) tell(sentence);
+  };
   InitialState start = find_initial_state(model, settings);
   outcome.status = start.status;
-  outcome.notices = std::move(start.notices);
+  for (const std::string& sentence : start.notices) notice(sentence);
   for (const int group : start.rank.undetermined)
     outcome.undetermined_reactions.push_back(model->groups[index(group)].name);
   if (!outcome.status.ok()) return outcome;
@@ -82,8 +98,9 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   outcome.status = find_first_state(start, settings, *problem, state);
   std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
   if (!outcome.status.ok()) return outcome;
+  if (const std::string sentence = switch_notice(*model, integrator, settings); !sentence.empty()) notice(sentence);
   const Eigen::VectorXd q_start = state.q;
-  outcome.status = integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics});
+  outcome.status = integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, notice});
   const Failure failure = outcome.status.failure;
   if (settings.analysis == Analysis::dynamics &&
       (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {
