@@ -1,11 +1,14 @@
-// A function of time f(t), as scenes write it ("cos(pi*t + pi/2)"), with its exact first and second derivatives.
+// A function of time f(t), as scenes write it ("cos(pi*t + pi/2)"), with its exact first and second derivatives; and
+// the law F(x, v, t) of a spring, with its partial derivatives.
 //
-// The text is parsed once into a tape (core/expression_tape.h), parts without `t` already evaluated; the tape is
+// The text is parsed once into a tape (core/expression_tape.h), parts without variables already evaluated; the tape is
 // evaluated on second-order Taylor numbers (f, ḟ, f̈), so the derivatives are exact to rounding and there is nothing to
 // differentiate by hand and nothing to step. Evaluation allocates nothing and changes nothing.
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -21,6 +24,24 @@ class ExpressionError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+struct ParsedTape;  // core/expression_parser.h
+
+// The names that a scene adds to those of the language.
+class ExpressionNames {
+ public:
+  virtual ~ExpressionNames() = default;
+  virtual std::optional<double> parameter(std::string_view name) = 0;
+  virtual std::shared_ptr<const Table> table(std::string_view name) = 0;  // null where there is none
+  // ", the parameters l, w and the tables road": what there is, for messages.
+  virtual std::string listed() const = 0;
+};
+
+// F and its partial derivatives with x and v.
+template <class T>
+struct LawValue {
+  T F{}, F_x{}, F_v{};
+};
+
 class Expression {
  public:
   Expression() = default;  // the constant 0
@@ -28,29 +49,63 @@ class Expression {
   Expression(const Expression&) = default;  // and no moves: what was moved from would be no function
   Expression& operator=(const Expression&) = default;
 
-  // Grammar: + - * / ^ and unary signs, parentheses, numbers, `pi`, `e`, the variable `t`, and the functions listed by
-  // function_names(). `^` binds to the right and tighter than a sign on its left: -t^2 = -(t^2).
+  // Grammar: + - * / ^ and unary signs, parentheses, numbers, `pi`, `e`, the variable `t`, the functions listed by
+  // function_names(), and the names given. `^` binds to the right and tighter than a sign on its left: -t^2 = -(t^2).
   // A constant part that is not finite ("1/0") is an error. Throws ExpressionError.
-  static Expression parse(std::string_view text);
+  static Expression parse(std::string_view text, ExpressionNames* names = nullptr);
   // As parse, but `t` is an unknown name: for numbers written as constant expressions.
-  static Expression parse_constant(std::string_view text);
+  static Expression parse_constant(std::string_view text, ExpressionNames* names = nullptr);
+  // As parse, with the variables x, v and t.
+  static Expression parse_law(std::string_view text, ExpressionNames* names = nullptr);
   static std::vector<std::string_view> function_names();
+  // Whether a scene may call something by it: letters, digits and _, and no name of the language. x and v are free:
+  // they are variables in laws alone.
+  static bool is_free_name(std::string_view name);
 
   bool is_constant() const { return constant_; }
   std::string text() const;
 
   template <class T>  // double, long double
   Jet2<T> at(T t) const {
-    return constant_ ? Jet2<T>{T(value_), T(0), T(0)} : run_tape<T>(parsed_->tape, t);
+    return constant_ ? Jet2<T>{T(value_), T(0), T(0)} : run_tape<T>(parsed_->tape, {{t, T(1), T(0)}, {}, {}});
   }
 
- private:
-  static Expression parse(std::string_view text, bool with_time);
+  template <class T>  // double, long double
+  LawValue<T> law(const Arguments<T>& at) const {
+    if (constant_) return {T(value_), T(0), T(0)};
+    const Jet2<T> t{at.t, T(0), T(0)}, x{at.x, T(1), T(0)}, v{at.v, T(0), T(0)};
+    const Jet2<T> F = run_tape<T>(parsed_->tape, {t, x, v});
+    if (!parsed_->with_rate) return {F.f, F.fd, T(0)};
+    return {F.f, F.fd, run_tape<T>(parsed_->tape, {t, {at.x, T(0), T(0)}, {at.v, T(1), T(0)}}).fd};
+  }
+  bool depends_on_rate() const { return !constant_ && parsed_->with_rate; }
 
+  // The values whose change of sign marks a kink or a jump of f: x of abs(x), sign(x) and step(x), x − y of min(x, y)
+  // and max(x, y), in the order they are computed. Constant parts have none, and neither have tables.
+  int switch_count() const { return constant_ ? 0 : parsed_->switches; }
+  void switches(const Arguments<double>& at, std::span<double> values) const {  // of size switch_count()
+    if (!constant_) tape_switches(parsed_->tape, at, values);
+  }
+  void switches(double t, std::span<double> values) const { switches({t, 0, 0}, values); }
+
+  // Why f, or one of its first `derivatives` derivatives with time, is not finite at t, as a sentence's part:
+  // "'1/(t - 1)' is not finite", "'road(t)': table 'road' has no value at 2.5: its points go from 0 to 2"; empty where
+  // all are finite.
+  std::string fault(double t, int derivatives) const;
+  // Likewise of a law and its derivatives with x and v.
+  std::string law_fault(const Arguments<double>& at) const;
+
+ private:
   struct Parsed {
     std::string text;
     std::vector<TapeInstruction> tape;  // empty for a constant
+    std::vector<std::shared_ptr<const Table>> tables;
+    int switches = 0;
+    bool with_rate = false;
   };
+  Expression(std::string_view text, ParsedTape parsed);
+  std::string not_finite(const char* which, const Arguments<double>& at, const std::string& where) const;
+
   bool constant_ = true;
   double value_ = 0;                      // of a constant
   std::shared_ptr<const Parsed> parsed_;  // copies share it; none where there was no text

@@ -5,18 +5,24 @@
 namespace poinsot {
 namespace {
 
-// φ(x) from the value of φ and its first two derivatives at x.f.
 template <class T>
-Jet2<T> compose(const Jet2<T>& x, T value, T first, T second) {
-  return {value, first * x.fd, second * x.fd * x.fd + first * x.fdd};
+bool is_number(const T& x) {
+  return x == x;
+}
+
+// A value that varies with nothing on either side of a jump; no number stays none.
+template <class T>
+Jet2<T> level(const Jet2<T>& x, T value) {
+  return {is_number(x.f) ? value : x.f, T(0), T(0)};
 }
 
 // xⁿ with a constant exponent. A vanishing coefficient comes before a negative power of x = 0.
 template <class T>
 Jet2<T> power_constant(const Jet2<T>& x, T n) {
+  if (n == 0) return level(x, T(1));
   if (n == 2) return compose(x, x.f * x.f, 2 * x.f, T(2));
-  const T first = n == 0 ? T(0) : n * std::pow(x.f, n - 1);
-  const T second = n == 0 || n == 1 ? T(0) : n * (n - 1) * std::pow(x.f, n - 2);
+  const T first = n * std::pow(x.f, n - 1);
+  const T second = n == 1 ? T(0) : n * (n - 1) * std::pow(x.f, n - 2);
   return compose(x, std::pow(x.f, n), first, second);
 }
 
@@ -71,6 +77,12 @@ Jet2<T> function(const TapeInstruction& instruction, const Jet2<T>& x) {
     }
     case TapeOp::abs:
       return x.f < 0 ? Jet2<T>{-x.f, -x.fd, -x.fdd} : x;
+    case TapeOp::sign:
+      return level(x, T(x.f > 0) - T(x.f < 0));
+    case TapeOp::step:
+      return level(x, T(x.f >= 0));
+    case TapeOp::table:
+      return instruction.table->at(x);
     default:
       return power_constant(x, T(instruction.value));
   }
@@ -92,7 +104,7 @@ Jet2<T> operation(TapeOp op, const Jet2<T>& x, const Jet2<T>& y) {
     case TapeOp::power: {  // f = exp(g), g = y log x
       const Jet2<T> logarithm = compose(x, std::log(x.f), 1 / x.f, -1 / (x.f * x.f));
       const Jet2<T> g = operation(TapeOp::multiply, y, logarithm);
-      const T f = std::pow(x.f, y.f);
+      const T f = is_number(x.f) && is_number(y.f) ? std::pow(x.f, y.f) : g.f;  // 1^y and x^0 are 1 whatever y and x
       return compose(g, f, f, f);
     }
     case TapeOp::atan2: {  // angle of the point (y, x): ḟ = (y ẋ − x ẏ) / (x² + y²)
@@ -101,16 +113,16 @@ Jet2<T> operation(TapeOp op, const Jet2<T>& x, const Jet2<T>& y) {
       return {std::atan2(x.f, y.f), fd, (y.f * x.fdd - x.f * y.fdd - 2 * fd * (x.f * x.fd + y.f * y.fd)) / square};
     }
     case TapeOp::min:
-      return y.f < x.f ? y : x;
+      return y.f < x.f || !is_number(y.f) ? y : x;
     default:
-      return y.f > x.f ? y : x;
+      return y.f > x.f || !is_number(y.f) ? y : x;
   }
 }
 
-}  // namespace
-
-template <class T>
-Jet2<T> run_tape(std::span<const TapeInstruction> tape, T t) {
+// Runs the tape; watch(instruction, x, y) sees every function and operator with its arguments before it is applied, y
+// only of those that have two.
+template <class T, class Watch>
+Jet2<T> run(std::span<const TapeInstruction> tape, const Arguments<Jet2<T>>& at, Watch watch) {
   struct Slot {  // a Jet2 that is not set to zero first
     T f, fd, fdd;
     void operator=(const Jet2<T>& x) { f = x.f, fd = x.fd, fdd = x.fdd; }
@@ -123,12 +135,20 @@ Jet2<T> run_tape(std::span<const TapeInstruction> tape, T t) {
         *top++ = Jet2<T>{T(instruction.value), T(0), T(0)};
         break;
       case TapeOp::time:
-        *top++ = Jet2<T>{t, T(1), T(0)};
+        *top++ = at.t;
+        break;
+      case TapeOp::elongation:
+        *top++ = at.x;
+        break;
+      case TapeOp::rate:
+        *top++ = at.v;
         break;
       default:
         if (arity(instruction.op) == 1) {
+          watch(instruction, top[-1].f, T(0));
           top[-1] = function<T>(instruction, top[-1]);
         } else {
+          watch(instruction, top[-2].f, top[-1].f);
           top[-2] = operation<T>(instruction.op, top[-2], top[-1]);
           --top;
         }
@@ -137,7 +157,34 @@ Jet2<T> run_tape(std::span<const TapeInstruction> tape, T t) {
   return stack[0];
 }
 
-template Jet2<double> run_tape(std::span<const TapeInstruction>, double);
-template Jet2<long double> run_tape(std::span<const TapeInstruction>, long double);
+Arguments<Jet2<double>> constants(const Arguments<double>& at) {
+  return {{at.t, 0, 0}, {at.x, 0, 0}, {at.v, 0, 0}};
+}
+
+}  // namespace
+
+template <class T>
+Jet2<T> run_tape(std::span<const TapeInstruction> tape, const Arguments<Jet2<T>>& at) {
+  return run<T>(tape, at, [](const TapeInstruction&, const T&, const T&) {});
+}
+
+template Jet2<double> run_tape(std::span<const TapeInstruction>, const Arguments<Jet2<double>>&);
+template Jet2<long double> run_tape(std::span<const TapeInstruction>, const Arguments<Jet2<long double>>&);
+
+void tape_switches(std::span<const TapeInstruction> tape, const Arguments<double>& at, std::span<double> out) {
+  std::size_t k = 0;
+  run<double>(tape, constants(at), [&](const TapeInstruction& instruction, double x, double y) {
+    if (has_switch(instruction.op)) out[k++] = x - y;
+  });
+}
+
+Uncovered first_uncovered(std::span<const TapeInstruction> tape, const Arguments<double>& at) {
+  Uncovered found;
+  run<double>(tape, constants(at), [&](const TapeInstruction& instruction, double x, double) {
+    if (instruction.op == TapeOp::table && !found.table && !instruction.table->covers(x))
+      found = {instruction.table, x};
+  });
+  return found;
+}
 
 }  // namespace poinsot

@@ -1,48 +1,71 @@
 // The tape an expression is parsed into, and its evaluation on second-order Taylor numbers (f, ḟ, f̈).
 //
-// The tape is a program for a stack machine: `constant` and `time` push a value, a function replaces the topmost value,
-// an operator the topmost two. With x the argument and φ the function,
+// The tape is a program for a stack machine: a constant or a variable pushes a value, a function replaces the topmost
+// value, an operator the topmost two. With x the argument and φ the function,
 //   f = φ(x),   ḟ = φ'(x) ẋ,   f̈ = φ''(x) ẋ² + φ'(x) ẍ,
-// and correspondingly for two arguments. Where φ has a kink (abs, min, max) the derivatives are those of one side.
+// and correspondingly for two arguments. Where φ has a kink or a jump (abs, sign, step, min, max) the derivatives are
+// those of one side, and the value whose sign tells the sides apart is a switch of the tape. What is not a number stays
+// so, whatever it is combined with.
 #pragma once
 
 #include <cstddef>
 #include <span>
 
-namespace poinsot {
+#include "core/jet.h"
+#include "core/table.h"
 
-// Value and time derivatives of a function of time at one instant.
-template <class T>
-struct Jet2 {
-  T f{};    // value
-  T fd{};   // first derivative, 1/s
-  T fdd{};  // second derivative, 1/s²
-};
+namespace poinsot {
 
 enum class TapeOp : unsigned char {
   constant,
   time,
+  elongation,  // x of a law
+  rate,        // v of a law
   negate,
   // clang-format off
-  sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, sqrt, abs,
+  sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, sqrt, abs, sign, step,
   power_constant,  // of one argument; the exponent stands in the instruction
+  table,           // of one argument; the table stands in the instruction
   add, subtract, multiply, divide, power, atan2, min, max,
   // clang-format on
 };
 
 inline int arity(TapeOp op) {
-  return op <= TapeOp::time ? 0 : op < TapeOp::add ? 1 : 2;
+  return op <= TapeOp::rate ? 0 : op < TapeOp::add ? 1 : 2;
+}
+
+inline bool has_switch(TapeOp op) {
+  return op == TapeOp::abs || op == TapeOp::sign || op == TapeOp::step || op == TapeOp::min || op == TapeOp::max;
 }
 
 struct TapeInstruction {
   TapeOp op = TapeOp::constant;
-  double value = 0;  // of a constant, or the constant exponent
+  union {
+    double value = 0;  // of a constant, or the constant exponent
+    const Table* table;
+  };
 };
 
 inline constexpr std::size_t kTapeStack = 32;  // values; the parser refuses what needs more
 
+// What the variables of an expression stand at: time, and in the law of a spring its elongation x and rate v.
+template <class T>
+struct Arguments {
+  T t{}, x{}, v{};
+};
+
 // Constants are doubles whatever T is, so that every T evaluates the same function. T: double, long double.
 template <class T>
-Jet2<T> run_tape(std::span<const TapeInstruction> tape, T t);
+Jet2<T> run_tape(std::span<const TapeInstruction> tape, const Arguments<Jet2<T>>& at);
+
+// The switches, in the order of the tape: x of abs(x), sign(x) and step(x), x − y of min(x, y) and max(x, y).
+void tape_switches(std::span<const TapeInstruction> tape, const Arguments<double>& at, std::span<double> out);
+
+// A table asked for a value that it does not have.
+struct Uncovered {
+  const Table* table = nullptr;  // none where all arguments were covered
+  double argument = 0;
+};
+Uncovered first_uncovered(std::span<const TapeInstruction> tape, const Arguments<double>& at);
 
 }  // namespace poinsot

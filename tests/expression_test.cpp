@@ -173,7 +173,7 @@ TEST(Expression, says_what_is_wrong_and_where) {
       {"atan2(1)", "expected ',' at character 8, found ')'"},
       {"2*x",
        "unknown name 'x' at character 3; known are t, pi, e and the functions sin, cos, tan, asin, acos, atan, atan2, "
-       "sinh, cosh, tanh, exp, log, sqrt, abs, pow, min, max"},
+       "sinh, cosh, tanh, exp, log, sqrt, abs, pow, min, max, sign, step"},
       {"é", "expected a number, a name or '(' at character 1, found byte 0xC3"},
       {"1e999", "the number at character 1 is out of the range of a double"},
       {"t + 1/0", "the constant part that ends at character 7 is not finite"},
