@@ -64,6 +64,10 @@ std::string to_json(const RunRecord& record) {
                           {"solve", s.seconds.solve},
                           {"other", s.seconds.other}}},
                         {"violation", {{"position", s.violation.position}, {"velocity", s.violation.velocity}}}};
+  if (s.acceleration_error)
+    json["statistics"]["acceleration_error"] = {{"index", s.acceleration_error->index},
+                                                {"acceleration", s.acceleration_error->acceleration},
+                                                {"multiplier", s.acceleration_error->multiplier}};
   add_origin(json);
   json["configuration"] = Json::parse(record.configuration);
   json["scene_file"] = record.scene_file.string();

@@ -27,6 +27,13 @@ struct MethodWork {
   std::int64_t steps = 0;
 };
 
+// Estimated for the accelerations (in the formulation's coordinates) and multipliers that were given out last: of index
+// 3 as computed by the steps, or of index 1 (stepping/index1_output.h).
+struct AccelerationError {
+  int index = 3;
+  double acceleration = 0, multiplier = 0;
+};
+
 // The contract's run statistics. Seconds: total is the time-stepping loop without reading and writing.
 struct Statistics {
   std::int64_t steps = 0, rejected_steps = 0;  // rejected: by error control, done again with a smaller step
@@ -43,6 +50,7 @@ struct Statistics {
   struct {
     double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
   } violation;
+  std::optional<AccelerationError> acceleration_error;  // of methods that solve at index 3
   std::vector<LinearWork> linear;   // which linear solvers factored which systems; the busiest first
   std::vector<MethodWork> methods;  // of an integrator that picks among the others: which it picked, in turn
 };

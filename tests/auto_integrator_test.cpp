@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "tests/support/benchmark_motions.h"
+#include "tests/support/benchmark_references.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
