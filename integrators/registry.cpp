@@ -22,7 +22,7 @@ constexpr IntegratorEntry kIntegrators[] = {
      "error control: dop853 while the motion is not stiff, radau5 from where it is, as measured; says which",
      Analysis::dynamics,
      0,
-     make_auto,
+     make_auto_integrator,
      true,
      false,
      {},

@@ -59,7 +59,10 @@ void refuse_free_motion(const Problem& problem) {
 // Steps of fixed length go over the switches of the data; error control steps onto them.
 std::string switch_notice(const Model& model, const IntegratorEntry& integrator, const Settings& settings) {
   if (integrator.controls_error || integrator.analysis == Analysis::kinematics) return "";
-  const double at = SwitchTimes(model, settings.end).first(0, settings.end).before;
+  SwitchTimes times(model, settings.end);
+  SwitchTimes::Switch first = times.first(0, settings.end);
+  if (first.before <= 0) first = times.first(first.after, settings.end);  // no step goes over the start
+  const double at = first.before;
   if (!(at < settings.end)) return "";
   return fmt::format(
       "a driver or a force has a kink or a jump at t = {:.6g} s: steps of fixed length go over it, which costs {} its "

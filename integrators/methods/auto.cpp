@@ -48,7 +48,7 @@ class Auto final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<Integrator> make_auto() {
+std::unique_ptr<Integrator> make_auto_integrator() {
   return std::make_unique<Auto>();
 }
 

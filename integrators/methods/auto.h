@@ -11,6 +11,6 @@
 
 namespace poinsot {
 
-std::unique_ptr<Integrator> make_auto();
+std::unique_ptr<Integrator> make_auto_integrator();
 
 }  // namespace poinsot

@@ -110,12 +110,11 @@ class GeneralizedAlpha : public FixedSteps {
     // The error of the difference quotient, of order h/100, is less than the h² neglected. Where a whole step shows
     // that the change of v̇ is not resolved (a stiff spring out of rest), or is of second order, the start does without
     // v̈.
+    bool damped = false;
+    if (Status status = leave_out_damped(damped); !status.ok()) return status;
     if (Status status = change_of_acceleration(h_ / 100, jerk_); !status.ok()) return status;
     jerk_ *= 100;
-    if (!change_of_acceleration(h_, a_).ok() || !((a_ - jerk_).norm() < jerk_.norm())) {
-      jerk_.setZero();
-      if (Status status = leave_out_damped(); !status.ok()) return status;
-    }
+    if (damped || !change_of_acceleration(h_, a_).ok() || !((a_ - jerk_).norm() < jerk_.norm())) jerk_.setZero();
     jerk_ /= h_;
     a_.noalias() = x_.z.head(nv_) + (k_.shift() * h_) * jerk_;
     z_n_ = x_.z;
@@ -153,14 +152,15 @@ class GeneralizedAlpha : public FixedSteps {
   // A damper far stiffer than 1/h has stopped what it acts on before the first step is over. With the acceleration it
   // begins with the method would ring for dozens of steps; without, the first step stops it. It is the direction in
   // which v̇ at a velocity v + h v̇ turns against v̇ by more than it was.
-  Status leave_out_damped() {
+  Status leave_out_damped(bool& damped) {
     held_v_ = x_.v + h_ * x_.z.head(nv_);
     problem_.set_position(x_.t, span(x_.q));
     problem_.set_velocity(span(held_v_));
     if (Status status = consistent_.accelerations(x_.t, span(there_)); !status.ok()) return status;
     held_a_ = there_.head(nv_) - x_.z.head(nv_);
     const double along = held_a_.dot(x_.z.head(nv_)), square = held_a_.squaredNorm();
-    if (-along > x_.z.head(nv_).squaredNorm()) x_.z.head(nv_) -= (along / square) * held_a_;
+    damped = -along > x_.z.head(nv_).squaredNorm();
+    if (damped) x_.z.head(nv_) -= (along / square) * held_a_;
     return {};
   }
 

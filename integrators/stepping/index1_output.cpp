@@ -8,7 +8,7 @@ namespace poinsot {
 namespace {
 
 constexpr double kOfNoAccount = 1e-7;
-constexpr double kExplained = 10;  // so many times its estimate rounding may be
+constexpr double kExplained = 100;  // so many times its estimate rounding may be: the steps add it up
 
 double largest(std::span<const double> x) {
   double m = 0;

@@ -12,6 +12,10 @@ int side(double x) {
   return (x > 0) - (x < 0);
 }
 
+bool on_a_switch(std::span<const double> x) {
+  return std::ranges::find(x, 0.0) != x.end();
+}
+
 bool same_sides(std::span<const double> x, std::span<const double> y) {
   return std::ranges::equal(x, y, [](double a, double b) { return side(a) == side(b); });
 }
@@ -62,6 +66,10 @@ SwitchTimes::Switch SwitchTimes::find(Switching& of, double from, double to, int
 // By bisection, down to neighbouring times; none where both ends are on the same sides.
 SwitchTimes::Switch SwitchTimes::between(Switching& of, double from, double to) {
   of.f->switches(from, of.at_start);
+  if (from > 0 && on_a_switch(of.at_start)) {
+    from = std::nextafter(from, 0);
+    of.f->switches(from, of.at_start);
+  }
   of.f->switches(to, of.at_end);
   if (same_sides(of.at_start, of.at_end)) return {};
   for (double middle; middle = from + (to - from) / 2, from < middle && middle < to && to - from > instant_;) {
@@ -69,8 +77,12 @@ SwitchTimes::Switch SwitchTimes::between(Switching& of, double from, double to) 
     (same_sides(of.at_start, of.at_end) ? from : to) = middle;
   }
   of.f->switches(to, of.at_end);
-  const bool on_it = std::ranges::find(of.at_end, 0.0) != of.at_end.end();  // neither side: one further is beyond
-  return {from, on_it ? std::nextafter(to, HUGE_VAL) : to};
+  if (on_a_switch(of.at_end)) {  // neither side: one further is beyond
+    to = std::nextafter(to, HUGE_VAL);
+    of.f->switches(to, of.at_end);
+    if (same_sides(of.at_start, of.at_end)) return {};  // touched
+  }
+  return {from, to};
 }
 
 }  // namespace poinsot
