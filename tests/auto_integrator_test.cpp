@@ -149,7 +149,12 @@ TEST(AutoIntegrator, ReachesAMillionthOnEveryModel) {
     tight.integrator = "radau5";
     tight.formulation = "rp";
     tight.rtol = 1e-11;
-    const Recorded exact = run(scene, tight);
+    Recorded exact = run(scene, tight);
+    if (!exact.outcome.status.ok()) {  // at a singular position
+      tight.integrator = "dopri5";
+      tight.rtol = 1e-10;
+      exact = run(scene, tight);
+    }
     ASSERT_TRUE(exact.outcome.status.ok()) << exact.outcome.status.message;
     const Distance d = distance(r.samples, exact.samples);
     EXPECT_LT(std::max(d.r, d.A), 1e-6) << d;

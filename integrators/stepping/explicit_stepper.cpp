@@ -32,7 +32,7 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
       state_(problem),
       next_(problem),
       sample_(problem),
-      stiffness_(pair.stability) {
+      stiffness_(pair.rule.safety * pair.stability) {
   const Eigen::Index nv = problem.nv();
   q_n_.setZero(problem.nq());
   for (Vector* x : {&y_n_, &y_, &g_, &sizes_, &sizes_next_, &scale_, &combined_}) x->setZero(2 * nv);

@@ -7,7 +7,8 @@
 //
 // and the motion is stiff for the pair where that has been beyond the boundary of its domain of stability so many times
 // without as many steps in a row within it. E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", sec.
-// IV.2; boundary and counts are those of their codes DOPRI5 and DOP853.
+// IV.2; boundary and counts are those of their codes DOPRI5 and DOP853. Error control aims at its safety factor times
+// the boundary, which is what is compared with.
 #pragma once
 
 namespace poinsot {
