@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 struct Options {
   std::vector<std::string> scenes, set;
   std::string out = "results", end, models, cache = user_cache().string();
-  std::string formulations = all_names("formulation"), integrators = all_names("integrator"),
+  std::string formulations = all_names("formulation"),
+              integrators = fmt::format("{}", fmt::join(SweepPlan::full().integrators, ",")),
               linear_solvers = kUsualSolver;
   bool all = false, quick = false, fresh = false, quiet = false;
 };

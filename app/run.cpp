@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -18,6 +19,7 @@
 #include "core/json_document.h"
 #include "core/printable.h"
 #include "core/scene_reader.h"
+#include "integrators/settings_reader.h"
 #include "integrators/simulate.h"
 
 namespace poinsot::app {
@@ -53,8 +55,10 @@ std::string description(const LinearWork& w) {
 void print_summary(const Scene& scene, const Settings& settings, const Outcome& outcome, const LastState& last) {
   const Statistics& s = outcome.statistics;
   const bool kinematics = settings.analysis == Analysis::kinematics;
-  fmt::print("{}: {}, {}{}, {}, h = {:g} s\n", printable(scene.name), kinematics ? "kinematics" : "dynamics",
-             settings.formulation, kinematics ? "" : ", " + settings.integrator, settings.linear_solver, settings.step);
+  fmt::print(
+      "{}: {}, {}{}, {}, {}\n", printable(scene.name), kinematics ? "kinematics" : "dynamics", settings.formulation,
+      kinematics ? "" : ", " + settings.integrator, settings.linear_solver,
+      chooses_steps(settings) ? fmt::format("rtol = {:g}", settings.rtol) : fmt::format("h = {:g} s", settings.step));
   fmt::print("t = {:g} s\n", last.t);
   std::size_t width = 4;
   for (const Body& body : scene.bodies) width = std::max(width, printable(body.name).size());
@@ -75,6 +79,8 @@ void print_summary(const Scene& scene, const Settings& settings, const Outcome& 
       "{:.3g} s, {:.3g} us a step: assembly {:.0f} %, factorization {:.0f} %, solve {:.0f} %, the rest {:.0f} %\n",
       s.seconds.total, 1e6 * s.seconds.total / steps, share(s.seconds.assembly), share(s.seconds.factor),
       share(s.seconds.solve), share(s.seconds.other));
+  for (const MethodWork& w : s.methods)
+    fmt::print("{}: t = {:.6g} to {:.6g} s in {} steps\n", w.integrator, w.from, w.to, w.steps);
   for (const LinearWork& w : s.linear) fmt::print("{}\n", description(w));
   fmt::print("largest violation of the constraints: position {:.2g}, velocity {:.2g}\n", s.violation.position,
              s.violation.velocity);
@@ -91,9 +97,10 @@ void tell_interruption(const RunFiles& files, double end, Status& status) {
 }
 
 // Messages of what comes after reading name the scene, too.
-Outcome simulate_file(const Options& options, const Scene& scene, const Settings& settings, const Observer& observe) {
+Outcome simulate_file(const Options& options, const Scene& scene, const Settings& settings, const Observer& observe,
+                      const Tell& tell) {
   try {
-    return simulate(scene, settings, observe);
+    return simulate(scene, settings, observe, tell);
   } catch (const InputError& refused) {
     throw InputError(fmt::format("{}: {}", shown_input(options.scene), refused.what()));
   }
@@ -134,9 +141,15 @@ int run(const Options& options) {
   if (record_file.empty()) std::string().swap(scene.source);  // memory of large scenes
   LastState last;
   std::optional<Deferred> deferred;  // from the first sample on there is something to keep
+  if (!options.quiet) std::ranges::for_each(notices, print_notice);
   {
     ProgressLine progress("s", !options.quiet);
-    outcome = simulate_file(options, scene, settings, [&](const Sample& sample) {
+    const auto tell = [&](const std::string& notice) {
+      if (options.quiet) return;
+      progress.clear();
+      print_notice(notice);
+    };
+    const auto observe = [&](const Sample& sample) {
       if (!deferred) deferred.emplace();
       files.write(sample);
       if (summary) {
@@ -145,11 +158,14 @@ int run(const Options& options) {
         sample.problem.to_bodies(sample.a, last.bodies);
       }
       progress.at({sample.t, settings.end});
-    });
+    };
+    outcome = simulate_file(options, scene, settings, observe, tell);
   }
   outcome.notices.insert(outcome.notices.begin(), notices.begin(), notices.end());
-  if (!options.save_state.empty() && !outcome.status.ok())
+  if (!options.save_state.empty() && !outcome.status.ok()) {
     outcome.notices.push_back(options.save_state + " is not written: the run did not come to its end");
+    if (!options.quiet) print_notice(outcome.notices.back());
+  }
   files.complete(outcome.status.ok());
   tell_interruption(files, settings.end, outcome.status);
   if (options.verify && outcome.status.ok())
@@ -158,8 +174,6 @@ int run(const Options& options) {
     verification.emplace().failure = "the run did not come to its end";
   files.commit(record_file.empty() ? "" : record(false));
 
-  if (!options.quiet)
-    for (const std::string& notice : outcome.notices) print_notice(notice);
   if (summary) {
     print_summary(scene, settings, outcome, last);
     fmt::print("accuracy: {}{}\n", how_accurate, options.verify ? "" : "; --verify");

@@ -65,7 +65,11 @@ std::string to_json(const RunRecord& record) {
     if (!w.handed_over_by.empty()) linear.back()["handed_over_by"] = w.handed_over_by;
     if (w.reciprocal_condition > 0) linear.back()["condition"] = 1 / w.reciprocal_condition;
   }
+  auto methods = nlohmann::ordered_json::array();
+  for (const MethodWork& w : s.methods)
+    methods.push_back({{"integrator", w.integrator}, {"from", w.from}, {"to", w.to}, {"steps", w.steps}});
   json["statistics"] = {{"linear", linear},
+                        {"methods", methods},
                         {"steps", s.steps},
                         {"rejected_steps", s.rejected_steps},
                         {"newton_iterations", s.newton_iterations},
@@ -82,6 +86,10 @@ std::string to_json(const RunRecord& record) {
                         {"largest_rotation", s.largest_rotation},
                         {"violation", {{"position", s.violation.position}, {"velocity", s.violation.velocity}}}};
   for (const auto& [option, names] : record.columns) json["columns"][option] = names;
+  if (s.acceleration_error)
+    json["statistics"]["acceleration_error"] = {{"index", s.acceleration_error->index},
+                                                {"acceleration", s.acceleration_error->acceleration},
+                                                {"multiplier", s.acceleration_error->multiplier}};
   add_origin(json);
   json["configuration"] = Json::parse(record.configuration);
   if (!record.scene.parameters.empty()) {

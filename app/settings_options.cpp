@@ -41,6 +41,8 @@ Settings SettingsOptions::resolve(std::vector<std::string>& notices) const {
   Settings settings;
   if (!config_file_.empty()) read_settings(config_file_, settings);
   for (const auto& [entry, text] : given_) set_setting(*entry, text, settings);
+  for (const auto& [entry, text] : given_)
+    if (const std::string why = why_ignored(*entry, settings); !why.empty()) notices.push_back(why);
   fit_time_grid(settings, notices);
   return settings;
 }

@@ -47,6 +47,7 @@ void add(const SceneSource& source, double end, bool dense) {
         if (solver.name == "dense" && !dense) continue;  // cubic cost
         Settings settings;
         settings.formulation = formulation.name;
+        settings.integrator = "implicit_euler";
         settings.jacobian = jacobian.name;
         settings.linear_solver = solver.name;
         settings.step = 1e-3;

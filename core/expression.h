@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/expression_range.h"
 #include "core/expression_tape.h"
 
 namespace poinsot {
@@ -92,6 +93,9 @@ class Expression {
     if (!constant_) tape_switches(parsed_->tape, at, values);
   }
   void switches(double t, std::span<double> values) const { switches({t, 0, 0}, values); }
+
+  // Whether a switch may change its sign between these times; where not, none does.
+  bool may_switch(double from, double to) const { return !constant_ && tape_may_switch(parsed_->tape, from, to); }
 
   // Why f, or one of its first `derivatives` derivatives with time, is not finite at t, as a sentence's part:
   // "'1/(t - 1)' is not finite", "'road(t)': table 'road' has no value at 2.5: its points go from 0 to 2"; empty where

@@ -35,6 +35,7 @@ Table::Table(std::string name, std::vector<double> x, const std::vector<double>&
   for (std::size_t k = 0; k + 1 < x_.size(); ++k) {
     const double h = x_[k + 1] - x_[k];
     check(h > 0, "the points of a table are in order");
+    largest_second_derivative_ = std::max({largest_second_derivative_, std::abs(M[k]), std::abs(M[k + 1])});
     intervals_.push_back(
         {y[k], (y[k + 1] - y[k]) / h - h * (2 * M[k] + M[k + 1]) / 6, M[k] / 2, (M[k + 1] - M[k]) / (6 * h)});
   }

@@ -24,6 +24,7 @@ class Table {
   double last() const { return x_.back(); }
   // To within rounding, as the times of a run are that end where the table does.
   bool covers(double x) const;
+  double largest_second_derivative() const { return largest_second_derivative_; }
 
   template <class T>  // double, long double
   Jet2<T> at(const Jet2<T>& x) const;
@@ -35,6 +36,7 @@ class Table {
   std::string name_;
   std::vector<double> x_;
   std::vector<Interval> intervals_;
+  double largest_second_derivative_ = 0;  // in size
 };
 
 }  // namespace poinsot

@@ -2,6 +2,7 @@
 // order.
 #pragma once
 
+#include <cmath>
 #include <memory>
 
 #include "core/check.h"
@@ -44,7 +45,8 @@ struct EqualSteps {
   Status march(double end, int steps, int every, const Observer& observe) {
     for (int n = 1; n <= steps; ++n) {
       if (Status status = try_step(*stepper, end * n / steps); !status.ok()) return status;
-      if (Status status = stepper->complete(); !status.ok()) return status;
+      double error = 0;
+      if (Status status = stepper->complete(error, HUGE_VAL); !status.ok()) return status;
       if (Status status = stepper->settle(); !status.ok()) return status;
       if (n % every != 0) continue;
       const State& at = stepper->state();

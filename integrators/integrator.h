@@ -22,6 +22,20 @@
 
 namespace poinsot {
 
+// What one method did of a run that may have several.
+struct MethodWork {
+  std::string_view integrator;  // by its name
+  double from = 0, to = 0;      // s
+  std::int64_t steps = 0;
+};
+
+// Estimated for the accelerations (in the formulation's coordinates) and multipliers that were given out last: of index
+// 3 as computed by the steps, or of index 1 (stepping/index1_output.h).
+struct AccelerationError {
+  int index = 3;
+  double acceleration = 0, multiplier = 0;
+};
+
 // The contract's run statistics. Seconds: total is the time-stepping loop without reading and writing.
 struct Statistics {
   std::int64_t steps = 0, rejected_steps = 0;  // rejected: by error control, done again with a smaller step
@@ -38,8 +52,10 @@ struct Statistics {
   struct {
     double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
   } violation;
-  double largest_rotation = 0;     // rad, of a body in an accepted step: h |ω| at its end
-  std::vector<LinearWork> linear;  // which linear solvers factored which systems; the busiest first
+  std::optional<AccelerationError> acceleration_error;  // of methods that solve at index 3
+  double largest_rotation = 0;                          // rad, of a body in an accepted step: h |ω| at its end
+  std::vector<LinearWork> linear;   // which linear solvers factored which systems; the busiest first
+  std::vector<MethodWork> methods;  // of an integrator that picks among the others: which it picked, in turn
 };
 
 // A point of the trajectory. The problem stands at (t, q, v).
@@ -49,6 +65,8 @@ struct Sample {
   std::span<const double> q, v, a, lambda;
 };
 using Observer = std::function<void(const Sample&)>;
+// A sentence the user should know of, the moment it is known.
+using Tell = std::function<void(const std::string& notice)>;
 
 // How far a body may turn in a step of fixed length, rad, by the space of the formulation's coordinates: as measured on
 // free bodies over one turn (integrators/README.md).
@@ -74,6 +92,7 @@ struct Run {
   State& state;  // consistent at 0
   const Observer& observe;
   Statistics& statistics;
+  const Tell& tell;
   double most_rotation = Rotations::kUnlimited;  // rad of a body in a step of fixed length, beyond which it stops
 };
 
@@ -108,6 +127,7 @@ struct IntegratorEntry {
   bool needs_vector_space = false;  // of coordinates with their rates as velocities: CoordinateSpace::vector_space
   std::span<const MethodParameter> parameters = {};
   Rotations rotations = {};
+  bool picks = false;  // among the others: those who compare methods leave it out
 };
 
 Registry<IntegratorEntry>& integrators();

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "integrators/integrator.h"
+#include "integrators/methods/auto.h"
 #include "integrators/methods/dop853.h"
 #include "integrators/methods/dopri5.h"
 #include "integrators/methods/generalized_alpha.h"
@@ -27,6 +28,15 @@ constexpr Rotations kOfAlpha{{1.0, kHalfTurn}, {1.0, 2.4}, {0.1, kHalfTurn}};
 constexpr Rotations kOfAlphaI2{{1.0, kHalfTurn}, {1.3, 1.8}, {0.1, kHalfTurn}};
 
 constexpr IntegratorEntry kIntegrators[] = {
+    {"auto",
+     "error control: dop853 while the motion is not stiff, radau5 from where it is, as measured; says which",
+     Analysis::dynamics,
+     0,
+     make_auto_integrator,
+     true,
+     false,
+     {},
+     true},
     {"implicit_euler",
      "the paper's: index 3, first order, fixed step; any formulation, any linear solver",
      Analysis::dynamics,

@@ -27,7 +27,7 @@ inline constexpr double kLeastEnd = std::numeric_limits<double>::min() / std::nu
 struct Settings {
   Analysis analysis = Analysis::dynamics;
   std::string formulation = "rA";
-  std::string integrator = "implicit_euler";  // of dynamics
+  std::string integrator = "auto";  // of dynamics
   std::string linear_solver = "auto", linear_system = "auto";
   std::string jacobian = "exact";
   double step = 1e-3;          // s

@@ -27,6 +27,9 @@ std::vector<std::string> integrator_names() {
   return names;
 }
 
+using For = SettingEntry::For;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 const std::array kEntries{
     SettingEntry{"analysis", "what is computed", &Settings::analysis,
                  [] {
@@ -41,14 +44,18 @@ const std::array kEntries{
     SettingEntry{"linear_system", "matrix that is factored", &Settings::linear_system,
                  [] { return linear_systems().names(); }, false},
     SettingEntry{"jacobian", "matrix of Newton's method", &Settings::jacobian, [] { return jacobians().names(); },
-                 false},
-    SettingEntry{"step", "step size h, s", &Settings::step, nullptr, false},
+                 false, 0, kInfinity, For::fixed_steps},
+    SettingEntry{"step", "step size h, s, of integrators with fixed steps", &Settings::step, nullptr, false, 0,
+                 kInfinity, For::fixed_steps},
     SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false, kLeastEnd},
-    SettingEntry{"tolerance", "Newton: 2-norm of the correction", &Settings::tolerance, nullptr, false},
+    SettingEntry{"tolerance", "Newton: 2-norm of the correction", &Settings::tolerance, nullptr, false, 0, kInfinity,
+                 For::fixed_steps},
     SettingEntry{"rtol", "relative tolerance of integrators with error control", &Settings::rtol, nullptr, false,
-                 kLeastRtol},
-    SettingEntry{"atol", "absolute tolerance of integrators with error control", &Settings::atol, nullptr, false},
-    SettingEntry{"max_iterations", "Newton: iterations allowed in a step", &Settings::max_iterations, nullptr, false},
+                 kLeastRtol, kInfinity, For::error_control},
+    SettingEntry{"atol", "absolute tolerance of integrators with error control", &Settings::atol, nullptr, false, 0,
+                 kInfinity, For::error_control},
+    SettingEntry{"max_iterations", "Newton: iterations allowed in a step", &Settings::max_iterations, nullptr, false, 0,
+                 kInfinity, For::fixed_steps},
     SettingEntry{"every", "time between output rows, s; 0: every step", &Settings::every, nullptr, true},
     SettingEntry{"assemble", "project an initial state that violates the constraints", &Settings::assembly, nullptr,
                  false},
@@ -128,11 +135,6 @@ void set_name(const SettingEntry& entry, std::string_view name, const Source& so
     settings.*(*analysis) = static_cast<Analysis>(found - names.begin());
 }
 
-bool chooses_steps(const Settings& settings) {
-  const IntegratorEntry* integrator = integrators().find(settings.integrator);
-  return settings.analysis == Analysis::dynamics && integrator && integrator->controls_error;
-}
-
 bool is_parameter(std::string_view name, const Settings& settings) {
   const std::vector<std::string_view> of = owners(name);
   return settings.analysis == Analysis::dynamics && std::ranges::find(of, settings.integrator) != of.end();
@@ -150,6 +152,24 @@ void refuse_parameters_of_others(const Settings& settings) {
 }
 
 }  // namespace
+
+bool chooses_steps(const Settings& settings) {
+  const IntegratorEntry* integrator = integrators().find(settings.integrator);
+  return settings.analysis == Analysis::dynamics && integrator && integrator->controls_error;
+}
+
+std::string why_ignored(const SettingEntry& entry, const Settings& settings) {
+  const For used = chooses_steps(settings) ? For::error_control : For::fixed_steps;
+  if (entry.meant_for == For::all || entry.meant_for == used) return "";
+  if (settings.analysis == Analysis::kinematics)
+    return fmt::format("{} means nothing to kinematics, whose accuracy is the tolerance of Newton's method",
+                       option_name(entry));
+  return used == For::error_control
+             ? fmt::format("{} means nothing to integrator {}, which controls its error by rtol and atol",
+                           option_name(entry), settings.integrator)
+             : fmt::format("{} means nothing to integrator {}, whose accuracy follows from its step",
+                           option_name(entry), settings.integrator);
+}
 
 std::span<const SettingEntry> setting_entries() {
   static const std::vector<SettingEntry> entries = make_entries();

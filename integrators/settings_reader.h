@@ -28,6 +28,7 @@ struct SettingEntry {
   bool zero_allowed;                    // numbers: at least 0 instead of greater than 0
   double least = 0;                     // numbers: at least this, where it is not 0
   double most = std::numeric_limits<double>::infinity();
+  enum class For { all, fixed_steps, error_control } meant_for = For::all;
 };
 
 std::span<const SettingEntry> setting_entries();
@@ -35,6 +36,11 @@ const SettingEntry* find_setting(std::string_view key);  // nullptr where no ent
 std::string option_name(const SettingEntry& entry);      // "--linear-solver"
 // "rA", "0.001": a setting as it would be written in the file, without quotes.
 std::string value_text(const SettingEntry& entry, const Settings& settings);
+
+// Whether the method chooses its steps, by its error.
+bool chooses_steps(const Settings& settings);
+// Why the method does not look at a setting, as a sentence; empty where it does.
+std::string why_ignored(const SettingEntry& entry, const Settings& settings);
 
 // Throws InputError that begins with the key of the first number that is not allowed, or is a parameter of other
 // integrators.

@@ -219,7 +219,8 @@ void Signals::add_springs() {
     const double rate = length > 0 ? d.x.dot(d.rate) / length : 0;
     add(length);
     add(rate);
-    add(length > 0 ? spring_effort(s, length - s.length, rate, sample_->t) : 0);  // of no length, it pulls in no direction
+    add(length > 0 ? spring_effort(s, length - s.length, rate, sample_->t)
+                   : 0);  // of no length, it pulls in no direction
   }
   for (std::size_t k = 0; k < model.torsions.size(); ++k) {
     const TorsionElement& t = model.torsions[k];

@@ -20,6 +20,7 @@
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
 #include "integrators/start/singular_position.h"
+#include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
 
@@ -72,9 +73,23 @@ void explain(Status& status, const Problem& problem) {
   }
 }
 
+// Steps of fixed length go over the switches of the data; error control steps onto them.
+std::string switch_notice(const Model& model, const IntegratorEntry& integrator, const Settings& settings) {
+  if (integrator.controls_error || integrator.analysis == Analysis::kinematics) return "";
+  SwitchTimes times(model, settings.end);
+  SwitchTimes::Switch first = times.first(0, settings.end);
+  if (first.before <= 0) first = times.first(first.after, settings.end);  // no step goes over the start
+  const double at = first.before;
+  if (!(at < settings.end)) return "";
+  return fmt::format(
+      "a driver or a force has a kink or a jump at t = {:.6g} s: steps of fixed length go over it, which costs {} its "
+      "order there and misses what is shorter than a step; an integrator with error control steps onto it",
+      at, integrator.name);
+}
+
 }  // namespace
 
-Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe) {
+Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
   check_numbers(settings);
   const FormulationEntry& formulation = formulations().require(settings.formulation);
   LinearSystems systems(settings.linear());
@@ -85,11 +100,15 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   if (settings.signals) compiled.followed = joint_angles(compiled);
   const auto model = std::make_shared<const Model>(std::move(compiled));
   Outcome outcome;
+  const Tell notice = [&](const std::string& sentence) {
+    outcome.notices.push_back(sentence);
+    if (tell) tell(sentence);
+  };
   InitialState start = find_initial_state(model, settings);
   outcome.status = start.status;
-  outcome.notices = scene.notices;
-  std::ranges::move(scene_doubts(*model), std::back_inserter(outcome.notices));
-  std::ranges::move(start.notices, std::back_inserter(outcome.notices));
+  for (const std::string& sentence : scene.notices) notice(sentence);
+  for (const std::string& sentence : scene_doubts(*model)) notice(sentence);
+  for (const std::string& sentence : start.notices) notice(sentence);
   for (const int group : start.rank.undetermined)
     outcome.undetermined_reactions.push_back(model->groups[index(group)].name);
   if (!outcome.status.ok()) return outcome;
@@ -110,14 +129,15 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
     outcome.status = check_driven_pose(*problem, state.a());
     if (!outcome.status.ok()) return outcome;
   }
+  if (const std::string sentence = switch_notice(*model, integrator, settings); !sentence.empty()) notice(sentence);
   const Eigen::VectorXd q_start = state.q;
   const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
-  outcome.status =
-      integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, rotation.senseless});
+  outcome.status = integrator.make()->run(
+      {*problem, systems, settings, state, observe, outcome.statistics, notice, rotation.senseless});
   explain(outcome.status, *problem);
   const double largest = outcome.statistics.largest_rotation;
   if (outcome.status.ok() && largest > rotation.wrong) {
-    outcome.notices.push_back(fmt::format(
+    notice(fmt::format(
         "a body turns by up to {:.2g} rad in a step: from {:.2g} rad on {} in formulation {} loses or "
         "invents more than 3 % of a free body's rotation in a turn, in space at least; a step below {:.2g} "
         "s, or error control, does not",

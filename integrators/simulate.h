@@ -35,6 +35,8 @@ struct Outcome {
 
 // Throws InputError where settings or scene break a rule, or do not fit together (unknown name, kinematics with free
 // motion, ...), before anything is observed. Numerical failure is in the outcome's status.
-Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe);
+// `tell` is told every notice at once, also those that come up while the run is under way; they are in the outcome as
+// well.
+Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell = {});
 
 }  // namespace poinsot

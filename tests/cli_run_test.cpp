@@ -22,11 +22,38 @@ TEST_F(Run, PrintsASummaryWithoutAnOutputFile) {
   const Result result = poinsot({"run", "pendulum.json", "--end", "0.1"});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.err, "");
-  for (const char* part : {"pendulum: dynamics, rA, implicit_euler, auto, h = 0.001 s", "t = 0.1 s", "rod",
-                           "block on the whole matrix: ", "100 steps", "Newton iterations", "assembly",
-                           "largest violation", "\naccuracy: not estimated; --verify\n"})
+  for (const char* part :
+       {"pendulum: dynamics, rA, auto, auto, rtol = 1e-08", "t = 0.1 s", "rod", "dop853: t = 0 to 0.1 s in ",
+        "block on the whole matrix: ", "assembly", "largest violation",
+        "\naccuracy: "})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
+  EXPECT_EQ(result.out.find("h ="), std::string::npos) << "there is none";
+  const Result fixed = poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "0.1"});
+  for (const char* part :
+       {"pendulum: dynamics, rA, implicit_euler, auto, h = 0.001 s", "100 steps", "Newton iterations"})
+    EXPECT_NE(fixed.out.find(part), std::string::npos) << part << "\n" << fixed.out;
   EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
+}
+
+TEST_F(Run, OptionsThatMeanNothingToTheMethodAreTold) {
+  const auto told = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"run", "pendulum.json", "--end", "0.01"});
+    return poinsot(options).err;
+  };
+  for (const char* option : {"--step", "--tolerance", "--max-iterations"}) {
+    EXPECT_EQ(told({option, "1"}), fmt::format("poinsot: note: {} means nothing to integrator auto, which controls its "
+                                               "error by rtol and atol\n",
+                                               option));
+    EXPECT_EQ(told({option, "1", "--integrator", "rattle", "--step", "0.01"}).find("means nothing"), std::string::npos)
+        << option;
+  }
+  for (const char* option : {"--rtol", "--atol"}) {
+    EXPECT_EQ(
+        told({"--integrator", "rattle", option, "1e-6"}),
+        fmt::format("poinsot: note: {} means nothing to integrator rattle, whose accuracy follows from its step\n",
+                    option));
+    EXPECT_EQ(told({option, "1e-6"}), "");
+  }
 }
 
 TEST_F(Run, QuietSaysNothing) {
@@ -53,7 +80,8 @@ TEST_F(Run, TheCommandLineWinsOverTheConfiguration) {
 }
 
 TEST_F(Run, TheRecordSaysWhereTheNumbersComeFrom) {
-  const Result result = poinsot({"run", "pendulum.json", "--end", "0.1", "--out", "a.csv", "--reactions", "r.csv"});
+  const Result result = poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "0.1", "--out",
+                                 "a.csv", "--reactions", "r.csv"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(files(), (std::vector<std::string>{"a.csv", "a.run.json", "pendulum.json", "r.csv"}));
   const nlohmann::json record = read_json("a.run.json");
@@ -111,8 +139,8 @@ TEST_F(Run, AnAbsoluteToleranceThatIsNotGivenFollowsTheRelativeOne) {
 }
 
 TEST_F(Run, TheRecordedConfigurationRepeatsTheRun) {
-  ASSERT_EQ(poinsot({"run", "pendulum.json", "--end", "2/3", "--step", "1/300", "--formulation", "rp", "--no-assemble",
-                     "--out", "a.csv"})
+  ASSERT_EQ(poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "2/3", "--step", "1/300",
+                     "--formulation", "rp", "--no-assemble", "--out", "a.csv"})
                 .status,
             0);
   write("again.json", read_json("a.run.json")["configuration"].dump());
@@ -149,7 +177,8 @@ TEST_F(Run, AnIntegratorThatControlsItsErrorGivesRowsAtAnyMultiples) {
 }
 
 TEST_F(Run, AStepThatDoesNotDivideTheEndIsShortenedWithANotice) {
-  const Result result = poinsot({"run", "pendulum.json", "--step", "0.03", "--end", "0.1", "--out", "a.csv"});
+  const Result result = poinsot(
+      {"run", "pendulum.json", "--integrator", "implicit_euler", "--step", "0.03", "--end", "0.1", "--out", "a.csv"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err,
             "poinsot: note: end 0.1 s is not a multiple of step 0.03 s: the step is shortened to 0.025 s, so that step "
@@ -174,7 +203,8 @@ TEST_F(Run, AScenesOwnNameServesForTheTrajectory) {
 }
 
 TEST_F(Run, ADeviceIsWrittenDirectly) {
-  const Result result = poinsot({"run", "pendulum.json", "--end", "0.01", "--out", "/dev/stdout", "--quiet"});
+  const Result result =
+      poinsot({"run", "pendulum.json", "--end", "0.01", "--every", "0.001", "--out", "/dev/stdout", "--quiet"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(lines(result.out).size(), 12u);
   EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
@@ -182,9 +212,10 @@ TEST_F(Run, ADeviceIsWrittenDirectly) {
 
 TEST_F(Run, TakesPipesForInputAndOutput) {
   for (const char* const arguments : {"run pendulum.json --out /dev/stdout", "run /dev/stdin --out /dev/stdout",
-                                      "reference /dev/stdin --out /dev/stdout --every 0.001"}) {
-    const std::string command = fmt::format("cd '{}' && cat pendulum.json | '{}' {} --end 0.01 --quiet | cat > .piped",
-                                            folder().string(), POINSOT_PROGRAM, arguments);
+                                      "reference /dev/stdin --out /dev/stdout"}) {
+    const std::string command =
+        fmt::format("cd '{}' && cat pendulum.json | '{}' {} --end 0.01 --every 0.001 --quiet | cat > .piped",
+                    folder().string(), POINSOT_PROGRAM, arguments);
     EXPECT_EQ(std::system(command.c_str()), 0);
     EXPECT_EQ(lines(read(".piped")).size(), 12u) << arguments;
   }
@@ -194,9 +225,9 @@ TEST_F(Run, WhatWasComputedBeforeANumericalFailureIsKept) {
   write("overstretched.json", kOverstretched);
   for (const FormulationEntry& formulation : formulations()) {
     SCOPED_TRACE(formulation.name);
-    const Result result =
-        poinsot({"run", "overstretched.json", "--formulation", std::string(formulation.name), "--step", "0.01", "--end",
-                 "2", "--quiet", "--out", "a.csv", "--reactions", "r.csv"});
+    const Result result = poinsot({"run", "overstretched.json", "--formulation", std::string(formulation.name),
+                                   "--integrator", "implicit_euler", "--step", "0.01", "--end", "2", "--quiet", "--out",
+                                   "a.csv", "--reactions", "r.csv"});
     EXPECT_EQ(result.status, 3);
     ASSERT_EQ(lines(result.err).size(), 1u) << result.err;
     EXPECT_TRUE(result.err.starts_with("poinsot: ")) << result.err;

@@ -22,8 +22,11 @@ struct Precision {
   double rtol, bound;  // the tightest tolerance it is asked for, and what it then has to reach
   double growth;       // errors at the end in units of the tolerance
 };
-constexpr Precision kPrecision[] = {
-    {"dopri5", 1e-12, 4e-9, 50}, {"dop853", 1e-12, 1e-9, 50}, {"ida", 1e-12, 1e-9, 200}, {"radau5", 1e-14, 2e-9, 200}};
+constexpr Precision kPrecision[] = {{"auto", 1e-12, 1e-9, 50},
+                                    {"dopri5", 1e-12, 4e-9, 50},
+                                    {"dop853", 1e-12, 1e-9, 50},
+                                    {"ida", 1e-12, 1e-9, 200},
+                                    {"radau5", 1e-14, 2e-9, 200}};
 
 // Every integrator with error control in every formulation it does not refuse.
 struct Method {

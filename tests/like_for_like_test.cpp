@@ -17,6 +17,7 @@ double iterations(const char* model, std::string_view formulation, Analysis anal
   Settings settings;
   settings.analysis = analysis;
   settings.formulation = formulation;
+  settings.integrator = "implicit_euler";
   settings.jacobian = "simplified";
   settings.step = 1e-3;
   settings.end = settings.every = 1;

@@ -60,6 +60,7 @@ TEST(Auto, CountsWhatItsPickDoes) {
 
 TEST(Auto, ARunNamesTheSolverThatDidTheWork) {
   Settings settings;
+  settings.integrator = "implicit_euler";
   settings.end = 0.01;
   const auto solved_by = [&](const char* name, const char* linear_solver) {
     settings.linear_solver = linear_solver;

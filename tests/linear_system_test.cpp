@@ -35,6 +35,7 @@ bool has_square_jacobian(const Scene& scene) {
 Settings a_few_steps(std::string_view formulation, std::string_view linear_solver) {
   Settings settings;
   settings.formulation = formulation;
+  settings.integrator = "implicit_euler";
   settings.linear_solver = linear_solver;
   settings.step = 1e-4;
   settings.end = 1e-3;

@@ -229,7 +229,7 @@ TEST_P(Newton, StepsAllocateNothing) {
         Statistics statistics;
         const IntegratorEntry* integrator =
             integrators().find(settings.analysis == Analysis::kinematics ? "kinematics" : "implicit_euler");
-        const Status status = integrator->make()->run({*problem, systems, settings, state, observe, statistics});
+        const Status status = integrator->make()->run({*problem, systems, settings, state, observe, statistics, {}});
         EXPECT_TRUE(status.ok()) << status.message;
         EXPECT_EQ(steps, 41);
         EXPECT_LE(fresh, 4) << model << ' ' << name;

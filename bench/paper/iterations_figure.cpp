@@ -32,6 +32,7 @@ Settings settings_of(Analysis analysis, std::string_view jacobian, std::string_v
                      double end) {
   Settings settings;
   settings.analysis = analysis;
+  settings.integrator = "implicit_euler";
   settings.jacobian = jacobian;
   settings.formulation = formulation;
   settings.step = step;

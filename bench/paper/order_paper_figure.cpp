@@ -62,6 +62,7 @@ FigureResult order_paper(const FigureRequest& request) {
         counter.next();
         Settings settings;
         settings.formulation = name;
+        settings.integrator = "implicit_euler";
         settings.step = step;
         settings.end = settings.every = kEnd;
         settings.tolerance = kPosition / (step * step);

@@ -150,7 +150,8 @@ Calibration calibrate(const Sweep& sweep, const Reference& reference, const Aske
     for (const IntegratorEntry& integrator : integrators())
       for (const FormulationEntry& entry : formulations()) {
         const std::string formulation(entry.name);
-        if (integrator.controls_error != controls_error || refusal_of(integrator, formulation)) continue;
+        if (integrator.picks || integrator.controls_error != controls_error || refusal_of(integrator, formulation))
+          continue;
         if (integrator.analysis == Analysis::kinematics && !kinematics) continue;
         controls_error ? search.by_tolerance(formulation, integrator) : search.by_step(formulation, integrator);
       }

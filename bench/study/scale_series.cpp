@@ -18,6 +18,7 @@ struct Quantity {
   bool per_body;
   int from = 100;  // bodies from which a power is fitted; below, what a run costs at any size weighs in
 };
+constexpr const char* kIntegrator = "implicit_euler";
 constexpr Quantity kQuantities[] = {
     {"us/body", "step, µs per body and iteration", &IsolatedRun::us_per_body, true},
     {"assembly", "assembly, µs per body and iteration", &IsolatedRun::assembly, true},
@@ -156,6 +157,7 @@ std::vector<Series> measure_scale(const ScaleRequest& request, const ProgressCal
     for (const std::string& formulation : request.formulations)
       for (const std::string& solver : request.linear_solvers) {
         Series series{&structure, {}, all_sizes, std::vector<std::vector<IsolatedRun>>(all_sizes.size())};
+        series.settings.integrator = kIntegrator;
         series.settings.formulation = formulation;
         series.settings.linear_solver = solver;
         all.push_back(series);
@@ -198,9 +200,9 @@ Report scale_report(const std::vector<Series>& all, int repetitions, int core) {
                 {cost_table(all), growth_table(all)},
                 origin_lines(core)};
   report.foot.push_back(
-      fmt::format("settings: implicit_euler, h = {:g} s, tolerance {:g}, jacobian {}; {} interleaved "
+      fmt::format("settings: {}, h = {:g} s, tolerance {:g}, jacobian {}; {} interleaved "
                   "repetitions, median",
-                  Settings{}.step, Settings{}.tolerance, Settings{}.jacobian, repetitions));
+                  kIntegrator, Settings{}.step, Settings{}.tolerance, Settings{}.jacobian, repetitions));
   return report;
 }
 

@@ -28,7 +28,8 @@ std::string Case::method() const {
 SweepPlan SweepPlan::full() {
   SweepPlan plan;
   plan.formulations = poinsot::formulations().names();
-  plan.integrators = poinsot::integrators().names();
+  for (const IntegratorEntry& integrator : poinsot::integrators())
+    if (!integrator.picks) plan.integrators.emplace_back(integrator.name);
   plan.steps = {100, 300, 1000, 3000, 10000, 30000, 100000, 300000, 1000000};
   plan.tolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
   plan.longest = 1;

@@ -37,7 +37,8 @@ struct Measured {
 inline constexpr int kOutputs = 20;  // output times after 0
 inline const std::string kUsualSolver = Settings{}.linear_solver;
 
-// What is varied and how long that may take: every formulation and integrator where nothing else is said.
+// What is varied and how long that may take: every formulation, and every integrator but those that pick
+// among the others, where nothing else is said.
 struct SweepPlan {
   std::vector<std::string> formulations, integrators, linear_solvers{kUsualSolver};
   std::vector<int> steps;          // over the whole time, multiples of kOutputs

@@ -107,7 +107,8 @@ constexpr RungeKuttaPair kPair{"dop853",
                                third_order_error,
                                dense_stages,
                                dense,
-                               {0.8, 1.0 / 8 - 0.75 * kBeta, kBeta, 1.0 / 3, 6}};
+                               {0.8, 1.0 / 8 - 0.75 * kBeta, kBeta, 1.0 / 3, 6},
+                               6.1};
 
 }  // namespace
 

@@ -22,7 +22,7 @@ constexpr Terms dense[] = {d1};
 
 constexpr double kBeta = 0.04;
 constexpr RungeKuttaPair kPair{
-    "dopri5", 5, stages, b, error, {}, {}, dense, {0.9, 1.0 / 5 - 0.75 * kBeta, kBeta, 0.2, 10}};
+    "dopri5", 5, stages, b, error, {}, {}, dense, {0.9, 1.0 / 5 - 0.75 * kBeta, kBeta, 0.2, 10}, 3.25};
 
 }  // namespace
 

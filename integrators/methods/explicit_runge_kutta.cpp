@@ -1,34 +1,12 @@
 #include "integrators/methods/explicit_runge_kutta.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include "integrators/stepping/controlled_methods.h"
 #include "integrators/stepping/controlled_run.h"
-#include "integrators/stepping/explicit_stepper.h"
 
 namespace poinsot {
 namespace {
-
-// So many rejections in a row are more than error control needs to find a step: a singular position may be near,
-// which a step of the usual length passes.
-constexpr int kDifficult = 2;
-
-class ControlledPair : public ExplicitStepper {
- public:
-  using ExplicitStepper::ExplicitStepper;
-
-  // A start where the trial step fails is left to the steps, which will tell why.
-  double first_step(double end) {
-    double h = 0;
-    return ExplicitStepper::first_step(end, h).ok() ? h : 1e-6 * end;
-  }
-  Status attempt(double to, int rejections, double& error) {
-    return ExplicitStepper::attempt(to, rejections < kDifficult ? Stages::as_they_come : Stages::projected, error);
-  }
-  double retry(double h, int rejections, double usual) const {
-    return rejections == kDifficult ? std::max(h, usual) : h;
-  }
-  double adopt(double, double wanted) const { return wanted; }
-};
 
 class ExplicitRungeKutta final : public Integrator {
  public:
@@ -40,10 +18,22 @@ class ExplicitRungeKutta final : public Integrator {
                           run.statistics, clock);
     if (Status status = method.prepare(); !status.ok()) return status;
     if (Status status = method.start(run.state); !status.ok()) return status;
-    return controlled_run(method, pair_.rule, run, clock);
+    bool told = false;
+    return controlled_run(method, pair_.rule, run, clock, [&] {
+      if (method.stiff() && !told) run.tell(stiffness_notice(method));
+      told = told || method.stiff();
+      return false;
+    });
   }
 
  private:
+  std::string stiffness_notice(const ControlledPair& method) const {
+    return fmt::format(
+        "the motion is stiff: at t = {:.3g} s the steps of {} are {:.2g} s long for the sake of stability, not of "
+        "accuracy; the result is as accurate as asked for, but integrator radau5 takes longer steps",
+        method.state().t, pair_.name, method.last_step());
+  }
+
   const RungeKuttaPair& pair_;
 };
 

@@ -1,5 +1,10 @@
 #include "integrators/methods/generalized_alpha.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/fixed_steps.h"
 #include "integrators/stepping/newton_loop.h"
@@ -48,6 +53,7 @@ class GeneralizedAlpha : public FixedSteps {
         aside_(nv_ + nc_),
         there_(nv_ + nc_) {}
 
+  bool solves_index3() const override { return true; }
   Status prepare() override { return system_.prepare(); }
 
   Status begin() override {
@@ -79,6 +85,7 @@ class GeneralizedAlpha : public FixedSteps {
     if (!status.ok()) return status;
     advance();
     a_.noalias() = k_.gain() * x_.z.head(nv_) + held_a_;
+    watch(t);
     return status;
   }
 
@@ -103,9 +110,11 @@ class GeneralizedAlpha : public FixedSteps {
     // The error of the difference quotient, of order h/100, is less than the h² neglected. Where a whole step shows
     // that the change of v̇ is not resolved (a stiff spring out of rest), or is of second order, the start does without
     // v̈.
+    bool damped = false;
+    if (Status status = leave_out_damped(damped); !status.ok()) return status;
     if (Status status = change_of_acceleration(h_ / 100, jerk_); !status.ok()) return status;
     jerk_ *= 100;
-    if (!change_of_acceleration(h_, a_).ok() || !((a_ - jerk_).norm() < jerk_.norm())) jerk_.setZero();
+    if (damped || !change_of_acceleration(h_, a_).ok() || !((a_ - jerk_).norm() < jerk_.norm())) jerk_.setZero();
     jerk_ /= h_;
     a_.noalias() = x_.z.head(nv_) + (k_.shift() * h_) * jerk_;
     z_n_ = x_.z;
@@ -138,6 +147,40 @@ class GeneralizedAlpha : public FixedSteps {
     Status status = consistent_.accelerations(x_.t + s, span(there_));
     change = there_.head(nv_) - x_.z.head(nv_);
     return status;
+  }
+
+  // A damper far stiffer than 1/h has stopped what it acts on before the first step is over. With the acceleration it
+  // begins with the method would ring for dozens of steps; without, the first step stops it. It is the direction in
+  // which v̇ at a velocity v + h v̇ turns against v̇ by more than it was.
+  Status leave_out_damped(bool& damped) {
+    held_v_ = x_.v + h_ * x_.z.head(nv_);
+    problem_.set_position(x_.t, span(x_.q));
+    problem_.set_velocity(span(held_v_));
+    if (Status status = consistent_.accelerations(x_.t, span(there_)); !status.ok()) return status;
+    held_a_ = there_.head(nv_) - x_.z.head(nv_);
+    const double along = held_a_.dot(x_.z.head(nv_)), square = held_a_.squaredNorm();
+    damped = -along > x_.z.head(nv_).squaredNorm();
+    if (damped) x_.z.head(nv_) -= (along / square) * held_a_;
+    return {};
+  }
+
+  // Accelerations that change by more than their size within a step, step after step, are not those of the motion.
+  void watch(double t) {
+    constexpr int kRinging = 10;
+    constexpr double kRounding = 1e4 * std::numeric_limits<double>::epsilon();
+    if (ringing_ >= kRinging) return;
+    double change = 0, before = 0;
+    for (Eigen::Index k = 0; k < nv_; ++k) {
+      change += std::pow(x_.z[k] - z_n_[k], 2);
+      before += std::pow(z_n_[k], 2);
+    }
+    if (change < before || h_ * h_ * std::sqrt(change) < kRounding * x_.q.norm()) return;
+    if (++ringing_ < kRinging) return;
+    run_.tell(fmt::format(
+        "at t = {:.6g} s accelerations change by more than their size within a step, the {}th time: a stiff damper or "
+        "spring moves that h = {:g} s does not resolve, and what is made of it here dies out by the factor "
+        "spectral_radius a step; try integrator radau5 or a step that resolves it",
+        t, kRinging, h_));
   }
 
   void advance() {  // v and q that belong to the acceleration in z
@@ -177,6 +220,7 @@ class GeneralizedAlpha : public FixedSteps {
   Vector y_;                          // displacement of stabilized index 2
   Vector held_dq_, held_v_, held_a_;  // what does not depend on the step's unknowns
   Vector residual_, aside_, there_;
+  int ringing_ = 0;  // steps, see watch()
 };
 
 struct Index3 final : GeneralizedAlpha {

@@ -20,6 +20,7 @@ class HalfImplicit final : public FixedSteps {
         dq_(nv_),
         rows_(nc_) {}
 
+  bool solves_index3() const override { return true; }
   Status prepare() override { return ends_.prepare(); }
   Status resume() override {
     velocity_rows_ = velocity_rows(ends_.begin().problem);

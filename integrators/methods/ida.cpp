@@ -17,6 +17,7 @@
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/stabilized_index2.h"
 #include "integrators/stepping/step_control.h"
+#include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/turning.h"
 #include "integrators/stepping/vectors.h"
 #include "linsolve/registry.h"
@@ -80,7 +81,8 @@ class Session {
         sizes_(2 * static_cast<std::size_t>(problem_.nv())),
         sizes_now_(sizes_.size()),
         at_(run.state),
-        next_(problem_) {
+        next_(problem_),
+        switches_(problem_.model(), run.settings.end) {
     SUNContext context = nullptr;
     check(SUNContext_Create(nullptr, &context) == 0, "SUNDIALS gives a context");
     context_.reset(context);
@@ -139,6 +141,15 @@ class Session {
     double t = 0;
     while (t < settings_.end) {
       if (interruption_requested) return interrupted(t);
+      const SwitchTimes::Switch turn = next_switch(t);
+      if (turn.before <= t) {
+        if (Status status = cross(std::min(turn.after, settings_.end)); !status.ok()) return status;
+        t = at_.t;
+        if (settings_.every > 0 && times.next() > t) continue;
+        times.pass();
+        give_out();
+        continue;
+      }
       if (IDASolve(ida_.get(), settings_.end, &t, y_.get(), y_dot_.get(), IDA_ONE_STEP) < 0) {
         if (Status status = go_on(); !status.ok()) return status;
         continue;
@@ -153,6 +164,10 @@ class Session {
       for (; settings_.every > 0 && times.next() < t; times.pass()) {
         if (Status status = stand_at(times.next()); !status.ok()) return status;
         give_out();
+      }
+      if (t == turn.before) {  // given out beyond the switch
+        if (Status status = stand_at(t); !status.ok()) return status;
+        continue;
       }
       if (settings_.every == 0 || times.next() == t) {
         times.pass();
@@ -169,6 +184,30 @@ class Session {
   void limit_turn() {
     const double rate = problem_.counted_turn().rate;
     if (rate > 0) IDASetMaxStep(ida_.get(), 0.5 * kMostCounted / rate);
+  }
+
+  // The next switch of the data within reach of IDA's next step, which it then does not step over.
+  SwitchTimes::Switch next_switch(double t) {
+    double h = 0;
+    IDAGetCurrentStep(ida_.get(), &h);
+    const double reach = h > 0 ? 2 * h : 0.01 * (settings_.end - t);  // its first step is a tenth of that, or less
+    const SwitchTimes::Switch turn = switches_.first(t, std::min(t + reach, settings_.end));
+    if (turn.before > t)
+      check(IDASetStopTime(ida_.get(), std::min(turn.before, settings_.end)) == IDA_SUCCESS, "IDA stops at a switch");
+    return turn;
+  }
+
+  // at_ stands at a switch.
+  Status cross(double t) {
+    at_.t = t;
+    if (Status status = consistent_.cross(at_); !status.ok()) return status;
+    bool rewritten = false;
+    if (Status status = poinsot::accept(problem_, at_, rewritten); !status.ok()) return status;
+    if (rewritten) {
+      if (Status status = prepare_form(); !status.ok()) return status;
+    }
+    start_anew(t);
+    return {};
   }
 
   // After a failure of IDA: again from the last point, at the tolerance itself.
@@ -212,10 +251,13 @@ class Session {
     if (Status status = stand_at(t); !status.ok()) return status;
     bool rewritten = false;
     if (Status status = poinsot::accept(problem_, at_, rewritten); !status.ok() || !rewritten) return status;
-    form_.emplace(problem_);
-    if (Status status = system_.prepare(form_->pattern(), form_->unknowns()); !status.ok()) return status;
+    if (Status status = prepare_form(); !status.ok()) return status;
     start_anew(t);
     return {};
+  }
+  Status prepare_form() {
+    form_.emplace(problem_);
+    return system_.prepare(form_->pattern(), form_->unknowns());
   }
 
   // From the last point: what IDA remembers of the motion is gone.
@@ -284,6 +326,7 @@ class Session {
   Consistent consistent_;
   std::vector<double> sizes_, sizes_now_;
   State at_, next_;  // the last point given out, and the next one while it is made
+  SwitchTimes switches_;
   Status linear_status_;
   double share_ = kShare;  // of the tolerance
 

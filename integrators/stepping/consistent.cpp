@@ -16,6 +16,7 @@ constexpr double kFarNegligible = 1e-14;  // relative to the largest coordinate:
 
 constexpr int kCorrections = 6;
 constexpr double kRounding = 1e-15;    // product of two corrections that leaves nothing to correct
+constexpr double kJump = 1e-9;         // relative to the largest coordinate: more than rounding of a time leads to
 constexpr double kNegligible = 1e-14;  // a correction of this size is the rounding of the coordinates
 
 double largest(std::span<const double> x) {
@@ -45,7 +46,8 @@ Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& stati
       rhs_(problem.nv() + problem.nc()),
       zeros_(Eigen::VectorXd::Zero(problem.nv() + problem.nc())),
       rows_(problem.nc()),
-      q_moved_(problem.nq()) {}
+      q_moved_(problem.nq()),
+      moved_by_(Eigen::VectorXd::Zero(2 * problem.nv())) {}
 
 Status Consistent::prepare() {
   Status status = system_.prepare();
@@ -129,6 +131,7 @@ Status Consistent::accelerations(State& at) {
 
 Status Consistent::project(State& at, bool& moved) {
   moved = false;
+  moved_by_.setZero();
   double first = 0, before = HUGE_VAL;
   for (int k = 0;; ++k) {
     if (Status status = position_correction(at.t); !status.ok()) return status;
@@ -143,6 +146,7 @@ Status Consistent::project(State& at, bool& moved) {
     }
     problem_.retract(span(at.q), moves(), span(q_moved_));
     at.q.swap(q_moved_);
+    moved_by_.head(problem_.nv()) += rhs_.head(problem_.nv());
     stand(at);
     moved = true;
     first = std::max(first, correction);
@@ -154,6 +158,7 @@ Status Consistent::project(State& at, bool& moved) {
     const double correction = largest(moves());
     if (correction <= kNegligible * std::max(1.0, largest(span(at.v)))) break;
     at.v += rhs_.head(problem_.nv());
+    moved_by_.tail(problem_.nv()) += rhs_.head(problem_.nv());
     problem_.set_velocity(span(at.v));
     moved = true;
     if (first * correction <= kRounding) break;
@@ -185,6 +190,19 @@ Status Consistent::complete(State& at) {
   bool moved = false;
   if (Status status = project(at, moved); !status.ok()) return status;
   return moved ? refine(at) : Status{};
+}
+
+Status Consistent::cross(State& at) {
+  if (Status status = accelerations(at); !status.ok()) return status;
+  bool moved = false;
+  const Status status = project(at, moved);
+  if (!status.ok() || largest(span(moved_by_, 0, problem_.nv())) > kJump * std::max(1.0, largest(span(at.q)))) {
+    return {Failure::inconsistent_state, at.t,
+            fmt::format("at t = {:.9g} s a driver or a constraint prescribes a jump of positions, which no motion "
+                        "follows; let it pass through the values between",
+                        at.t)};
+  }
+  return moved ? accelerations(at) : Status{};  // velocities may have jumped: no refinement of those before
 }
 
 }  // namespace poinsot

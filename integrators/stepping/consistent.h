@@ -15,6 +15,7 @@
 #include <span>
 
 #include "integrators/stepping/step_system.h"
+#include "integrators/stepping/vectors.h"
 
 namespace poinsot {
 
@@ -48,10 +49,15 @@ class Consistent {
   // Moves q and v onto the constraints with the factorization at hand, which belongs to a state nearby, and says
   // whether they moved; the problem stands at the result.
   Status project(State& at, bool& moved);
+  // How far project() moved the last state, δq and then δv.
+  std::span<const double> moved_by() const { return span(moved_by_); }
   // (a, λ) of the state the problem stands at, from those of a state nearby and its factorization.
   Status refine(State& at);
   // Accelerations, projection, refinement: the consistent state beside (q, v).
   Status complete(State& at);
+  // Makes a state whose time is just past a switch of the data consistent on the far side of it. Where the rate of a
+  // driver jumps, v does, by the least change in M: the impulse of the constraints. Positions cannot; then it fails.
+  Status cross(State& at);
 
  private:
   // What a run lends.
@@ -75,7 +81,7 @@ class Consistent {
   StepSystem system_;
   bool prepared_ = false;
   const std::size_t nv_, nc_;
-  Eigen::VectorXd rhs_, zeros_, rows_, q_moved_;
+  Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_;
 };
 
 }  // namespace poinsot

@@ -1,8 +1,8 @@
-// A run of a one-step method under error control: steps tried, refused and accepted, samples between them, an exact
-// end.
+// A run of a one-step method under error control: steps tried, refused and accepted, samples between them, kinks and
+// jumps of the data stepped onto, an exact end.
 //
-// A Method is a stepper with: Status attempt(to, rejections, error), Status complete(), Status interpolate(t),
-// interpolated(), settle(), state(); double first_step(end); double retry(h, rejections, usual), the step to
+// A Method is a stepper with: Status attempt(to, rejections, error), Status complete(error), Status interpolate(t),
+// interpolated(), settle(), cross(t), state(); double first_step(end); double retry(h, rejections, usual), the step to
 // try after so many rejections in a row; double adopt(h, wanted), the step after a completed one of length h.
 #pragma once
 
@@ -15,16 +15,46 @@
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/step_control.h"
+#include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
 
-template <class Method, class GiveOut>
-Status controlled_steps(Method& method, const StepRule& rule, const Settings& settings, const GiveOut& give_out,
-                        const Problem& problem, Statistics& statistics) {
+// What lies before a run, whichever method is at it: the clock, output times, switches of the data, who is given what.
+class Course {
+ public:
+  Course(const Run& run, PhaseClock& clock)
+      : every_step(run.settings.every == 0),
+        times(run.settings.every, run.settings.end),
+        switches(run.problem.model(), run.settings.end),
+        run_(run),
+        clock_(clock) {}
+
+  void give_out(const State& at) { give_out(at, at.t); }
+  void give_out(const State& at, double t) {
+    clock_.lap(Phase::other);
+    sample(run_.observe, run_.problem, at, run_.statistics, t);
+    clock_.skip();
+  }
+  double turned(double h) const { return h * run_.problem.fastest_turn(); }  // rad, the fastest body at its speed now
+  double end() const { return run_.settings.end; }
+  Statistics& statistics() { return run_.statistics; }
+
+  const bool every_step;
+  SampleTimes times;
+  SwitchTimes switches;
+
+ private:
+  const Run& run_;
+  PhaseClock& clock_;
+};
+
+// From the method's state to the end, or to the first step after which leave() says so.
+template <class Method, class Leave>
+Status controlled_steps(Method& method, const StepRule& rule, Course& course, const Leave& leave) {
   constexpr double kForgotten = 0.8;
-  const double end = settings.end, smallest = 16 * std::numeric_limits<double>::epsilon() * end;
-  SampleTimes times(settings.every, end);
+  const double end = course.end(), smallest = 16 * std::numeric_limits<double>::epsilon() * end;
+  SampleTimes& times = course.times;
   StepController controller(rule);
   Creeping creeping(end);
   double h = method.first_step(end);
@@ -33,50 +63,61 @@ Status controlled_steps(Method& method, const StepRule& rule, const Settings& se
   while (method.state().t < end) {
     const double t = method.state().t;
     if (interruption_requested) return interrupted(t);
-    const double to = t + 1.01 * h >= end ? end : t + h;
-    h = to - t;
-    if (creeping.tries(t, h)) return step_too_small(t, h, {});
-    double error = 0;
-    Status status = method.attempt(to, rejections, error);
-    if (status.ok() && error <= 1) status = method.complete();
-    if (!status.ok() || !(error <= 1)) {
-      if (status.failure == Failure::refused) return status;
-      ++statistics.rejected_steps;
-      h = status.ok() && std::isfinite(error) ? controller.rejected(h, error) : controller.failed(h);
-      if (h < smallest) return step_too_small(t, h, status);
-      h = method.retry(h, ++rejections, usual);
-      continue;
+    const SwitchTimes::Switch turn = course.switches.first(t, std::min(t + 1.01 * h, end));
+    const double stop = std::min(turn.before, end);
+    const double to = t + 1.01 * h >= stop ? stop : t + h;
+    if (to > t) {
+      h = to - t;
+      if (creeping.tries(t, h)) return step_too_small(t, h, {});
+      double error = 0;
+      Status status = method.attempt(to, rejections, error);
+      if (status.ok() && error <= 1) status = method.complete(error);
+      if (!status.ok() || !(error <= 1)) {
+        if (status.failure == Failure::refused) return status;
+        ++course.statistics().rejected_steps;
+        h = status.ok() && std::isfinite(error) ? controller.rejected(h, error) : controller.failed(h);
+        if (h < smallest) return step_too_small(t, h, status);
+        h = method.retry(h, ++rejections, usual);
+        continue;
+      }
+      ++course.statistics().steps;
+      course.statistics().largest_rotation = std::max(course.statistics().largest_rotation, course.turned(h));
+      rejections = 0;
+      usual = std::max(h, kForgotten * usual);
+      creeping.completed(h);
+      h = method.adopt(h, controller.accepted(h, error));
+      for (; !course.every_step && times.next() < to; times.pass()) {
+        if (status = method.interpolate(times.next()); !status.ok()) return status;
+        course.give_out(method.interpolated());
+      }
     }
-    ++statistics.steps;
-    statistics.largest_rotation = std::max(statistics.largest_rotation, h * problem.fastest_turn());
-    rejections = 0;
-    usual = std::max(h, kForgotten * usual);
-    creeping.completed(h);
-    h = method.adopt(h, controller.accepted(h, error));
-    for (; settings.every > 0 && times.next() < to; times.pass()) {
-      if (status = method.interpolate(times.next()); !status.ok()) return status;
-      give_out(method.interpolated());
+    const bool crosses = to == turn.before;
+    if (Status status = crosses ? method.cross(std::min(turn.after, end)) : method.settle(); !status.ok()) {
+      return status;
     }
-    if (status = method.settle(); !status.ok()) return status;
-    if (settings.every == 0 || times.next() == to) {
+    if (crosses) {  // what error control has learnt is of the motion before
+      controller = StepController(rule);
+      h = method.first_step(end);
+      if (method.state().t < end) creeping = Creeping(end);
+    }
+    if (course.every_step) {
+      if (to > t) course.give_out(method.state());
+    } else if (times.next() <= method.state().t) {
+      course.give_out(method.state(), times.next());
       times.pass();
-      give_out(method.state());
     }
+    if (leave()) return {};
   }
   return {};
 }
 
 // The method stands at the run's state.
-template <class Method>
-Status controlled_run(Method& method, const StepRule& rule, const Run& run, PhaseClock& clock) {
-  const auto give_out = [&](const State& at) {
-    clock.lap(Phase::other);
-    sample(run.observe, run.problem, at, run.statistics);
-    clock.skip();
-  };
+template <class Method, class Leave>
+Status controlled_run(Method& method, const StepRule& rule, const Run& run, PhaseClock& clock, const Leave& leave) {
+  Course course(run, clock);
   clock.start();
-  give_out(method.state());
-  const Status status = controlled_steps(method, rule, run.settings, give_out, run.problem, run.statistics);
+  course.give_out(method.state());
+  const Status status = controlled_steps(method, rule, course, leave);
   finish(clock, run.statistics);
   run.state = method.state();
   return status;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/turning.h"
@@ -9,6 +10,9 @@
 
 namespace poinsot {
 namespace {
+
+constexpr double kNoise =
+    100 * std::numeric_limits<double>::epsilon();  // relative: what rounding makes of a difference
 
 Eigen::Index columns(const RungeKuttaPair& pair) {
   return static_cast<Eigen::Index>(pair.stages.size() + 1 + pair.dense_stages.size());
@@ -28,10 +32,11 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
       error_needs_last_(std::ranges::any_of(pair.error, [&](const Term& term) { return term.stage == last_; })),
       state_(problem),
       next_(problem),
-      sample_(problem) {
+      sample_(problem),
+      stiffness_(pair.rule.safety * pair.stability) {
   const Eigen::Index nv = problem.nv();
   q_n_.setZero(problem.nq());
-  for (Vector* x : {&y_n_, &y_, &sizes_, &sizes_next_, &scale_, &combined_}) x->setZero(2 * nv);
+  for (Vector* x : {&y_n_, &y_, &g_, &sizes_, &sizes_next_, &scale_, &combined_}) x->setZero(2 * nv);
   k_.setZero(2 * nv, columns(pair));
   r_.setZero(2 * nv, static_cast<Eigen::Index>(3 + pair.dense.size()));
 }
@@ -49,6 +54,13 @@ Status ExplicitStepper::settle() {
   if (Status status = accept(problem_, state_, rewritten); !status.ok()) return status;
   component_sizes(problem_, span(state_.q), span(state_.v), span(sizes_));
   return {};
+}
+
+Status ExplicitStepper::cross(double t) {
+  state_.t = t;
+  elsewhere_ = true;
+  if (Status status = consistent_.cross(state_); !status.ok()) return status;
+  return settle();
 }
 
 void ExplicitStepper::advance(double h, Terms terms, Vector& y) const {
@@ -111,9 +123,20 @@ Status ExplicitStepper::run_through_stages(double to) {
     next_.t = stage.c == 1 ? to : t_n_ + stage.c * h;
     if (Status status = evaluate(next_, y_, static_cast<Eigen::Index>(i)); !status.ok()) return status;
   }
+  g_ = y_;
   advance(h, pair_.b, y_);
   next_.t = to;
   return {};
+}
+
+// After f(y_{n+1}). A difference that is rounding, or was projected, says nothing.
+void ExplicitStepper::test_stiffness() {
+  if (project_stages_) return;
+  combined_ = y_ - g_;
+  const double apart = error_norm(span(combined_), span(scale_));
+  if (!(apart * rtol_ > kNoise)) return;
+  combined_ = k_.col(last_) - k_.col(last_ - 1);
+  stiffness_.accepted(h_ * error_norm(span(combined_), span(scale_)) / apart);
 }
 
 Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
@@ -143,15 +166,18 @@ Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
   return {};
 }
 
-Status ExplicitStepper::complete() {
+Status ExplicitStepper::complete(double& error, double most) {
   if (!error_needs_last_) {
     if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
   }
   bool moved = false;
   if (Status status = consistent_.project(next_, moved); !status.ok()) return status;
   if (moved) {
+    error = std::max(error, error_norm(consistent_.moved_by(), span(scale_)));
+    if (!(error <= most)) return {};
     if (Status status = consistent_.refine(next_); !status.ok()) return status;
   }
+  test_stiffness();
   std::swap(state_, next_);
   elsewhere_ = false;
   return {};

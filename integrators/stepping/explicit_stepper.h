@@ -19,6 +19,7 @@
 
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/runge_kutta_pair.h"
+#include "integrators/stepping/stiffness.h"
 
 namespace poinsot {
 
@@ -38,14 +39,19 @@ class ExplicitStepper {
   enum class Stages { as_they_come, projected };
   // Stages and y_{n+1} of a step to time `to`; its error, 1 being the tolerance. The state stays what it is.
   Status attempt(double to, Stages stages, double& error);
-  // Makes the attempted step the state: f(y_{n+1}), projection. Fails where the result cannot be projected; then the
-  // state is still the old one.
-  Status complete();
+  // Makes the attempted step the state: f(y_{n+1}), projection. Where that moves it by more than the error, so much is
+  // the error. The state is still the old one where the result cannot be projected, or where the error is above `most`.
+  Status complete(double& error, double most = 1);
   // The motion within the completed step at time t, consistent, in interpolated(). The problem stands there. Where the
   // step is so long that the polynomial is too far off the constraints, a shorter step from where that one began.
   Status interpolate(double t);
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
   Status settle();
+  // Goes over a switch of the data, on to the time just past it.
+  Status cross(double t);
+  // Whether stability holds the steps, not accuracy.
+  bool stiff() const { return stiffness_.stiff(); }
+  double last_step() const { return h_; }
 
   const State& state() const { return state_; }
   const State& interpolated() const { return sample_; }
@@ -56,6 +62,7 @@ class ExplicitStepper {
   double norm(Terms terms);
   Status evaluate(State& at, const Vector& y, Eigen::Index k);
   Status run_through_stages(double to);
+  void test_stiffness();
   Status prepare_dense();
   Status by_polynomial(double t);
   Status by_short_step(double t);
@@ -72,11 +79,13 @@ class ExplicitStepper {
   State state_, next_, sample_;
   Vector q_n_;      // where the step began; y_n_ = (0, v_n)
   Vector y_n_, y_;  // 2 nv
+  Vector g_;        // where the last stage stands
   Eigen::MatrixXd k_, r_;
   double h_ = 0, t_n_ = 0;
   bool elsewhere_ = false;
   enum class Dense { missing, ready, too_coarse } dense_ = Dense::missing;
   Vector sizes_, sizes_next_, scale_, combined_;
+  StiffnessTest stiffness_;
 };
 
 }  // namespace poinsot

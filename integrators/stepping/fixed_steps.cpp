@@ -19,7 +19,8 @@ FixedSteps::FixedSteps(const Run& run)
       nc_(run.problem.nc()),
       x_(run.state),
       q_n_(run.state.q),
-      v_n_(run.state.v) {}
+      v_n_(run.state.v),
+      output_(run.settings, h_) {}
 
 Status FixedSteps::march() {
   if (Status status = prepare(); !status.ok()) return status;
@@ -87,10 +88,12 @@ Status FixedSteps::begin() {
   return {};
 }
 
-Status FixedSteps::give_out(const Problem& problem) {
+Status FixedSteps::give_out(Problem& problem) {
   if (Status status = complete(); !status.ok()) return status;
+  const bool last = x_.t >= settings_.end;
+  const State& given = solves_index3() ? output_.choose(problem, x_, last, run_.statistics) : x_;
   clock_.lap(Phase::other);
-  sample(run_.observe, problem, x_, run_.statistics);
+  sample(run_.observe, problem, given, run_.statistics);
   clock_.skip();
   return {};
 }

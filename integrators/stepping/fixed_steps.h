@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "integrators/stepping/index1_output.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/time_grid.h"
 #include "integrators/stepping/vectors.h"
@@ -43,13 +44,15 @@ class FixedSteps {
   virtual Status resume() { return {}; }
   // Finds the (a, λ) of a sample, where steps do not.
   virtual Status complete() { return {}; }
+  // Whether (a, λ) are solved from Φ/h² = 0, and better may be given out.
+  virtual bool solves_index3() const { return false; }
 
   void place(Problem& problem) const {
     problem.set_position(x_.t, span(x_.q));
     problem.set_velocity(span(x_.v));
   }
   // Completes and gives out x_, where the problem stands; the time it takes outside is left out.
-  Status give_out(const Problem& problem);
+  Status give_out(Problem& problem);
 
   const Run& run_;
   Problem& problem_;
@@ -67,6 +70,7 @@ class FixedSteps {
   bool rewritten_ = false;
   double rotation_ = 0;  // of the last step, the largest of a body
   Vector change_;
+  Index1Output output_;
 };
 
 // An integrator each of whose runs is an object of type Method, made from the run.

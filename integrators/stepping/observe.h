@@ -11,8 +11,8 @@
 
 namespace poinsot {
 
-// The problem stands at `at`.
-inline void sample(const Observer& observe, const Problem& problem, const State& at, Statistics& statistics) {
+// The problem stands at `at`; t: the output time it is given out for, where that is not at.t to the last digit.
+inline void sample(const Observer& observe, const Problem& problem, const State& at, Statistics& statistics, double t) {
   static thread_local std::vector<double> r;  // kept: with a sample at every step, steps still allocate nothing
   r.resize(static_cast<std::size_t>(problem.nc()));
   problem.position_residual(r);
@@ -22,7 +22,11 @@ inline void sample(const Observer& observe, const Problem& problem, const State&
   const Problem::LeftOut left_out = problem.left_out();
   statistics.violation.position = std::max(statistics.violation.position, left_out.position);
   statistics.violation.velocity = std::max(statistics.violation.velocity, left_out.velocity);
-  if (observe) observe({at.t, problem, span(at.q), span(at.v), at.a(), at.lambda()});
+  if (observe) observe({t, problem, span(at.q), span(at.v), at.a(), at.lambda()});
+}
+
+inline void sample(const Observer& observe, const Problem& problem, const State& at, Statistics& statistics) {
+  sample(observe, problem, at, statistics, at.t);
 }
 
 inline void finish(PhaseClock& clock, Statistics& statistics) {

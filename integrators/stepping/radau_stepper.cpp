@@ -158,6 +158,13 @@ Status RadauStepper::settle() {
   return {};
 }
 
+Status RadauStepper::cross(double t) {
+  state_.t = t;
+  if (Status status = consistent_.cross(state_); !status.ok()) return status;
+  h_before_ = step_.h = 0;  // the stages are those of other forces
+  return settle();
+}
+
 double RadauStepper::first_step(double end) const {
   double y = 0, f = 0;
   for (Eigen::Index k = 0; k < nv_; ++k) {
@@ -326,8 +333,10 @@ Status RadauStepper::error_of(const State& from, double h, double& error) {
   return {};
 }
 
-Status RadauStepper::complete() {
+Status RadauStepper::complete(double& error, double most) {
   if (Status status = consistent_.complete(next_); !status.ok()) return status;
+  error = std::max(error, error_norm(consistent_.moved_by(), span(scale_)));
+  if (!(error <= most)) return {};
   before_ = state_;
   std::swap(state_, next_);
   Z_before_ = Z_;

@@ -44,14 +44,17 @@ class RadauStepper {
   double first_step(double end) const;
   // Stages of a step to time `to`; its error, 1 being the tolerance. The state stays what it is.
   Status attempt(double to, double& error);
-  // Makes the end of the attempted step the state; fails where it cannot be projected.
-  Status complete();
+  // Makes the end of the attempted step the state. Where its projection moves it by more than the error, so much is the
+  // error. The state is still the old one where it cannot be projected, or where the error is above `most`.
+  Status complete(double& error, double most = 1);
   // The motion within the completed step at time t, consistent, in interpolated(): a shorter step from where that one
   // began, because the collocation polynomial has order 3 only; that polynomial where Newton's method does not take the
   // shorter step.
   Status interpolate(double t);
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
   Status settle();
+  // Goes over a switch of the data, on to the time just past it.
+  Status cross(double t);
 
   // Whether steps of the same length are worth their kept matrix.
   bool converges_fast() const { return fast_; }

@@ -75,9 +75,10 @@ inline Settings kinematics(std::string_view formulation, double step, double end
   return s;
 }
 
-// Newton's method is driven to where its corrections move positions by 1e-11 m.
+// Implicit Euler. Newton's method is driven to where its corrections move positions by 1e-11 m.
 inline Settings dynamics(std::string_view formulation, double step, double end, double every = 0) {
   Settings s;
+  s.integrator = "implicit_euler";
   s.formulation = formulation;
   s.step = step;
   s.end = end;

@@ -1,0 +1,167 @@
+// The default integrator: what it picks, how accurate it is, and that it says so.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "tests/support/benchmark_references.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// A rod on a hinge, one metre to its centre, from the horizontal.
+Scene pendulum() {
+  Scene scene;
+  scene.name = "pendulum";
+  scene.gravity = {0, 0, -9.81};
+  Body rod;
+  rod.name = "rod";
+  rod.mass = 2;
+  rod.inertia = Vector3(0.6, 0.01, 0.6).asDiagonal();
+  rod.position = {0, 1, 0};
+  scene.bodies.push_back(rod);
+  Joint hinge;
+  hinge.type = JointType::revolute;
+  hinge.j = 0;
+  hinge.axis = {1, 0, 0};
+  scene.joints.push_back(hinge);
+  return scene;
+}
+
+// The same with a bob on a spring beyond its tip.
+Scene with_spring(double stiffness, double damping) {
+  Scene scene = pendulum();
+  Body bob;
+  bob.name = "bob";
+  bob.mass = 1;
+  bob.inertia = Vector3(0.1, 0.1, 0.1).asDiagonal();
+  bob.position = {0, 3, 0};
+  scene.bodies.push_back(bob);
+  Spring spring;
+  spring.i = 0;
+  spring.j = 1;
+  spring.s_i = {0, 1, 0};
+  spring.stiffness = stiffness;
+  spring.damping = damping;
+  spring.length = 1;
+  scene.forces.push_back(spring);
+  return scene;
+}
+
+std::vector<std::string> picked(const Outcome& outcome) {
+  std::vector<std::string> names;
+  for (const MethodWork& work : outcome.statistics.methods) names.emplace_back(work.integrator);
+  return names;
+}
+
+TEST(AutoIntegrator, IsTheDefaultAndTakesAPendulumToItsTolerance) {
+  Settings settings;
+  EXPECT_TRUE(integrators().require(settings.integrator).picks);
+  settings.end = settings.every = 5;
+  for (const FormulationEntry& formulation : formulations()) {
+    settings.formulation = formulation.name;
+    const Recorded r = run(pendulum(), settings);
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    // θ from +y: (m l² + I) θ̈ = −m g l cos θ
+    const double theta = runge_kutta<2>({0, 0}, 5, 200000, [](const Eigen::Vector2d& x) {
+      return Eigen::Vector2d(x[1], -2 * 9.81 * std::cos(x[0]) / 2.6);
+    })[0];
+    EXPECT_LT((r.samples.back().bodies[0].r - Vector3(0, std::cos(theta), std::sin(theta))).norm(), 1e-7);
+    EXPECT_THAT(picked(r.outcome), ::testing::ElementsAre("dop853")) << formulation.name;
+    EXPECT_EQ(r.outcome.statistics.methods[0].steps, r.outcome.statistics.steps);
+    EXPECT_THAT(r.outcome.notices, IsEmpty());
+  }
+}
+
+TEST(AutoIntegrator, GoesOnWithTheImplicitMethodWhereTheMotionIsStiff) {
+  const Scene scene = with_spring(1e8, 1e5);
+  Settings settings;
+  settings.end = 1;
+  settings.every = 0.1;
+  for (const FormulationEntry& formulation : formulations()) {
+    settings.formulation = formulation.name;
+    settings.integrator = Settings{}.integrator;
+    const Recorded r = run(scene, settings);
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    ASSERT_THAT(picked(r.outcome), ::testing::ElementsAre("dop853", "radau5"));
+    const auto& [first, second] = std::tie(r.outcome.statistics.methods[0], r.outcome.statistics.methods[1]);
+    EXPECT_EQ(first.from, 0);
+    EXPECT_EQ(first.to, second.from);
+    EXPECT_EQ(second.to, 1);
+    EXPECT_LT(first.to, 0.05);
+    EXPECT_EQ(first.steps + second.steps, r.outcome.statistics.steps);
+    EXPECT_LT(r.outcome.statistics.steps, 1000);
+    settings.integrator = "radau5";
+    settings.rtol = 1e-11;
+    const Recorded exact = run(scene, settings);
+    settings.rtol = Settings{}.rtol;
+    EXPECT_LT(distance(r.samples, exact.samples).r, 1e-6) << formulation.name;
+    EXPECT_LE(r.samples.size(), 11u);
+  }
+}
+
+// Of the motions with the spring, one that swings on it as fast as it can: no step is longer than its period allows.
+TEST(AutoIntegrator, StaysExplicitWhereAccuracyHoldsTheSteps) {
+  Scene scene = with_spring(1e4, 0);
+  scene.bodies[1].velocity = {0, 2, 0};
+  Settings settings;
+  settings.end = settings.every = 1;
+  const Recorded r = run(scene, settings);
+  ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+  EXPECT_THAT(picked(r.outcome), ::testing::ElementsAre("dop853"));
+}
+
+TEST(AutoIntegrator, ExplicitMethodsSayThatAMotionIsStiff) {
+  Settings settings;
+  settings.end = settings.every = 0.02;
+  settings.rtol = 1e-6;
+  for (const char* integrator : {"dopri5", "dop853"}) {
+    settings.integrator = integrator;
+    std::vector<std::string> told;
+    const Outcome outcome =
+        simulate(with_spring(1e8, 1e5), settings, {}, [&](const std::string& n) { told.push_back(n); });
+    ASSERT_TRUE(outcome.status.ok()) << outcome.status.message;
+    ASSERT_EQ(outcome.notices.size(), 1u) << integrator;
+    EXPECT_EQ(told, outcome.notices);
+    EXPECT_THAT(outcome.notices[0], HasSubstr("stiff"));
+    EXPECT_THAT(outcome.notices[0], HasSubstr("radau5"));
+    EXPECT_THAT(simulate(pendulum(), settings, {}).notices, IsEmpty());
+  }
+}
+
+// Every model with no options, against a method of another kind.
+TEST(AutoIntegrator, ReachesAMillionthOnEveryModel) {
+  int compared = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(POINSOT_SOURCE_DIR "/models")) {
+    const std::string file = entry.path().filename();
+    if (!file.ends_with(".json") || file.ends_with(".schema.json")) continue;
+    const Scene scene = read_scene(entry.path());
+    SCOPED_TRACE(file);
+    Settings settings;
+    settings.end = file == "andrews.json" ? 0.02 : 1;
+    settings.every = settings.end / 10;
+    const Recorded r = run(scene, settings);
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    Settings tight = settings;
+    tight.integrator = "radau5";
+    tight.formulation = "rp";
+    tight.rtol = 1e-11;
+    Recorded exact = run(scene, tight);
+    if (!exact.outcome.status.ok()) {  // at a singular position
+      tight.integrator = "dopri5";
+      tight.rtol = 1e-10;
+      exact = run(scene, tight);
+    }
+    ASSERT_TRUE(exact.outcome.status.ok()) << exact.outcome.status.message;
+    const Distance d = distance(r.samples, exact.samples);
+    EXPECT_LT(std::max(d.r, d.A), 1e-6) << d;
+    ++compared;
+  }
+  EXPECT_GT(compared, 15);
+}
+
+}  // namespace
+}  // namespace poinsot::test

@@ -1,0 +1,195 @@
+// Kinks and jumps of drivers and forces: found ahead, stepped onto by error control, told by fixed steps.
+#include <gmock/gmock.h>
+
+#include "integrators/stepping/switch_times.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// A body that nothing holds, under a force along x.
+Scene pushed(const char* force) {
+  Scene scene;
+  scene.name = "pushed";
+  Body body;
+  body.name = "body";
+  body.mass = 1;
+  body.inertia = Vector3(0.1, 0.2, 0.3).asDiagonal();
+  scene.bodies.push_back(body);
+  PointForce push;
+  push.body = 0;
+  push.force[0] = Expression::parse(force);
+  scene.forces.push_back(push);
+  return scene;
+}
+
+std::vector<double> switches(const char* f, double end) {
+  const Model model = compile(pushed(f));
+  SwitchTimes times(model, end);
+  std::vector<double> found;
+  for (double t = 0; found.size() < 1000;) {
+    const SwitchTimes::Switch next = times.first(t, end);
+    if (!(next.before <= end)) break;
+    EXPECT_GT(next.after, next.before);
+    EXPECT_LE(next.after - next.before, 1e-15 * end);
+    found.push_back(next.after);
+    t = next.after;
+  }
+  return found;
+}
+
+TEST(SwitchTimes, AreWhereArgumentsChangeTheirSigns) {
+  using ::testing::DoubleNear;
+  using ::testing::ElementsAre;
+  EXPECT_THAT(switches("abs(t - 0.3)", 1), ElementsAre(DoubleNear(0.3, 1e-15)));
+  EXPECT_THAT(switches("1000*max(0, 1 - abs(t - 0.5)/0.001)", 1),
+              ElementsAre(DoubleNear(0.499, 1e-14), DoubleNear(0.5, 1e-14), DoubleNear(0.501, 1e-14)));
+  EXPECT_THAT(switches("max(0, min(1, (t - 5)*1e6))", 10),
+              ElementsAre(DoubleNear(5, 1e-14), DoubleNear(5 + 1e-6, 1e-14)));
+  EXPECT_EQ(switches("abs(sin(10*pi*t))", 1.05).size(), 11u);  // the start is one
+  EXPECT_THAT(switches("abs(t^2 - 4)*exp(-t)", 3), ElementsAre(DoubleNear(2, 1e-14)));
+}
+
+TEST(SwitchTimes, AreNotWhereNothingChanges) {
+  for (const char* smooth : {"sin(t)", "3", "abs(2 + sin(300*t) + cos(300*t))", "abs((t - 0.5)^2)", "max(t, t)",
+                             "max(0, -1 - t)", "min(2*t, 5)"})
+    EXPECT_THAT(switches(smooth, 1), IsEmpty()) << smooth;
+}
+
+struct Method {
+  std::string integrator, formulation;
+};
+std::vector<Method> methods() {
+  std::vector<Method> all;
+  for (const IntegratorEntry& entry : integrators())
+    for (const FormulationEntry& formulation : formulations())
+      if (entry.controls_error && !refusal_of(entry, formulation.name))
+        all.push_back({std::string(entry.name), std::string(formulation.name)});
+  return all;
+}
+
+class Switches : public ::testing::TestWithParam<Method> {
+ protected:
+  Settings settings(double rtol, double end, double every) const {
+    return controlled(GetParam().integrator, GetParam().formulation, rtol, end, every);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, Switches, ::testing::ValuesIn(methods()),
+                         [](const auto& test) { return test.param.integrator + "_" + test.param.formulation; });
+
+// The velocity after an impulse is its integral, however short it is.
+TEST_P(Switches, ImpulsesAreNotSteppedOver) {
+  const std::pair<const char*, double> impulses[] = {
+      {"1000*max(0, 1 - abs(t - 0.5)/0.001)", 1},
+      {"1e6*max(0, 1 - abs(t - 0.5004)/1e-6)", 1},
+      {"max(0, min(1, (t - 0.5)*1e9))*max(0, min(1, (0.502 - t)*1e9))*500", 1 - 5e-7},
+      {"500*(step(t - 0.4) - step(t - 0.402))", 1},
+      {"250*(1 - sign(abs(t - 0.5) - 0.001))", 1}};
+  for (const auto& [impulse, integral] : impulses) {
+    const Recorded r = run(pushed(impulse), settings(1e-8, 1, 0.25));
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    ASSERT_EQ(r.samples.size(), 5u);
+    EXPECT_EQ(r.samples[1].bodies[0].rd.x(), 0) << impulse;
+    EXPECT_NEAR(r.samples[4].bodies[0].rd.x(), integral, 1e-7) << impulse;
+    EXPECT_LT(r.outcome.statistics.steps, 3000) << impulse;
+  }
+}
+
+// Closed form: v = ∫ |sin| .
+TEST_P(Switches, KinksCostNoDigits) {
+  const Recorded r = run(pushed("abs(sin(2*pi*t))"), settings(1e-9, 2.75, 0.25));
+  ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+  ASSERT_EQ(r.samples.size(), 12u);
+  for (std::size_t n = 0; n < r.samples.size(); ++n) {
+    const double t = 0.25 * static_cast<double>(n);
+    EXPECT_NEAR(r.samples[n].t, t, 1e-15);
+    const double halves = std::floor(2 * t), rest = t - halves / 2;
+    const double v = (2 * halves + 1 - std::cos(2 * M_PI * rest)) / (2 * M_PI);
+    EXPECT_NEAR(r.samples[n].bodies[0].rd.x(), v, 50e-9) << t;
+  }
+}
+
+// A crank that sets out at 0.3 s, a rod that hangs on it: the same motion whatever the tolerance.
+Scene driven(const char* angle) {
+  Scene scene;
+  scene.name = "driven";
+  scene.gravity = {0, 0, -9.81};
+  for (const double y : {0.5, 1.5}) {
+    Body body;
+    body.name = y < 1 ? "crank" : "rod";
+    body.mass = 1;
+    body.inertia = Vector3(0.1, 0.01, 0.1).asDiagonal();
+    body.position = {0, y, 0};
+    scene.bodies.push_back(body);
+  }
+  for (int k = 0; k < 2; ++k) {
+    Joint hinge;
+    hinge.type = JointType::revolute;
+    hinge.i = k - 1;
+    hinge.j = k;
+    hinge.point = {0, static_cast<double>(k), 0};
+    hinge.axis = {1, 0, 0};
+    scene.joints.push_back(hinge);
+  }
+  Driver driver;
+  driver.j = 0;
+  driver.axis = {1, 0, 0};
+  driver.value = Expression::parse(angle);
+  scene.drivers.push_back(driver);
+  return scene;
+}
+
+TEST_P(Switches, OfDriversCostNoDigits) {
+  const Scene scene = driven("max(0, t - 0.3)^2 + 0.2*max(0, t - 0.5)^3");
+  const auto exact = motion(scene, controlled("radau5", "rA", 1e-13, 1, 0.1));
+  const auto found = motion(scene, settings(1e-8, 1, 0.1));
+  const Distance d = distance(found, exact);
+  EXPECT_LT(std::max({d.r, d.A, d.rd, d.w}), GetParam().integrator == "ida" ? 2e-6 : 1e-7) << d;
+}
+
+// Where the rate jumps, bodies are struck: the rod's momentum about its hinge with the crank stays.
+TEST_P(Switches, RatesThatJumpStrikeTheBodies) {
+  Scene scene = driven("0.5*max(0, t - 0.3)");
+  scene.gravity.setZero();
+  // The hinge at 1 m sets out with 0.5 m/s along z; about it the rod takes I w = −m l v with I = 0.1 + 0.25, l = 0.5.
+  const auto found = motion(scene, settings(1e-8, 0.6, 0.1));
+  ASSERT_EQ(found.size(), 7u);
+  EXPECT_EQ(found[2].bodies[1].w.x(), 0);
+  EXPECT_EQ(found[3].t, 0.3);
+  EXPECT_NEAR(found[3].bodies[1].w.x(), -0.5 * 0.5 / 0.35, 1e-6);
+}
+
+TEST_P(Switches, AreTakenFromFixedStepsBySayingSo) {
+  const Scene scene = pushed("abs(t - 0.305)");
+  for (const IntegratorEntry& entry : integrators()) {
+    if (entry.analysis != Analysis::dynamics || refusal_of(entry, GetParam().formulation)) continue;
+    Settings s = settings(1e-6, 1, 1);
+    s.integrator = entry.name;
+    s.step = 0.01;
+    const Outcome outcome = simulate(scene, s, {});
+    if (entry.controls_error) {
+      EXPECT_THAT(outcome.notices, IsEmpty()) << entry.name;
+    } else {
+      ASSERT_EQ(outcome.notices.size(), 1u) << entry.name;
+      EXPECT_THAT(outcome.notices[0], HasSubstr("t = 0.305 s"));
+    }
+    s.end = s.every = 0.3;
+    EXPECT_THAT(simulate(scene, s, {}).notices, IsEmpty()) << entry.name;
+  }
+}
+
+// A driver that turns by 2 rad within milliseconds, between two stages of a step: accelerations show nothing of it, the
+// projection does.
+TEST_P(Switches, WhatTheProjectionMovesIsAnError) {
+  const char* angle = "1 + tanh((t - 0.5)/0.0005)";
+  const auto exact = motion(driven(angle), controlled("radau5", "rA", 1e-11, 0.7, 0.1));
+  const auto found = motion(driven(angle), settings(1e-8, 0.7, 0.1));
+  const Distance d = distance(found, exact);
+  EXPECT_LT(std::max(d.r, d.A), 1e-5) << d;
+}
+
+}  // namespace
+}  // namespace poinsot::test
