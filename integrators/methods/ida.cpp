@@ -147,6 +147,7 @@ class Session {
         t = at_.t;
         if (settings_.every > 0 && times.next() > t) continue;
         times.pass();
+        consistent_.stand(at_);
         give_out();
         continue;
       }

@@ -95,16 +95,16 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
     if (Status status = crosses ? method.cross(std::min(turn.after, end)) : method.settle(); !status.ok()) {
       return status;
     }
-    if (crosses) {  // what error control has learnt is of the motion before
-      controller = StepController(rule);
-      h = method.first_step(end);
-      if (method.state().t < end) creeping = Creeping(end);
-    }
     if (course.every_step) {
       if (to > t) course.give_out(method.state());
     } else if (times.next() <= method.state().t) {
       course.give_out(method.state(), times.next());
       times.pass();
+    }
+    if (crosses) {  // what error control has learnt is of the motion before
+      controller = StepController(rule);
+      creeping = Creeping(end);
+      h = method.first_step(end);
     }
     if (leave()) return {};
   }
