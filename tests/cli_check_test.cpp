@@ -36,7 +36,10 @@ TEST_F(Check, SoundScenes) {
     SCOPED_TRACE(name);
     const Result result = check_model(name);
     EXPECT_EQ(result.status, 0);
-    EXPECT_EQ(result.err, "");
+    // Of the four-link mechanism the study gives moments that no body has.
+    const bool doubted = std::string(name) == "four_link_haug";
+    EXPECT_EQ(result.err.find("principal moments 0, 2 and 4") != std::string::npos, doubted);
+    EXPECT_EQ(result.err.empty(), !doubted) << result.err;
     expect_says(result,
                 {fmt::format("degrees of freedom: {}\n", count), "redundant constraints: none\n",
                  "conflicting constraints: none\n", "initial pose: consistent", "initial velocities: consistent"});
@@ -54,9 +57,10 @@ TEST_F(Check, ADerivativeThatIsNotFinite) {
                              "f": "t^1.5"})"));
   const Result result = poinsot({"check", "root.json"});
   EXPECT_EQ(result.status, 3);
-  EXPECT_EQ(result.err,
-            "poinsot: at t = 0 s constraint 'root': the second derivative of 't^1.5' is not finite; end the run before, "
-            "or change the function\n");
+  EXPECT_EQ(
+      result.err,
+      "poinsot: at t = 0 s constraint 'root': the second derivative of 't^1.5' is not finite; end the run before, "
+      "or change the function\n");
   expect_says(result, {"  rA: constraint 'root': gamma is off by "});
 }
 
