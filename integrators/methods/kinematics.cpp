@@ -25,6 +25,7 @@ constexpr double kTurn = 1;
 // root.
 constexpr double kSuspicious = 0x1p-10, kSingular = 1e-6;
 constexpr double kShortest = 0x1p-24;  // part of a step
+constexpr int kMostParts = 1000;
 
 // Numbers are those of the paper's equations.
 class Kinematics final : public FixedSteps {
@@ -132,7 +133,14 @@ class Kinematics final : public FixedSteps {
     bool examined = false;
     careful_ = true;
     Status status;
-    while (at < t) {
+    for (int parts = 0; at < t; ++parts) {
+      if (parts == kMostParts) {
+        status = {Failure::rotation_too_large, at,
+                  fmt::format("at t = {:.9g} s a step goes further than {} parts of it can follow; try a step of at "
+                              "most {:.2g} s",
+                              at, kMostParts, h)};
+        break;
+      }
       const double to = at + 1.01 * h >= t ? t : at + h;
       h = to - at;
       status = advance(at, to, std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), 1e-12)));
