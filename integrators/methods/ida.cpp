@@ -146,9 +146,9 @@ class Session {
         if (Status status = cross(std::min(turn.after, settings_.end)); !status.ok()) return status;
         t = at_.t;
         if (settings_.every > 0 && times.next() > t) continue;
-        times.pass();
         consistent_.stand(at_);
-        give_out();
+        give_out(settings_.every > 0 ? times.next() : t);
+        times.pass();
         continue;
       }
       if (IDASolve(ida_.get(), settings_.end, &t, y_.get(), y_dot_.get(), IDA_ONE_STEP) < 0) {
@@ -268,9 +268,10 @@ class Session {
     check(IDAReInit(ida_.get(), t, y_.get(), y_dot_.get()) == IDA_SUCCESS, "IDA starts anew");
   }
 
-  void give_out() {
+  void give_out() { give_out(at_.t); }
+  void give_out(double t) {
     clock_.lap(Phase::other);
-    sample(run_.observe, problem_, at_, statistics_);
+    sample(run_.observe, problem_, at_, statistics_, t);
     clock_.skip();
   }
 
