@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::string scene, out;
-  std::vector<std::string> trajectories;
+  std::vector<std::string> set, trajectories;
   SettingsOptions settings;
   bool quiet = false;
 };
@@ -79,7 +79,7 @@ int write_view(const Options& options) {
         fmt::format("--trajectory: found {}, expected at most {}", options.trajectories.size(), kMostTrajectories));
   if (const std::string given = options.settings.first_given(); !options.trajectories.empty() && !given.empty())
     throw InputError(fmt::format("{}: expected nothing, a trajectory that is given is not computed", given));
-  const Scene scene = read_scene(options.scene);
+  const Scene scene = read_scene(options.scene, values_set(options.set));
   const auto model = std::make_shared<const Model>(compile(scene));
   const NamedFile page{"--out", options.out};
   refuse_overwriting({{"the scene", options.scene}, {"the configuration", options.settings.config_file()}}, {page});
@@ -110,6 +110,7 @@ void add_view(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("view", "write a page that shows the motion in a browser");
   const auto options = std::make_shared<Options>();
   add_scene(*command, options->scene);
+  add_set(*command, options->set);
   command
       ->add_option("--trajectory", options->trajectories,
                    "show this motion, as `poinsot run --out` wrote it, instead of computing one; given twice, both are "

@@ -57,6 +57,14 @@ Json ellipsoid(const Body& body) {
   return {{"radii", json(radii)}, {"parameters", {p[0], p[1], p[2], p[3]}}};
 }
 
+Json json(const Shape& shape) {
+  Json points = Json::array();
+  for (const Vector3& point : shape.points) points.push_back(json(point));
+  return {
+      {"type", type_name(shape.type)}, {"at", json(shape.at)},     {"size", json(shape.size)}, {"radius", shape.radius},
+      {"length", shape.length},        {"axis", json(shape.axis)}, {"points", points}};
+}
+
 template <class Symbol>
 Json ends(const Symbol& symbol) {
   return {{"type", symbol.type}, {"name", symbol.name}, {"i", symbol.i}, {"j", symbol.j}};
@@ -104,6 +112,7 @@ Json bodies(const Model& model) {
     Json& one = all.emplace_back(Json{{"name", body.name}, {"mass", body.mass}, {"ellipsoid", ellipsoid(body)}});
     one["points"] = Json::array();
     for (const Vector3& point : points[b]) one["points"].push_back(json(point));
+    if (body.shape) one["shape"] = json(*body.shape);
   }
   return all;
 }
