@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kPoints = "an array of at least 2 points [x, y]";
 
-std::shared_ptr<const Table> read_table(const std::string& name, const JsonValue& item) {
+std::shared_ptr<const Spline> read_table(const std::string& name, const JsonValue& item) {
   item.keys("a table", {"points"});  // that of a file holds its points by now
   const JsonValue points = item.required("points");
   const std::size_t size = points.size(kPoints);
@@ -27,7 +27,7 @@ std::shared_ptr<const Table> read_table(const std::string& name, const JsonValue
     if (k > 0 && !(x[k] > x[k - 1]))
       first.fail(fmt::format("found {}, expected more than {}, the x before it", x[k], x[k - 1]));
   }
-  return std::make_shared<const Table>(name, std::move(x), y);
+  return std::make_shared<const Spline>(name, std::move(x), y);
 }
 
 template <class Entries>
@@ -82,7 +82,7 @@ void Definitions::resolve(const std::string& name, Entry<double>& entry) {
           [](const JsonValue& item) { return item.number("a number or a string holding a constant expression"); });
 }
 
-void Definitions::resolve(const std::string& name, Entry<std::shared_ptr<const Table>>& entry) {
+void Definitions::resolve(const std::string& name, Entry<std::shared_ptr<const Spline>>& entry) {
   resolve("tables", name, entry, [&](const JsonValue& item) { return read_table(name, item); });
 }
 
@@ -94,7 +94,7 @@ std::optional<double> Definitions::parameter(std::string_view name) {
   return found->second.value;
 }
 
-std::shared_ptr<const Table> Definitions::table(std::string_view name) {
+std::shared_ptr<const Spline> Definitions::table(std::string_view name) {
   const auto found = tables_.find(name);
   if (found == tables_.end()) return {};
   found->second.used = true;

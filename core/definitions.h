@@ -20,7 +20,7 @@ class Definitions final : public ExpressionNames {
   explicit Definitions(const JsonDocument& document);
 
   std::optional<double> parameter(std::string_view name) override;
-  std::shared_ptr<const Table> table(std::string_view name) override;
+  std::shared_ptr<const Spline> table(std::string_view name) override;
   std::string listed() const override;
 
   std::map<std::string, double> values() const;  // of all parameters
@@ -42,11 +42,11 @@ class Definitions final : public ExpressionNames {
   template <class Value, class Read>
   void resolve(const char* section, const std::string& name, Entry<Value>& entry, Read read);
   void resolve(const std::string& name, Entry<double>& entry);
-  void resolve(const std::string& name, Entry<std::shared_ptr<const Table>>& entry);
+  void resolve(const std::string& name, Entry<std::shared_ptr<const Spline>>& entry);
 
   JsonValue root_;
   Entries<double> parameters_;
-  Entries<std::shared_ptr<const Table>> tables_;
+  Entries<std::shared_ptr<const Spline>> tables_;
   std::vector<std::string> being_read_;  // outermost first
 };
 

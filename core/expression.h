@@ -32,7 +32,7 @@ class ExpressionNames {
  public:
   virtual ~ExpressionNames() = default;
   virtual std::optional<double> parameter(std::string_view name) = 0;
-  virtual std::shared_ptr<const Table> table(std::string_view name) = 0;  // null where there is none
+  virtual std::shared_ptr<const Spline> table(std::string_view name) = 0;  // null where there is none
   // ", the parameters l, w and the tables road": what there is, for messages.
   virtual std::string listed() const = 0;
 };
@@ -108,7 +108,7 @@ class Expression {
   struct Parsed {
     std::string text;
     std::vector<TapeInstruction> tape;  // empty for a constant
-    std::vector<std::shared_ptr<const Table>> tables;
+    std::vector<std::shared_ptr<const Spline>> tables;
     int switches = 0;
     bool with_rate = false;
   };

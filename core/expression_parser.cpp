@@ -171,7 +171,7 @@ class Parser {
       push({TapeOp::constant, *value});
       return true;
     }
-    std::shared_ptr<const Table> table = names_->table(name);
+    std::shared_ptr<const Spline> table = names_->table(name);
     if (!table) return false;
     expect('(');
     sum();

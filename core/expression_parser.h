@@ -16,7 +16,7 @@ enum class Variables { none, time, law };  // t; x, v and t
 
 struct ParsedTape {
   std::vector<TapeInstruction> tape;
-  std::vector<std::shared_ptr<const Table>> tables;  // those that the tape asks
+  std::vector<std::shared_ptr<const Spline>> tables;  // those that the tape asks
 };
 
 // Grammar and errors: core/expression.h.

@@ -74,7 +74,7 @@ Range power(Range x, Range y) {  // exp(y log x)
 }
 
 // Taylor's formula about the middle.
-Range of_table(const Table& table, Range x) {
+Range of_table(const Spline& table, Range x) {
   const double middle = x.least + (x.most - x.least) / 2, r = (x.most - x.least) / 2;
   const Jet2<double> f = table.at(Jet2<double>{middle, 1, 0});
   const double off = std::abs(f.fd) * r + table.largest_second_derivative() * r * r / 2;

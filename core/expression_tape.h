@@ -42,7 +42,7 @@ struct TapeInstruction {
   TapeOp op = TapeOp::constant;
   union {
     double value = 0;  // of a constant, or the constant exponent
-    const Table* table;
+    const Spline* table;
   };
 };
 
@@ -63,7 +63,7 @@ void tape_switches(std::span<const TapeInstruction> tape, const Arguments<double
 
 // A table asked for a value that it does not have.
 struct Uncovered {
-  const Table* table = nullptr;  // none where all arguments were covered
+  const Spline* table = nullptr;  // none where all arguments were covered
   double argument = 0;
 };
 Uncovered first_uncovered(std::span<const TapeInstruction> tape, const Arguments<double>& at);

@@ -28,7 +28,7 @@ std::vector<double> second_derivatives(const std::vector<double>& x, const std::
 
 }  // namespace
 
-Table::Table(std::string name, std::vector<double> x, const std::vector<double>& y)
+Spline::Spline(std::string name, std::vector<double> x, const std::vector<double>& y)
     : name_(std::move(name)), x_(std::move(x)) {
   check(x_.size() >= 2 && x_.size() == y.size(), "a table has two points or more");
   const std::vector<double> M = second_derivatives(x_, y);
@@ -41,14 +41,14 @@ Table::Table(std::string name, std::vector<double> x, const std::vector<double>&
   }
 }
 
-bool Table::covers(double x) const {
+bool Spline::covers(double x) const {
   constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
   const double slack = kRounding * std::max(std::abs(first()), std::abs(last()));
   return x >= first() - slack && x <= last() + slack;
 }
 
 template <class T>
-Jet2<T> Table::at(const Jet2<T>& x) const {
+Jet2<T> Spline::at(const Jet2<T>& x) const {
   constexpr T nan = std::numeric_limits<T>::quiet_NaN();
   if (!covers(static_cast<double>(x.f))) return {nan, nan, nan};
   const auto next = std::upper_bound(x_.begin() + 1, x_.end() - 1, x.f);
@@ -58,7 +58,7 @@ Jet2<T> Table::at(const Jet2<T>& x) const {
   return compose(x, ((d * u + c) * u + b) * u + a, (3 * d * u + 2 * c) * u + b, 6 * d * u + 2 * c);
 }
 
-template Jet2<double> Table::at(const Jet2<double>&) const;
-template Jet2<long double> Table::at(const Jet2<long double>&) const;
+template Jet2<double> Spline::at(const Jet2<double>&) const;
+template Jet2<long double> Spline::at(const Jet2<long double>&) const;
 
 }  // namespace poinsot

@@ -14,10 +14,10 @@
 
 namespace poinsot {
 
-class Table {
+class Spline {
  public:
   // At least two points, finite, x increasing.
-  Table(std::string name, std::vector<double> x, const std::vector<double>& y);
+  Spline(std::string name, std::vector<double> x, const std::vector<double>& y);
 
   const std::string& name() const { return name_; }
   double first() const { return x_.front(); }

@@ -17,13 +17,13 @@ using testing::ElementsAre;
 class Names : public ExpressionNames {
  public:
   std::map<std::string, double, std::less<>> parameters;
-  std::map<std::string, std::shared_ptr<const Table>, std::less<>> tables;
+  std::map<std::string, std::shared_ptr<const Spline>, std::less<>> tables;
 
   std::optional<double> parameter(std::string_view name) override {
     const auto found = parameters.find(name);
     return found == parameters.end() ? std::nullopt : std::optional(found->second);
   }
-  std::shared_ptr<const Table> table(std::string_view name) override {
+  std::shared_ptr<const Spline> table(std::string_view name) override {
     const auto found = tables.find(name);
     return found == tables.end() ? nullptr : found->second;
   }
@@ -33,8 +33,8 @@ class Names : public ExpressionNames {
 Names names() {
   Names names;
   names.parameters = {{"l", 1.5}, {"rate", -2}};
-  names.tables = {{"road", std::make_shared<const Table>("road", std::vector{0.0, 1.0, 2.0, 4.0},
-                                                         std::vector{0.0, 1.0, 0.5, -1.0})}};
+  names.tables = {{"road", std::make_shared<const Spline>("road", std::vector{0.0, 1.0, 2.0, 4.0},
+                                                          std::vector{0.0, 1.0, 0.5, -1.0})}};
   return names;
 }
 

@@ -10,7 +10,7 @@
 namespace poinsot {
 namespace {
 
-Jet2<double> at(const Table& table, double x) {
+Jet2<double> at(const Spline& table, double x) {
   return table.at(Jet2<double>{x, 1, 0});
 }
 
@@ -32,7 +32,7 @@ Points random_points(unsigned seed, std::size_t n) {
 TEST(Table, goes_through_its_points_with_two_continuous_derivatives) {
   for (const std::size_t n : {2u, 3u, 4u, 40u}) {
     const Points p = random_points(7, n);
-    const Table table("f", p.x, p.y);
+    const Spline table("f", p.x, p.y);
     for (std::size_t k = 0; k < n; ++k) EXPECT_NEAR(at(table, p.x[k]).f, p.y[k], 1e-14) << n << " " << k;
     for (std::size_t k = 1; k + 1 < n; ++k) {
       const Jet2<double> left = at(table, std::nextafter(p.x[k], -9)), right = at(table, p.x[k]);
@@ -46,7 +46,7 @@ TEST(Table, goes_through_its_points_with_two_continuous_derivatives) {
 }
 
 TEST(Table, is_the_line_through_points_on_a_line) {
-  const Table table("line", {0, 0.5, 2, 7}, {1, 2, 5, 15});
+  const Spline table("line", {0, 0.5, 2, 7}, {1, 2, 5, 15});
   for (const double x : {0.0, 0.3, 1.1, 6.9, 7.0}) {
     EXPECT_NEAR(at(table, x).f, 1 + 2 * x, 4e-15 * (1 + 2 * x));
     EXPECT_NEAR(at(table, x).fd, 2, 1e-14);
@@ -59,7 +59,7 @@ TEST(Table, approximates_to_fourth_order) {
   const auto error = [](int n) {
     std::vector<double> x, y;
     for (int k = 0; k <= n; ++k) x.push_back(10.0 * k / n), y.push_back(std::sin(x.back() + 0.3));
-    const Table table("sin", x, y);
+    const Spline table("sin", x, y);
     double largest = 0;
     for (double at_x = 4; at_x < 6; at_x += 0.013)
       largest = std::max(largest, std::abs(at(table, at_x).f - std::sin(at_x + 0.3)));
@@ -72,7 +72,7 @@ TEST(Table, approximates_to_fourth_order) {
 
 TEST(Table, has_derivatives_of_its_argument_by_the_chain_rule) {
   const Points p = random_points(9, 12);
-  const Table table("f", p.x, p.y);
+  const Spline table("f", p.x, p.y);
   constexpr long double h = 1e-4L;
   const auto along = [&](long double t) {  // x(t) = t² - 1
     return table.at(Jet2<long double>{t * t - 1, 2 * t, 2}).f;
@@ -86,7 +86,7 @@ TEST(Table, has_derivatives_of_its_argument_by_the_chain_rule) {
 }
 
 TEST(Table, has_no_value_beyond_its_points) {
-  const Table table("f", {0, 1, 2}, {0, 1, 0});
+  const Spline table("f", {0, 1, 2}, {0, 1, 0});
   EXPECT_TRUE(std::isnan(at(table, 2.001).f));
   EXPECT_TRUE(std::isnan(at(table, -1e-9).f));
   EXPECT_TRUE(std::isnan(at(table, std::numeric_limits<double>::quiet_NaN()).f));
