@@ -145,7 +145,7 @@ Json listed(const Options& options, std::span<const Candidate> candidates) {
                     {c.one.parameter(), c.one.value()},
                     {"seconds", c.measured.seconds},
                     {"error", named(c.measured.error)},
-                    {"command", command_line(options.scene, c.one)}});
+                    {"command", command_line(options, c.one)}});
   }
   return list;
 }

@@ -22,7 +22,7 @@ RunFiles::RunFiles(const Names& names, const Scene& scene, const TrajectoryConte
   if (!record_name_.empty()) record_.emplace(record_name_);
 }
 
-ColumnsByOption RunFiles::unnamed_columns() const {
+ColumnsByOption RunFiles::unnamed_columns() {
   ColumnsByOption columns;
   if (trajectory_ && is_npy(trajectory_->file().target())) columns.emplace_back("--out", trajectory_->columns());
   if (signals_ && is_npy(signals_->file().target())) columns.emplace_back("--signals", signals_->columns());

@@ -32,7 +32,7 @@ class RunFiles {
            std::function<std::string()> running);
 
   bool any() const { return trajectory_ || reactions_ || signals_; }  // that grow with the run
-  ColumnsByOption unnamed_columns() const;
+  ColumnsByOption unnamed_columns();
 
   void write(const Sample& sample);
   void flush();
