@@ -36,6 +36,7 @@ constexpr IntegratorEntry kIntegrators[] = {
      true,
      false,
      {},
+     {},
      true},
     {"implicit_euler",
      "the paper's: index 3, first order, fixed step; any formulation, any linear solver",
