@@ -73,6 +73,7 @@ TEST(LargeRotations, are_measured_and_warned_of_where_the_pair_is_wrong) {
 
 TEST(LargeRotations, what_is_lost_at_the_default_step_is_said) {
   Settings s;
+  s.integrator = "implicit_euler";
   s.formulation = "rp";
   const Scene scene = spinning(100);
   const Recorded r = run(scene, s);
