@@ -183,7 +183,8 @@ TEST(Branches, a_platform_driven_through_its_flat_pose_stops) {
 
 TEST(Branches, drivers_that_ask_for_the_pose_half_a_turn_off_or_a_negative_length_are_refused) {
   Scene sled;
-  sled.bodies.push_back({"sled", 1, Matrix3::Identity(), {1, 0, 0}});
+  Body& body = sled.bodies.emplace_back();
+  body.name = "sled", body.mass = 1, body.inertia.setIdentity(), body.position = {1, 0, 0};
   Joint guide;
   guide.type = JointType::translational, guide.i = kGround, guide.j = 0, guide.axis = {1, 0, 0};
   sled.joints.push_back(guide);

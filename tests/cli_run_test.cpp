@@ -24,8 +24,7 @@ TEST_F(Run, PrintsASummaryWithoutAnOutputFile) {
   EXPECT_EQ(result.err, "");
   for (const char* part :
        {"pendulum: dynamics, rA, auto, auto, rtol = 1e-08", "t = 0.1 s", "rod", "dop853: t = 0 to 0.1 s in ",
-        "block on the whole matrix: ", "assembly", "largest violation",
-        "\naccuracy: "})
+        "block on the whole matrix: ", "assembly", "largest violation", "\naccuracy: "})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
   EXPECT_EQ(result.out.find("h ="), std::string::npos) << "there is none";
   const Result fixed = poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "0.1"});

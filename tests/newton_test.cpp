@@ -108,10 +108,10 @@ Scene drawn_too_far() {
 TEST_P(Newton, StopsWhereTheMechanismLocks) {
   for (const Settings& settings : {kinematics_with(4e-3, 1), dynamics_with(4e-3, 1)}) {
     const Recorded r = run(drawn_too_far(), settings);
-    EXPECT_THAT(r.outcome.status.failure, AnyOf(Failure::not_converged, Failure::singular_matrix));
-    EXPECT_THAT(r.outcome.status.message,
-                AnyOf(HasSubstr("the driver ask for more than it can reach"), HasSubstr("did not converge"),
-                      HasSubstr("singular position of the mechanism")));
+    EXPECT_THAT(r.outcome.status.failure,
+                AnyOf(Failure::not_converged, Failure::singular_matrix, Failure::singular_position));
+    EXPECT_THAT(r.outcome.status.message, AnyOf(HasSubstr("the driver ask for more than it can reach"),
+                                                HasSubstr("did not converge"), HasSubstr("singular position")));
     EXPECT_GT(r.outcome.status.time, 0.47);  // the pendulum speeds up without bound, so steps fail a little before
     EXPECT_LT(r.outcome.status.time, 0.505);
     expect_kept(r, r.outcome.status.time, 4e-3);
@@ -119,7 +119,7 @@ TEST_P(Newton, StopsWhereTheMechanismLocks) {
 }
 
 // A parallelogram driven so that a step ends exactly where its links lie flat and the rocker may go either way. The
-// positions there can still be found by a matrix from before; then the next step fails.
+// position there can still be found; from it nothing tells where to go on.
 Scene flattened() {
   Scene scene;
   const Vector3 link(std::cos(1.0), std::sin(1.0), 0), along(2, 0, 0);
@@ -154,10 +154,14 @@ Scene flattened() {
 
 TEST_P(Newton, StopsAtABifurcation) {
   const Recorded r = run(flattened(), kinematics_with(0.05, 2));
-  EXPECT_THAT(r.outcome.status.failure, AnyOf(Failure::not_converged, Failure::singular_matrix));
+  EXPECT_THAT(r.outcome.status.failure,
+              AnyOf(Failure::not_converged, Failure::singular_matrix, Failure::singular_position));
   EXPECT_GT(r.outcome.status.time, 0.999);
   EXPECT_LT(r.outcome.status.time, 1.051);
-  expect_kept(r, r.outcome.status.time, 0.05);
+  ASSERT_FALSE(r.samples.empty());
+  EXPECT_THAT(r.samples.back().t, AnyOf(testing::DoubleNear(0.95, 1e-9), testing::DoubleNear(1, 1e-9)));
+  for (const Snapshot& sample : r.samples)
+    for (const std::size_t link : {0u, 1u}) EXPECT_NEAR(sample.bodies[link].w.norm(), 1, 1e-6) << sample.t;
 }
 
 TEST_P(Newton, NamesABodyWithoutInertia) {
@@ -179,7 +183,7 @@ TEST_P(Newton, StopsWhereAForceIsNotFinite) {
   scene.forces = {force};
   const Recorded r = run(scene, dynamics_with(0.01, 1));
   EXPECT_EQ(r.outcome.status.failure, Failure::not_finite);
-  EXPECT_THAT(r.outcome.status.message, MatchesRegex("at t = 0.5 s .* not finite; try a smaller step"));
+  EXPECT_THAT(r.outcome.status.message, MatchesRegex("at t = 0.5 s force .wild.*1/\\(t - 0.5\\).* is not finite; .*"));
   expect_kept(r, 0.5, 0.01);
 }
 
@@ -189,8 +193,9 @@ TEST_P(Newton, StopsWhereADriverIsNotFinite) {
   for (const Settings& settings : {kinematics_with(0.01, 1), dynamics_with(0.01, 1)}) {
     const Recorded r = run(scene, settings);
     EXPECT_EQ(r.outcome.status.failure, Failure::not_finite) << r.outcome.status.message;
-    EXPECT_THAT(r.outcome.status.message, MatchesRegex("at t = 0.51 s .* not finite.*"));
-    expect_kept(r, 0.51, 0.01);
+    EXPECT_THAT(r.outcome.status.message,
+                MatchesRegex("at t = 0.5[01].* s driver .*sqrt\\(0.505 - t\\).* is not finite.*"));
+    EXPECT_NEAR(r.samples.back().t, 0.5, 1e-9);
   }
 }
 
@@ -215,10 +220,11 @@ TEST_P(Newton, StepsAllocateNothing) {
           return sum;
         };
         std::int64_t steps = 0, fresh = 0, pivots = 0, allocated = 0;
-        const Observer observe = [&](const Sample&) {
+        const Observer observe = [&](const Sample& sample) {
           const std::int64_t now = allocations();
           const bool kept = std::string_view(name) == "dense" || fresh_pivots() == pivots;
-          if (++steps > 2) {  // the start, and the first step
+          // But the start, the first step, and the end, where the error of the accelerations is estimated once.
+          if (++steps > 2 && sample.t < settings.end) {
             EXPECT_TRUE(!kept || now == allocated)
                 << now - allocated << " in " << model << ' ' << name << ", step " << steps - 1;
             fresh += !kept;

@@ -110,9 +110,14 @@ TEST(SpringLaw, runs_end_where_a_function_does) {
       settings.end = 2;
       settings.every = 0;
       const Recorded run = test::run(scene, settings);
+      for (const Snapshot& sample : run.samples) EXPECT_TRUE(sample.bodies[0].r.allFinite());
+      if (run.outcome.status.failure == Failure::step_size_too_small) {  // before the pole, which grows without bound
+        EXPECT_STREQ(fault.what, "a pole");
+        EXPECT_NEAR(run.outcome.status.time, 0.5, 1e-9);
+        continue;
+      }
       EXPECT_EQ(run.outcome.status.failure, Failure::not_finite) << fault.what << " " << integrator;
       EXPECT_THAT(run.outcome.status.message, testing::MatchesRegex(fault.message)) << fault.what << " " << integrator;
-      for (const Snapshot& sample : run.samples) EXPECT_TRUE(sample.bodies[0].r.allFinite());
     }
   }
 }

@@ -65,8 +65,8 @@ class Kinematics final : public FixedSteps {
 
   Status step(double t) override {
     q_from_ = q_n_, v_from_ = v_n_;
-    if (advance(x_.t, t, settings_.tolerance).ok() && certain(t - x_.t, t)) return {};
-    return follow(t);
+    const Status status = advance(x_.t, t, settings_.tolerance);
+    return status.ok() && certain(t - x_.t, t) ? status : follow(t, status);
   }
 
   // Coordinates or rows are others: so is what the determinant's sign is compared with.
@@ -126,8 +126,8 @@ class Kinematics final : public FixedSteps {
     return before;
   }
 
-  // The step to t in as many shorter ones as it takes to be certain of each.
-  Status follow(double t) {
+  // The step to t, which as one ended as it did, in as many shorter ones as it takes to be certain of each.
+  Status follow(double t, const Status& as_one) {
     const double whole = t - x_.t;
     double at = x_.t, h = 0.5 * whole;
     bool examined = false;
@@ -135,6 +135,8 @@ class Kinematics final : public FixedSteps {
     Status status;
     for (int parts = 0; at < t; ++parts) {
       if (parts == kMostParts) {
+        status = as_one;
+        if (!status.ok()) break;
         status = {Failure::rotation_too_large, at,
                   fmt::format("at t = {:.9g} s a step goes further than {} parts of it can follow; try a step of at "
                               "most {:.2g} s",
@@ -161,6 +163,7 @@ class Kinematics final : public FixedSteps {
       }
     }
     careful_ = false;
+    if (status.failure == Failure::not_finite) problem_.set_position(status.time, span(q_from_));  // where to look why
     return status;
   }
 
