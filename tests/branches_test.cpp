@@ -205,7 +205,8 @@ TEST(Branches, drivers_that_ask_for_the_pose_half_a_turn_off_or_a_negative_lengt
         Settings settings = kinematics(formulation, 0.01, 0.02);
         settings.analysis = integrator.analysis, settings.integrator = integrator.name;
         if (refusal_of(integrator, formulation)) continue;
-        EXPECT_EQ(run(scene, settings).outcome.status.failure, Failure::inconsistent_state)
+        EXPECT_THAT(run(scene, settings).outcome.status.failure,
+                    testing::AnyOf(Failure::inconsistent_state, Failure::not_finite))
             << formulation << ' ' << integrator.name;
       }
 }

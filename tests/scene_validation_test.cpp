@@ -233,7 +233,7 @@ const std::vector<Case>& cases() {
        "/forces/1/name: found \"motor\", the name of /forces/0 already, expected a name of its own", "/forces/0/name",
        "motor"},
       {[](Scene& s) { s.joints[0].name = "\x7f"; },
-       "/joints/0/name: found \"\x7f\", expected a name without control characters", "/joints/0/name", "\x7f"},
+       "/joints/0/name: found \"\\u007f\", expected a name without control characters", "/joints/0/name", "\x7f"},
   };
   return cases;
 }
