@@ -92,6 +92,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
       }
     }
     const bool crosses = to == turn.before;
+    if (!(to > t) && !crosses) return step_too_small(t, h, {});  // the time itself is too coarse for it
     if (Status status = crosses ? method.cross(std::min(turn.after, end)) : method.settle(); !status.ok()) {
       return status;
     }
