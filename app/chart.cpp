@@ -17,17 +17,25 @@
 #include "bench/study/startable_scene.h"
 #include "core/input_error.h"
 #include "core/json_document.h"
+#include "integrators/integrator.h"
 
 namespace poinsot::app {
 using namespace study;
 namespace {
 namespace fs = std::filesystem;
 
+// By default: all of dynamics, each by its own name.
+std::string compared_integrators() {
+  std::vector<std::string_view> names;
+  for (const IntegratorEntry& entry : integrators())
+    if (entry.analysis == Analysis::dynamics && !entry.picks) names.push_back(entry.name);
+  return fmt::format("{}", fmt::join(names, ","));
+}
+
 struct Options {
   std::vector<std::string> scenes, set;
   std::string out = "results", end, models, cache = user_cache().string();
-  std::string formulations = all_names("formulation"),
-              integrators = fmt::format("{}", fmt::join(SweepPlan::full().integrators, ",")),
+  std::string formulations = all_names("formulation"), integrators = compared_integrators(),
               linear_solvers = kUsualSolver;
   bool all = false, quick = false, fresh = false, quiet = false;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/input_error.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -205,9 +206,13 @@ TEST(Branches, drivers_that_ask_for_the_pose_half_a_turn_off_or_a_negative_lengt
         Settings settings = kinematics(formulation, 0.01, 0.02);
         settings.analysis = integrator.analysis, settings.integrator = integrator.name;
         if (refusal_of(integrator, formulation)) continue;
-        EXPECT_THAT(run(scene, settings).outcome.status.failure,
-                    testing::AnyOf(Failure::inconsistent_state, Failure::not_finite))
-            << formulation << ' ' << integrator.name;
+        try {
+          EXPECT_THAT(run(scene, settings).outcome.status.failure,
+                      testing::AnyOf(Failure::inconsistent_state, Failure::not_finite))
+              << formulation << ' ' << integrator.name;
+        } catch (const InputError& error) {
+          EXPECT_THAT(error.what(), testing::HasSubstr("asks for an angle of 3.14159 rad at t = 0"));
+        }
       }
 }
 

@@ -57,10 +57,10 @@ TEST_F(Check, ADerivativeThatIsNotFinite) {
                              "f": "t^1.5"})"));
   const Result result = poinsot({"check", "root.json"});
   EXPECT_EQ(result.status, 3);
-  EXPECT_EQ(
-      result.err,
-      "poinsot: at t = 0 s constraint 'root': the second derivative of 't^1.5' is not finite; end the run before, "
-      "or change the function\n");
+  EXPECT_EQ(result.err,
+            "poinsot: root.json: at t = 0 s constraint 'root': the second derivative of 't^1.5' is not finite; end the "
+            "run before, "
+            "or change the function\n");
   expect_says(result, {"  rA: constraint 'root': gamma is off by "});
 }
 

@@ -79,7 +79,7 @@ TEST_F(CliResults, AnNpyHoldsTheNumbersOfTheCsv) {
     EXPECT_EQ(x, std::stod(field));
   }
   std::string names;
-  const nlohmann::json record = read_json("x.json");
+  const nlohmann::json record = read_json("x.run.json");
   for (const auto& name : record["columns"]["--out"]) names += (names.empty() ? "" : ",") + name.get<std::string>();
   EXPECT_EQ(names, header);
 }

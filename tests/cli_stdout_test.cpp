@@ -52,9 +52,14 @@ TEST_F(Stdout, IsWrittenAfterWhatItHolds) {
   expect(0, "( echo head; poinsot make chain --bodies 2; echo foot ) > out/f",
          "head -n 1 out/f | grep -qx head && tail -n 1 out/f | grep -qx foot && test $(wc -l < out/f) -gt 10");
   for (const char* name : {"-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"}) {
-    expect(0, fmt::format("( echo head; poinsot run pendulum.json --end 0.01 --out {}; echo foot ) > out/x.csv", name),
+    expect(0,
+           fmt::format("( echo head; poinsot run pendulum.json --integrator implicit_euler --end 0.01 --out {}; echo "
+                       "foot ) > out/x.csv",
+                       name),
            "test $(wc -l < out/x.csv) = 14 && test $(ls out | wc -l) = 1");
-    expect(0, fmt::format("poinsot run pendulum.json --end 0.01 --out {} | cat > out/x.csv", name),
+    expect(0,
+           fmt::format("poinsot run pendulum.json --integrator implicit_euler --end 0.01 --out {} | cat > out/x.csv",
+                       name),
            "test $(wc -l < out/x.csv) = 12");
   }
   expect(0, "ln -s /dev/stdout out/link; poinsot make chain --bodies 2 --out out/link > out/f",
@@ -62,9 +67,10 @@ TEST_F(Stdout, IsWrittenAfterWhatItHolds) {
 }
 
 TEST_F(Stdout, IsTheNameOfADash) {
-  expect(0, "cat pendulum.json | poinsot run - --end 0.01 --out - > out/x.csv", "test $(wc -l < out/x.csv) = 12");
+  expect(0, "cat pendulum.json | poinsot run - --integrator implicit_euler --end 0.01 --out - > out/x.csv",
+         "test $(wc -l < out/x.csv) = 12");
   for (const char* command :
-       {"check -", "run - --end 0.01", "reference - --end 0.1 --digits 4 --cache c --out -",
+       {"check -", "run - --integrator implicit_euler --end 0.01", "reference - --end 0.1 --digits 4 --cache c --out -",
         "advise - --end 0.1 --accuracy 1e-3 --cache c",
         "chart - --quick --end 0.1 --integrators implicit_euler --formulations rA --cache c --out d --quiet"}) {
     EXPECT_EQ(shell(fmt::format("poinsot < pendulum.json > said {}", command)), 0) << read(".said.shell");
@@ -73,19 +79,19 @@ TEST_F(Stdout, IsTheNameOfADash) {
   expect(0, "true", "test $(ls | grep -c '^-') = 0");
   expect(2, "echo '{' | poinsot run -");
   EXPECT_TRUE(read(".said.shell").starts_with("poinsot: standard input: line ")) << read(".said.shell");
-  expect(2, "poinsot run pendulum.json --out - --reactions /dev/stdout");
+  expect(2, "poinsot run pendulum.json --integrator implicit_euler --out - --reactions /dev/stdout");
 }
 
 TEST_F(Stdout, ThatIsClosedOrFullIsNoSuccess) {
   expect(3, "poinsot list > /dev/full");
   EXPECT_EQ(read(".said.shell"), "poinsot: standard output: cannot be written: No space left on device\n");
-  expect(3, "poinsot run pendulum.json --end 0.01 > /dev/full");
-  expect(3, "poinsot run pendulum.json --end 0.01 --out - > /dev/full");
+  expect(3, "poinsot run pendulum.json --integrator implicit_euler --end 0.01 > /dev/full");
+  expect(3, "poinsot run pendulum.json --integrator implicit_euler --end 0.01 --out - > /dev/full");
   expect(3, "poinsot make chain > /dev/full");
   expect(3, "poinsot --help > /dev/full");
   expect(3, "poinsot make chain --bodies 2 >&-", "test -c /dev/full && test -L /dev/stdout");
   expect(3, "poinsot list >&-");
-  expect(0, "poinsot run pendulum.json --end 0.01 --out out/x.csv --quiet <&- >&- 2>&-",
+  expect(0, "poinsot run pendulum.json --integrator implicit_euler --end 0.01 --out out/x.csv --quiet <&- >&- 2>&-",
          "test $(wc -l < out/x.csv) = 12 && test -s out/x.run.json");
   expect(2, "poinsot run none.json 2>&-");
   expect(2, "poinsot run none.json 2> /dev/full");
@@ -93,9 +99,11 @@ TEST_F(Stdout, ThatIsClosedOrFullIsNoSuccess) {
 }
 
 TEST_F(Stdout, DevicesPipesAndSocketsStayWhatTheyAre) {
-  expect(0, "poinsot run pendulum.json --end 0.01 --out /dev/null --reactions /dev/null",
+  expect(0, "poinsot run pendulum.json --integrator implicit_euler --end 0.01 --out /dev/null --reactions /dev/null",
          "test -c /dev/null && test ! -e /dev/null.run.json && test ! -e /dev/null.json");
-  expect(0, "mkfifo out/pipe; cat out/pipe > out/x.csv & poinsot run pendulum.json --end 0.01 --out out/pipe && wait",
+  expect(0,
+         "mkfifo out/pipe; cat out/pipe > out/x.csv & poinsot run pendulum.json --integrator implicit_euler --end 0.01 "
+         "--out out/pipe && wait",
          "test -p out/pipe && test $(wc -l < out/x.csv) = 12 && test $(ls out | wc -l) = 2");
 
   const std::string name = (folder() / "socket").string();
@@ -119,23 +127,25 @@ TEST_F(Stdout, DevicesPipesAndSocketsStayWhatTheyAre) {
 }
 
 TEST_F(Stdout, MissingFoldersAreMadeAndWrongInputLeavesNone) {
-  expect(0, "poinsot run pendulum.json --end 0.01 --out out/a/b/x.csv --reactions out/c/r.csv",
+  expect(0,
+         "poinsot run pendulum.json --integrator implicit_euler --end 0.01 --out out/a/b/x.csv --reactions out/c/r.csv",
          "test -s out/a/b/x.run.json && test -s out/c/r.csv");
   expect(0, "poinsot make chain --out out/a/b/s.json", "test -s out/a/b/s.json");
   expect(0, "poinsot reference pendulum.json --end 0.1 --digits 4 --cache out/k --out out/a/m.csv --quiet",
          "test -s out/a/m.run.json");
-  expect(2, "poinsot run pendulum.json --analysis kinematics --out out/a/b/x.csv", "test -z \"$(ls out)\"");
+  expect(2, "poinsot run pendulum.json --integrator implicit_euler --analysis kinematics --out out/a/b/x.csv",
+         "test -z \"$(ls out)\"");
 }
 
 TEST_F(Stdout, NamesThatLeadNowhereAreWrongInput) {
   const std::string nothing = "test $(ls out | wc -l) -le 1";
   expect(2, "ln -s loop out/loop; poinsot run out/loop", nothing);
-  expect(2, "ln -s loop out/loop; poinsot run pendulum.json --out out/loop", nothing);
-  expect(2, "poinsot run pendulum.json --out out/$(printf 'a%.0s' {1..300}).csv", nothing);
+  expect(2, "ln -s loop out/loop; poinsot run pendulum.json --integrator implicit_euler --out out/loop", nothing);
+  expect(2, "poinsot run pendulum.json --integrator implicit_euler --out out/$(printf 'a%.0s' {1..300}).csv", nothing);
   expect(2, "poinsot check out/$(printf 'a%.0s' {1..300})/b.json", nothing);
   expect(2, "poinsot tables --out out/$(printf 'a%.0s' {1..300})", nothing);
   expect(2, "poinsot tables --models out/$(printf 'a%.0s' {1..300})", nothing);
-  expect(2, "poinsot run pendulum.json --out pendulum.json/x.csv", nothing);
+  expect(2, "poinsot run pendulum.json --integrator implicit_euler --out pendulum.json/x.csv", nothing);
 }
 
 TEST_F(Stdout, WhatIsNoCacheIsNotWaitedFor) {

@@ -26,7 +26,8 @@ class View : public CommandLine {
 };
 
 TEST_F(View, OneFileWithTheMotion) {
-  const Result result = poinsot({"view", "scene.json", "--end", "0.1", "--step", "0.01", "--out", "a.html"});
+  const Result result = poinsot(
+      {"view", "scene.json", "--integrator", "implicit_euler", "--end", "0.1", "--step", "0.01", "--out", "a.html"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(files(), (std::vector<std::string>{"a.html", "scene.json"}));
   const nlohmann::json page = data("a.html");
@@ -39,7 +40,10 @@ TEST_F(View, OneFileWithTheMotion) {
 TEST_F(View, ATrajectoryIsShownAsItIs) {
   ASSERT_EQ(poinsot({"run", "scene.json", "--end", "0.1", "--step", "0.01", "--out", "a.csv"}).status, 0);
   ASSERT_EQ(poinsot({"view", "scene.json", "--trajectory", "a.csv", "--out", "read.html"}).status, 0);
-  ASSERT_EQ(poinsot({"view", "scene.json", "--end", "0.1", "--step", "0.01", "--out", "run.html"}).status, 0);
+  ASSERT_EQ(poinsot({"view", "scene.json", "--integrator", "implicit_euler", "--end", "0.1", "--step", "0.01", "--out",
+                     "run.html"})
+                .status,
+            0);
   nlohmann::json read = data("read.html")["motions"][0], run = data("run.html")["motions"][0];
   EXPECT_EQ(read["label"], "a.csv");
   EXPECT_EQ(run["label"], "rA, implicit_euler, h = 0.01 s");
@@ -59,7 +63,10 @@ TEST_F(View, TwoMotionsAreCompared) {
 
 TEST_F(View, TenBodiesAndAThousandFramesAreBelowOneAndAHalfMegabytes) {
   ASSERT_EQ(poinsot({"make", "chain", "--bodies", "10", "--out", "chain.json"}).status, 0);
-  ASSERT_EQ(poinsot({"view", "chain.json", "--end", "1", "--step", "0.001", "--out", "a.html", "--quiet"}).status, 0);
+  ASSERT_EQ(poinsot({"view", "chain.json", "--integrator", "implicit_euler", "--end", "1", "--step", "0.001", "--out",
+                     "a.html", "--quiet"})
+                .status,
+            0);
   EXPECT_EQ(data("a.html")["bodies"].size(), 10u);
   EXPECT_LT(read("a.html").size(), 1500000u);
 }
@@ -67,10 +74,12 @@ TEST_F(View, TenBodiesAndAThousandFramesAreBelowOneAndAHalfMegabytes) {
 TEST_F(View, NoNameEndsTheScript) {
   write("evil.json", R"({"scene": 1, "name": "</script><script>x()</script>", "bodies": [
     {"name": "<!--<script>\u2028'\"&", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]}]})");
-  ASSERT_EQ(poinsot({"view", "evil.json", "--end", "0.01", "--out", "a.html"}).status, 0);
+  ASSERT_EQ(poinsot({"view", "evil.json", "--integrator", "implicit_euler", "--end", "0.01", "--out", "a.html"}).status,
+            0);
   EXPECT_EQ(data("a.html")["name"], "</script><script>x()</script>");
   EXPECT_EQ(data("a.html")["bodies"][0]["name"], "<!--<script>\u2028'\"&");
-  ASSERT_EQ(poinsot({"view", "scene.json", "--end", "0.01", "--out", "b.html"}).status, 0);
+  ASSERT_EQ(
+      poinsot({"view", "scene.json", "--integrator", "implicit_euler", "--end", "0.01", "--out", "b.html"}).status, 0);
   const auto scripts = [&](const std::string& page) {
     std::size_t count = 0;
     const std::string text = read(page);
@@ -83,7 +92,8 @@ TEST_F(View, NoNameEndsTheScript) {
 
 TEST_F(View, AFailedRunIsShownAsFarAsItCame) {
   write("over.json", kOverstretched);
-  const Result result = poinsot({"view", "over.json", "--end", "2", "--step", "0.01", "--out", "a.html"});
+  const Result result = poinsot(
+      {"view", "over.json", "--integrator", "implicit_euler", "--end", "2", "--step", "0.01", "--out", "a.html"});
   EXPECT_EQ(result.status, 3);
   EXPECT_NE(data("a.html")["motions"][0]["message"], "");
 }

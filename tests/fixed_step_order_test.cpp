@@ -54,8 +54,8 @@ TEST_P(FixedStep, OrderIsTheTheoreticalOneInEveryQuantity) {
       for (std::size_t k = 0; k < kQuantities.size(); ++k) {
         if (exact(found.errors[k])) continue;
         ++seen[method.name][k];
-        // What is given out at index 1 converges faster at first: 2.11 of generalized-alpha's accelerations.
-        EXPECT_TRUE(converges(found.steps, found.errors[k], method.order, 0.12))
+        // Accelerations given out at index 1 converge faster at first: generalized-alpha's by up to h^2.28.
+        EXPECT_TRUE(converges(found.steps, found.errors[k], method.order, k == 2 ? 0.3 : 0.1))
             << c.name << ", " << method.name << ", " << kQuantities[k];
       }
     }

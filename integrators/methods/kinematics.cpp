@@ -159,6 +159,7 @@ class Kinematics final : public FixedSteps {
         const DependentRow found =
             most_dependent_row(problem_, static_cast<int>(problem_.model_rows().size()), at, span(q_from_));
         if (found.share < kSingular || (ends && status.ok())) status = branching(at, found.row);
+        if (status.failure == Failure::not_converged && !as_one.ok()) status = as_one;
         if (ends || found.share < kSingular) break;
       }
     }

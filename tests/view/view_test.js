@@ -204,7 +204,7 @@ async function keys(looker) {
 }
 
 async function two(looker) {
-  poinsot("run", join(source, "models/double_pendulum_joints.json"), "--end", "1", "--step", "0.01", "--out", "euler.csv", "--quiet");
+  poinsot("run", join(source, "models/double_pendulum_joints.json"), "--end", "1", "--step", "0.01", "--integrator", "implicit_euler", "--out", "euler.csv", "--quiet");
   poinsot("run", join(source, "models/double_pendulum_joints.json"), "--end", "0.8", "--step", "0.01", "--integrator", "rattle", "--out", "rattle.csv", "--quiet");
   poinsot("view", join(source, "models/double_pendulum_joints.json"), "--trajectory", "euler.csv", "--trajectory", "rattle.csv", "--out", "two.html");
   const distance = (a, b, name) => Math.hypot(...["x", "y", "z"].map((c) => a[`${name}.${c}`] - b[`${name}.${c}`]));
