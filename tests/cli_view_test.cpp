@@ -38,7 +38,10 @@ TEST_F(View, OneFileWithTheMotion) {
 }
 
 TEST_F(View, ATrajectoryIsShownAsItIs) {
-  ASSERT_EQ(poinsot({"run", "scene.json", "--end", "0.1", "--step", "0.01", "--out", "a.csv"}).status, 0);
+  ASSERT_EQ(poinsot({"run", "scene.json", "--integrator", "implicit_euler", "--end", "0.1", "--step", "0.01", "--out",
+                     "a.csv"})
+                .status,
+            0);
   ASSERT_EQ(poinsot({"view", "scene.json", "--trajectory", "a.csv", "--out", "read.html"}).status, 0);
   ASSERT_EQ(poinsot({"view", "scene.json", "--integrator", "implicit_euler", "--end", "0.1", "--step", "0.01", "--out",
                      "run.html"})
@@ -52,8 +55,14 @@ TEST_F(View, ATrajectoryIsShownAsItIs) {
 }
 
 TEST_F(View, TwoMotionsAreCompared) {
-  ASSERT_EQ(poinsot({"run", "scene.json", "--end", "0.1", "--step", "0.01", "--out", "a.csv"}).status, 0);
-  ASSERT_EQ(poinsot({"run", "scene.json", "--end", "0.05", "--step", "0.01", "--out", "b.csv"}).status, 0);
+  ASSERT_EQ(poinsot({"run", "scene.json", "--integrator", "implicit_euler", "--end", "0.1", "--step", "0.01", "--out",
+                     "a.csv"})
+                .status,
+            0);
+  ASSERT_EQ(poinsot({"run", "scene.json", "--integrator", "implicit_euler", "--end", "0.05", "--step", "0.01", "--out",
+                     "b.csv"})
+                .status,
+            0);
   ASSERT_EQ(poinsot({"view", "scene.json", "--trajectory", "a.csv", "--trajectory", "b.csv", "--out", "c.html"}).status,
             0);
   const nlohmann::json page = data("c.html");
@@ -99,7 +108,10 @@ TEST_F(View, AFailedRunIsShownAsFarAsItCame) {
 }
 
 TEST_F(View, WrongInputWritesNothing) {
-  ASSERT_EQ(poinsot({"run", "scene.json", "--end", "0.02", "--step", "0.01", "--out", "a.csv"}).status, 0);
+  ASSERT_EQ(poinsot({"run", "scene.json", "--integrator", "implicit_euler", "--end", "0.02", "--step", "0.01", "--out",
+                     "a.csv"})
+                .status,
+            0);
   write("none.csv", "t\n");
   write("number.csv", lines(read("a.csv"))[0] + "\n0,x\n");
   write("other.json", R"({"scene": 1, "name": "other", "bodies": [
