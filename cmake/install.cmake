@@ -24,8 +24,7 @@ function(poinsot_add_library name)
   add_library(${library} ${ARGN})
   add_library(poinsot::${name} ALIAS ${library})
   target_link_libraries(${library} PRIVATE fmt::fmt $<BUILD_INTERFACE:poinsot_warnings>)
-  # GCC 12 sees overlapping copies in string concatenation where there are none (its bug 105651).
-  target_compile_options(${library} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+  target_precompile_headers(${library} REUSE_FROM poinsot_headers)
   set_target_properties(${library} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
                                               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   install(TARGETS ${library} EXPORT poinsot)
