@@ -147,10 +147,11 @@ std::vector<OpenPart> open_parts(const Model& model, std::span<const BodyState> 
   return Opener(model, states).run();
 }
 
-std::string describe(const Gap& gap) {
-  if (gap.radians == 0) return fmt::format("{:.3g} m", gap.metres);
-  if (gap.metres == 0) return fmt::format("{:.3g} rad", gap.radians);
-  return fmt::format("{:.3g} m and {:.3g} rad", gap.metres, gap.radians);
+std::string describe(const Gap& gap, std::string_view moved, std::string_view turned) {
+  constexpr double rounding = 1e-12;  // nobody asks for
+  if (gap.radians <= rounding) return fmt::format("{}{:.3g} m", moved, gap.metres);
+  if (gap.metres <= rounding) return fmt::format("{}{:.3g} rad", turned, gap.radians);
+  return fmt::format("{}{:.3g} m and {}{:.3g} rad", moved, gap.metres, turned, gap.radians);
 }
 
 std::vector<Gap> gaps(const Model& model, std::span<const BodyState> states) {

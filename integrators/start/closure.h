@@ -34,7 +34,8 @@ std::vector<OpenPart> open_parts(const Model& model, std::span<const BodyState> 
 struct Gap {
   double metres = 0, radians = 0;
 };
-std::string describe(const Gap& gap);  // "0.242 m", "0.242 m and 0.1 rad"
+// "0.242 m", "0.242 m and 0.1 rad"; "moved by 0.242 m and turned by 0.1 rad" with the words for it.
+std::string describe(const Gap& gap, std::string_view moved = "", std::string_view turned = "");
 
 // Of every group.
 std::vector<Gap> gaps(const Model& model, std::span<const BodyState> states);

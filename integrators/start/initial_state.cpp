@@ -140,12 +140,12 @@ class Assembler {
       if (angle[b] > turn) turn = angle[b], turned = b;
     }
     std::ranges::stable_sort(order, std::greater(), [&](std::size_t b) { return std::max(moved[b], angle[b]); });
-    result_.notices.push_back(fmt::format("initial pose assembled: {} was open by {}; {}",
-                                          describe_group(*model_, group), describe(gap),
-                                          listed(order, [&](std::size_t b) {
-                                            return fmt::format("'{}' moved by {:.3g} m and turned by {:.3g} rad",
-                                                               model_->bodies[b].name, moved[b], angle[b]);
-                                          })));
+    result_.notices.push_back(
+        fmt::format("initial pose assembled: {} was open by {}; {}", describe_group(*model_, group), describe(gap),
+                    listed(order, [&](std::size_t b) {
+                      return fmt::format("'{}' {}", model_->bodies[b].name,
+                                         describe({moved[b], angle[b]}, "moved by ", "turned by "));
+                    })));
     if (pose.from_beside)
       result_.notices.push_back(
           "the given pose is a singular one, from which the constraints can be closed in several ways, and one was "
