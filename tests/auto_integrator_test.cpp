@@ -113,6 +113,34 @@ TEST(AutoIntegrator, StaysExplicitWhereAccuracyHoldsTheSteps) {
   EXPECT_THAT(picked(r.outcome), ::testing::ElementsAre("dop853"));
 }
 
+// Critically damped: dop853's steps are half of 1/|λ| long for the sake of accuracy, far within its stability.
+TEST(AutoIntegrator, TriesTheImplicitMethodWhereAccuracyHoldsTheStepsForNothing) {
+  const Scene scene = with_spring(1e6, 2e3);
+  Settings settings;
+  settings.end = settings.every = 5;
+  const Recorded r = run(scene, settings);
+  ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+  EXPECT_THAT(picked(r.outcome), ::testing::ElementsAre("dop853", "radau5"));
+  settings.integrator = "radau5";
+  const Recorded stiff = run(scene, settings);
+  EXPECT_LT(distance(r.samples, stiff.samples).r, 1e-6);
+  const auto work = [](const Statistics& s) { return s.factorizations + s.solves; };
+  EXPECT_LT(work(r.outcome.statistics), 3 * work(stiff.outcome.statistics));
+  settings.integrator = "dop853";
+  EXPECT_GT(work(run(scene, settings).outcome.statistics), 10 * work(stiff.outcome.statistics));
+}
+
+TEST(AutoIntegrator, GoesBackFromATrialThatDidNotPay) {
+  Settings settings;
+  settings.end = settings.every = 30;
+  const Recorded r = run(pendulum(), settings);
+  ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+  ASSERT_THAT(picked(r.outcome), ::testing::ElementsAre("dop853", "radau5", "dop853"));
+  EXPECT_EQ(r.outcome.statistics.methods[1].steps, 6);
+  settings.integrator = "dop853";
+  EXPECT_LT(distance(r.samples, run(pendulum(), settings).samples).r, 1e-6);
+}
+
 TEST(AutoIntegrator, ExplicitMethodsSayThatAMotionIsStiff) {
   Settings settings;
   settings.end = settings.every = 0.02;

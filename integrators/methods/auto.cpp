@@ -1,5 +1,8 @@
 #include "integrators/methods/auto.h"
 
+#include <optional>
+#include <utility>
+
 #include "integrators/methods/dop853.h"
 #include "integrators/stepping/controlled_methods.h"
 #include "integrators/stepping/controlled_run.h"
@@ -7,35 +10,60 @@
 namespace poinsot {
 namespace {
 
+constexpr std::int64_t kFirstTrial = 300, kTrialsApart = 4;  // steps of dop853; factor between them
+constexpr std::int64_t kTrial = 6;                           // steps of radau5, in which its length settles
+constexpr double kLonger = 4;
+
 class Auto final : public Integrator {
  public:
   Status run(const Run& run) override {
     PhaseClock clock;
     Course course(run, clock);
-    const RungeKuttaPair& pair = dop853_pair();
-    ControlledPair method(pair, run.problem, run.systems, run.settings.rtol, run.settings.absolute_tolerance(),
-                          run.statistics, clock);
-    if (Status status = method.prepare(); !status.ok()) return status;
-    if (Status status = method.start(run.state); !status.ok()) return status;
-    clock.start();
-    course.give_out(method.state());
-    Status status = steps(method, pair.name, pair.rule, course, run, [&] { return method.stiff(); });
-    if (status.ok() && run.state.t < run.settings.end) status = go_on(course, run, clock);
+    const Status status = both(course, run, clock);
     finish(clock, run.statistics);
     return status;
   }
 
  private:
-  static Status go_on(Course& course, const Run& run, PhaseClock& clock) {
-    ControlledRadau method(run.problem, run.systems, run.settings.rtol, run.settings.absolute_tolerance(),
-                           run.statistics, clock);
-    if (Status status = method.prepare(); !status.ok()) return status;
-    if (Status status = method.start(run.state); !status.ok()) return status;
-    return steps(method, "radau5", ControlledRadau::kRule, course, run, [] { return false; });
+  static Status both(Course& course, const Run& run, PhaseClock& clock) {
+    const double rtol = run.settings.rtol, atol = run.settings.absolute_tolerance(), end = run.settings.end;
+    const RungeKuttaPair& pair = dop853_pair();
+    ControlledPair dop853(pair, run.problem, run.systems, rtol, atol, run.statistics, clock);
+    std::optional<ControlledRadau> radau5;
+    if (Status status = dop853.prepare(); !status.ok()) return status;
+    clock.start();
+    bool begun = false;
+    for (std::int64_t trial = kFirstTrial;; trial *= kTrialsApart) {
+      if (Status status = dop853.start(run.state); !status.ok()) return status;
+      if (!std::exchange(begun, true)) course.give_out(dop853.state());
+      std::int64_t steps = 0;
+      const double from = run.state.t;
+      if (Status status =
+              go_on(dop853, pair.name, pair.rule, course, run, [&] { return dop853.stiff() || ++steps == trial; });
+          !status.ok() || run.state.t == end)
+        return status;
+
+      if (!radau5) {
+        radau5.emplace(run.problem, run.systems, rtol, atol, run.statistics, clock);
+        if (Status status = radau5->prepare(); !status.ok()) return status;
+      }
+      if (Status status = radau5->start(run.state); !status.ok()) return status;
+      const double enough = kLonger * (run.state.t - from) / static_cast<double>(steps);
+      const bool stays = dop853.stiff();
+      double before = run.state.t;
+      steps = 0;
+      const auto is_no_better = [&] {
+        const double h = radau5->state().t - std::exchange(before, radau5->state().t);
+        return ++steps == kTrial && !stays && h < enough;
+      };
+      if (Status status = go_on(*radau5, "radau5", ControlledRadau::kRule, course, run, is_no_better);
+          !status.ok() || run.state.t == end)
+        return status;
+    }
   }
 
   template <class Method, class Leave>
-  static Status steps(Method& method, std::string_view name, const StepRule& rule, Course& course, const Run& run,
+  static Status go_on(Method& method, std::string_view name, const StepRule& rule, Course& course, const Run& run,
                       const Leave& leave) {
     const double from = method.state().t;
     const std::int64_t before = run.statistics.steps;
