@@ -22,6 +22,7 @@
 #include "integrators/start/singular_position.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
+#include "integrators/stopping_test.h"
 #include "linsolve/registry.h"
 
 namespace poinsot {
@@ -94,6 +95,7 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   const FormulationEntry& formulation = formulations().require(settings.formulation);
   LinearSystems systems(settings.linear());
   (void)jacobians().require(settings.jacobian);
+  (void)stopping_tests().require(settings.stopping);
   const IntegratorEntry& integrator = integrator_of(settings);
 
   Model compiled = compile(scene);

@@ -81,7 +81,7 @@ class GeneralizedAlpha : public FixedSteps {
       x_.z += delta;
       return form_ == Form::stabilized2 ? correct_velocity(t, delta) : Status{};
     };
-    Status status = newton_.solve(t, scale_.position, x_.q, residual, matrix, correct);
+    Status status = newton_.solve(t, scale_.position, x_.z, x_.q, residual, matrix, correct);
     if (!status.ok()) return status;
     advance();
     a_.noalias() = k_.gain() * x_.z.head(nv_) + held_a_;

@@ -54,7 +54,7 @@ class HalfImplicit final : public FixedSteps {
       return {};
     };
     broyden_.restart();
-    if (Status status = newton_.solve(t, h_ * h_, x_.q, residual, matrix, correct); !status.ok()) return status;
+    if (Status status = newton_.solve(t, h_ * h_, x_.z, x_.q, residual, matrix, correct); !status.ok()) return status;
     advance();
     end.problem.set_velocity(span(x_.v));
     ends_.take_turns();

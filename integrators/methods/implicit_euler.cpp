@@ -41,7 +41,7 @@ class ImplicitEuler final : public FixedSteps {
       x_.z += delta;                                   // (35)  (a, λ) ← (a, λ) + δ
       return {};
     };
-    Status status = newton_.solve(t, scale_.position, x_.q, residual, matrix, correct);  // (38d) until (46)
+    Status status = newton_.solve(t, scale_.position, x_.z, x_.q, residual, matrix, correct);  // (38d) until (46)
     if (status.ok()) advance();
     return status;
   }

@@ -96,7 +96,7 @@ class Rattle final : public FixedSteps {
       z_ += delta;
       return {};
     };
-    return newton_.solve(t, position, x_.q, residual, matrix, correct);
+    return newton_.solve(t, position, z_, x_.q, residual, matrix, correct);
   }
 
   void add_velocity_rows(Vector& r) {
