@@ -134,8 +134,9 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   if (const std::string sentence = switch_notice(*model, integrator, settings); !sentence.empty()) notice(sentence);
   const Eigen::VectorXd q_start = state.q;
   const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
-  outcome.status = integrator.make()->run(
-      {*problem, systems, settings, state, observe, outcome.statistics, notice, rotation.senseless});
+  outcome.status =
+      integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, notice,
+                              rotation.senseless, start.rank.singular_position() ? start.rank.time_beside : 0});
   explain(outcome.status, *problem);
   const double largest = outcome.statistics.largest_rotation;
   if (outcome.status.ok() && largest > rotation.wrong) {

@@ -58,7 +58,11 @@ class GeneralizedAlpha : public FixedSteps {
 
   Status begin() override {
     if (Status status = FixedSteps::begin(); !status.ok()) return status;
-    return start();
+    if (run_.singular_for == 0) return start();
+    // The limit of v̇ stands in the state. That of v̈ is left out, and what it makes of v.
+    a_ = x_.z.head(nv_);
+    z_n_ = x_.z;
+    return {};
   }
 
   Status step(double t) override {

@@ -22,6 +22,11 @@ class HalfImplicit final : public FixedSteps {
 
   bool solves_index3() const override { return true; }
   Status prepare() override { return ends_.prepare(); }
+  Status begin() override {
+    Status status = FixedSteps::begin();
+    if (run_.singular_for > 0) place_beside(ends_.begin().problem);
+    return status;
+  }
   Status resume() override {
     velocity_rows_ = velocity_rows(ends_.begin().problem);
     return {};

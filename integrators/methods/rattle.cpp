@@ -30,6 +30,7 @@ class Rattle final : public FixedSteps {
 
   Status begin() override {
     if (Status status = FixedSteps::begin(); !status.ok()) return status;
+    if (run_.singular_for > 0) place_beside(ends_.begin().problem);
     return factor(ends_.begin(), 0);
   }
 

@@ -76,7 +76,10 @@ Status Consistent::position_correction(double t) {
   std::ranges::fill(moves(), 0.0);
   problem_.position_residual(rows());
   for (double& x : rows()) x = -x;
-  return system_.solve(t, span(rhs_));
+  const double off = largest(rows());
+  Status status = system_.solve(t, span(rhs_));
+  if (off > 0) steepness_ = std::max(steepness_, largest(moves()) / off);
+  return status;
 }
 
 Status Consistent::velocity_correction(double t) {
@@ -164,6 +167,14 @@ Status Consistent::project(State& at, bool& moved) {
     if (first * correction <= kRounding) break;
   }
   return {};
+}
+
+bool Consistent::beside_singular() {
+  constexpr double kSteep = 30;
+  const double now = std::exchange(steepness_, 0.0);
+  const bool steep = usual_steepness_ > 0 && now > kSteep * usual_steepness_;
+  if (!steep && now > 0) usual_steepness_ = usual_steepness_ > 0 ? 0.9 * usual_steepness_ + 0.1 * now : now;
+  return steep;
 }
 
 void Consistent::residual(const State& at, std::span<double> out) {

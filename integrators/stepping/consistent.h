@@ -51,6 +51,9 @@ class Consistent {
   Status project(State& at, bool& moved);
   // How far project() moved the last state, δq and then δv.
   std::span<const double> moved_by() const { return span(moved_by_); }
+  // Whether a singular position is near: project() has moved a position, since asked last, by many times what it
+  // usually does for what one is off the constraints. That grows as the inverse of the distance.
+  bool beside_singular();
   // (a, λ) of the state the problem stands at, from those of a state nearby and its factorization.
   Status refine(State& at);
   // Accelerations, projection, refinement: the consistent state beside (q, v).
@@ -80,6 +83,7 @@ class Consistent {
   std::unique_ptr<Aside> aside_;
   StepSystem system_;
   bool prepared_ = false;
+  double steepness_ = 0, usual_steepness_ = 0;  // 1/m, the most |δq|/|Φ| since asked last; as it mostly was
   const std::size_t nv_, nc_;
   Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_;
 };

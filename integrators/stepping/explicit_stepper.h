@@ -52,6 +52,7 @@ class ExplicitStepper {
   // Whether stability holds the steps, not accuracy.
   bool stiff() const { return stiffness_.stiff(); }
   double last_step() const { return h_; }
+  bool beside_singular() { return consistent_.beside_singular(); }  // since asked last
 
   const State& state() const { return state_; }
   const State& interpolated() const { return sample_; }

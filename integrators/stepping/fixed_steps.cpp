@@ -103,6 +103,13 @@ Problem& FixedSteps::stand() {
   return problem_;
 }
 
+void FixedSteps::place_beside(Problem& problem) {
+  Vector half = 0.5 * h_ * x_.v, q(x_.q.size());
+  problem.retract(span(x_.q), span(half), span(q));
+  problem.set_position(x_.t + 0.5 * h_, span(q));
+  problem.set_velocity(span(x_.v));
+}
+
 Status FixedSteps::accept(Problem& problem) {
   return poinsot::accept(problem, x_, rewritten_);
 }

@@ -51,6 +51,9 @@ class FixedSteps {
     problem.set_position(x_.t, span(x_.q));
     problem.set_velocity(span(x_.v));
   }
+  // In the middle of the step that x_ leads to, for a first step out of a singular position: there G has its rank. It
+  // costs that one step an error of order h in the directions of the reactions.
+  void place_beside(Problem& problem);
   // Completes and gives out x_, where the problem stands; the time it takes outside is left out.
   Status give_out(Problem& problem);
 
