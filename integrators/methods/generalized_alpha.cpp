@@ -53,7 +53,7 @@ class GeneralizedAlpha : public FixedSteps {
         aside_(nv_ + nc_),
         there_(nv_ + nc_) {}
 
-  bool solves_index3() const override { return true; }
+  double index3_scale() const override { return scale_.position; }
   Status prepare() override { return system_.prepare(); }
 
   Status begin() override {

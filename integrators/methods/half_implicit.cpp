@@ -20,7 +20,7 @@ class HalfImplicit final : public FixedSteps {
         dq_(nv_),
         rows_(nc_) {}
 
-  bool solves_index3() const override { return true; }
+  double index3_scale() const override { return h_ * h_; }
   Status prepare() override { return ends_.prepare(); }
   Status begin() override {
     Status status = FixedSteps::begin();

@@ -16,7 +16,7 @@ class ImplicitEuler final : public FixedSteps {
         newton_(problem_, system_, settings_, policy_.refresh, run.statistics),
         dq_(nv_) {}
 
-  bool solves_index3() const override { return true; }
+  double index3_scale() const override { return scale_.position; }
   Status prepare() override { return system_.prepare(); }
 
   // The unknowns are a = (r̈, ω̄̇) and λ at t_{n+1}, in x_.z. Numbers are those of the paper's equations for rA; rp has

@@ -20,7 +20,7 @@ FixedSteps::FixedSteps(const Run& run)
       x_(run.state),
       q_n_(run.state.q),
       v_n_(run.state.v),
-      output_(run.settings, h_) {}
+      output_(run.settings) {}
 
 Status FixedSteps::march() {
   if (Status status = prepare(); !status.ok()) return status;
@@ -91,7 +91,8 @@ Status FixedSteps::begin() {
 Status FixedSteps::give_out(Problem& problem) {
   if (Status status = complete(); !status.ok()) return status;
   const bool last = x_.t >= settings_.end;
-  const State& given = solves_index3() ? output_.choose(problem, x_, last, run_.statistics) : x_;
+  const double scale = index3_scale();
+  const State& given = scale > 0 ? output_.choose(problem, x_, scale, last, run_.statistics) : x_;
   clock_.lap(Phase::other);
   sample(run_.observe, problem, given, run_.statistics);
   clock_.skip();

@@ -44,8 +44,9 @@ class FixedSteps {
   virtual Status resume() { return {}; }
   // Finds the (a, λ) of a sample, where steps do not.
   virtual Status complete() { return {}; }
-  // Whether (a, λ) are solved from Φ/h² = 0, and better may be given out.
-  virtual bool solves_index3() const { return false; }
+  // δq/δa of a step whose (a, λ) are solved from Φ = 0, by which rounding is magnified and better may be given out;
+  // else 0.
+  virtual double index3_scale() const { return 0; }
 
   void place(Problem& problem) const {
     problem.set_position(x_.t, span(x_.q));
