@@ -13,6 +13,7 @@
 #include "integrators/integrator.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
+#include "integrators/stopping_test.h"
 #include "linsolve/registry.h"
 
 namespace poinsot::app {
@@ -70,14 +71,13 @@ void print_lists() {
   print_table("linear solvers", linear_solvers());
   print_table("linear systems", linear_systems());
   print_table("jacobians", jacobians());
+  print_table("stopping tests", stopping_tests());
 }
 
 Json lists() {
-  return {{"formulations", listed(formulations())},
-          {"integrators", listed(integrators())},
-          {"linear_solvers", listed(linear_solvers())},
-          {"linear_systems", listed(linear_systems())},
-          {"jacobians", listed(jacobians())}};
+  return {{"formulations", listed(formulations())},     {"integrators", listed(integrators())},
+          {"linear_solvers", listed(linear_solvers())}, {"linear_systems", listed(linear_systems())},
+          {"jacobians", listed(jacobians())},           {"stopping_tests", listed(stopping_tests())}};
 }
 
 }  // namespace

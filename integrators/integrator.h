@@ -94,6 +94,9 @@ struct Run {
   Statistics& statistics;
   const Tell& tell;
   double most_rotation = Rotations::kUnlimited;  // rad of a body in a step of fixed length, beyond which it stops
+  // s: where the state is in a singular position, after which its velocities have led away; else 0. The state's a and λ
+  // are limits there, which [M Gᵀ; G 0] does not give.
+  double singular_for = 0;
 };
 
 class Integrator {

@@ -15,6 +15,7 @@
 #include "formulations/registry.h"
 #include "integrators/integrator.h"
 #include "integrators/jacobian_policy.h"
+#include "integrators/stopping_test.h"
 #include "linsolve/registry.h"
 
 namespace poinsot {
@@ -45,11 +46,13 @@ const std::array kEntries{
                  [] { return linear_systems().names(); }, false},
     SettingEntry{"jacobian", "matrix of Newton's method", &Settings::jacobian, [] { return jacobians().names(); },
                  false, 0, kInfinity, For::fixed_steps},
+    SettingEntry{"stopping", "stopping test of Newton's method in dynamics", &Settings::stopping,
+                 [] { return stopping_tests().names(); }, false, 0, kInfinity, For::fixed_steps},
     SettingEntry{"step", "step size h, s, of integrators with fixed steps", &Settings::step, nullptr, false, 0,
                  kInfinity, For::fixed_steps},
     SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false, kLeastEnd},
-    SettingEntry{"tolerance", "Newton: 2-norm of the correction", &Settings::tolerance, nullptr, false, 0, kInfinity,
-                 For::fixed_steps},
+    SettingEntry{"tolerance", "Newton: size of the correction, see stopping; in kinematics its 2-norm",
+                 &Settings::tolerance, nullptr, false, 0, kInfinity, For::fixed_steps},
     SettingEntry{"rtol", "relative tolerance of integrators with error control", &Settings::rtol, nullptr, false,
                  kLeastRtol, kInfinity, For::error_control},
     SettingEntry{"atol", "absolute tolerance of integrators with error control", &Settings::atol, nullptr, false, 0,

@@ -22,6 +22,7 @@
 #include "integrators/start/singular_position.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
+#include "integrators/stopping_test.h"
 #include "linsolve/registry.h"
 
 namespace poinsot {
@@ -94,6 +95,7 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   const FormulationEntry& formulation = formulations().require(settings.formulation);
   LinearSystems systems(settings.linear());
   (void)jacobians().require(settings.jacobian);
+  (void)stopping_tests().require(settings.stopping);
   const IntegratorEntry& integrator = integrator_of(settings);
 
   Model compiled = compile(scene);
@@ -132,8 +134,9 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   if (const std::string sentence = switch_notice(*model, integrator, settings); !sentence.empty()) notice(sentence);
   const Eigen::VectorXd q_start = state.q;
   const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
-  outcome.status = integrator.make()->run(
-      {*problem, systems, settings, state, observe, outcome.statistics, notice, rotation.senseless});
+  outcome.status =
+      integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, notice,
+                              rotation.senseless, start.rank.singular_position() ? start.rank.time_beside : 0});
   explain(outcome.status, *problem);
   const double largest = outcome.statistics.largest_rotation;
   if (outcome.status.ok() && largest > rotation.wrong) {

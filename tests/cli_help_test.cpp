@@ -7,6 +7,7 @@
 #include "integrators/integrator.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
+#include "integrators/stopping_test.h"
 #include "linsolve/registry.h"
 
 namespace poinsot::test {
@@ -66,6 +67,7 @@ TEST_F(Help, ListHasALineForEveryEntryOfEveryRegistry) {
   listed("linear solvers", linear_solvers());
   listed("linear systems", linear_systems());
   listed("jacobians", jacobians());
+  listed("stopping tests", stopping_tests());
   for (const IntegratorEntry& entry : integrators()) {
     for (const MethodParameter& parameter : entry.parameters) {
       ++expected;

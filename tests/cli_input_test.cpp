@@ -90,7 +90,7 @@ TEST_F(WrongInput, CommandLineValues) {
           "generalized_alpha_i2");
   refused("--every", "-1", "--every: found \"-1\", expected a number, at least 0");
   refused("--max-iterations", "2.5", "--max-iterations: found \"2.5\", expected a whole number, at least 1");
-  for (const char* key : {"analysis", "formulation", "integrator", "linear_solver", "jacobian"}) {
+  for (const char* key : {"analysis", "formulation", "integrator", "linear_solver", "jacobian", "stopping"}) {
     const std::string option = option_name(*find_setting(key));
     refused(option.c_str(), "no_such", fmt::format("{}: found \"no_such\", expected one of {}", option, names(key)));
   }

@@ -35,10 +35,11 @@ class Json : public CommandLine {
 TEST_F(Json, List) {
   const nlohmann::json list = said({"list"}, R"({
     "type": "object", "additionalProperties": false,
-    "required": ["formulations", "integrators", "linear_solvers", "linear_systems", "jacobians"],
+    "required": ["formulations", "integrators", "linear_solvers", "linear_systems", "jacobians", "stopping_tests"],
     "properties": {
       "formulations": {"$ref": "#/$defs/named"}, "linear_solvers": {"$ref": "#/$defs/named"},
       "linear_systems": {"$ref": "#/$defs/named"}, "jacobians": {"$ref": "#/$defs/named"},
+      "stopping_tests": {"$ref": "#/$defs/named"},
       "integrators": {"type": "array", "items": {"type": "object", "additionalProperties": false,
         "required": ["name", "about", "analysis", "order", "controls_error", "parameters", "refuses"],
         "properties": {"name": {"type": "string"}, "about": {"type": "string"},

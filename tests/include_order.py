@@ -45,7 +45,7 @@ def breaches(root):
 def rooms(root):
     """Within integrators: the seam <- stepping <- start <- methods <- what stands beside them."""
     order = ["seam", "stepping", "start", "methods", "beside"]
-    seam = {"integrator.h", "jacobian_policy.h", "settings.h", "state.h"}
+    seam = {"integrator.h", "jacobian_policy.h", "settings.h", "state.h", "stopping_test.h"}
 
     def room(file):  # below integrators/
         if "/" in file:

@@ -19,6 +19,7 @@ double iterations(const char* model, std::string_view formulation, Analysis anal
   settings.formulation = formulation;
   settings.integrator = "implicit_euler";
   settings.jacobian = "simplified";
+  settings.stopping = "correction";
   settings.step = 1e-3;
   settings.end = settings.every = 1;
   settings.tolerance = analysis == Analysis::dynamics ? 1e-3 : 1e-10;

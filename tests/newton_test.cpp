@@ -78,6 +78,28 @@ TEST(NewtonOnLongChains, GoesAsFarAsRoundingLetsItGo) {
   }
 }
 
+// The test of the original study measures all unknowns together: it grows with their number.
+TEST(NewtonOnLongChains, NeedsNoMoreIterationsThanOnShortOnes) {
+  const auto move = [](int bodies, std::string_view stopping, double tolerance) {
+    Settings settings = dynamics("rA", 1e-3, 4e-3, 4e-3);
+    settings.stopping = stopping;
+    settings.tolerance = tolerance;
+    return run(find_scene_generator("chain")->make(bodies), settings);
+  };
+  for (const int bodies : {10, 2000}) {
+    const Recorded found = move(bodies, "relative", 1e-3), converged = move(bodies, "relative", 1e-9);
+    ASSERT_TRUE(found.outcome.status.ok()) << found.outcome.status.message;
+    EXPECT_LE(found.outcome.statistics.newton_iterations, 2 * found.outcome.statistics.steps) << bodies;
+    for (std::size_t b = 0; b < found.samples.back().bodies.size(); ++b) {
+      const BodyState &x = found.samples.back().bodies[b], &y = converged.samples.back().bodies[b];
+      EXPECT_LT((x.r - y.r).norm(), 1e-9) << bodies << ' ' << b;
+      EXPECT_LT((x.rd - y.rd).norm(), 1e-7) << bodies << ' ' << b;
+    }
+  }
+  const Statistics study = move(2000, "correction", 1e-3).outcome.statistics;
+  EXPECT_GT(study.newton_iterations, 2 * study.steps);
+}
+
 TEST_P(Newton, SpendsItsIterationsInKinematics) {
   Settings settings = kinematics_with(1e-2, 1);
   settings.max_iterations = 1;

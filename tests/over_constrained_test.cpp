@@ -166,24 +166,10 @@ TEST(OverConstrained, StartsThatLeadNowhereAreRefusedByName) {
   }
 }
 
-// All posts swing alike: one pendulum of the posts' and the coupler's inertia.
-double swung(double w, double time) {
-  const double J = 2 * (0.1 + 0.25) + 1, m = 2 * 0.5 + 1;
-  constexpr int kSteps = 20000;
-  const double h = time / kSteps;
-  double phi = 0;
-  for (int n = 0; n < kSteps; ++n) {  // midpoint rule
-    const double half = phi + 0.5 * h * w, w_half = w - 0.5 * h * m * 9.81 * std::cos(phi) / J;
-    w -= h * m * 9.81 * std::cos(half) / J;
-    phi += h * w_half;
-  }
-  return phi;
-}
-
 // Flat, and within rounding of flat, with a velocity: accelerations are those beside, not of order 1e16. A run that
-// ends is right; beside the position, where the constraints hold by rounding only, some stop.
+// ends is right; radau5 beside the position, where the constraints hold by rounding only, may stop.
 TEST_P(Loops, StartInASingularPositionFollowsTheVelocities) {
-  const double phi = swung(-3, 0.2);
+  const double phi = swung(1, 0, -3, 0.2);
   const Vector3 at(0.5 * std::cos(phi), 0.5 * std::sin(phi), 0);
   int ended = 0;
   for (const double angle : {0.0, 1e-13, 1e-7}) {
@@ -196,13 +182,14 @@ TEST_P(Loops, StartInASingularPositionFollowsTheVelocities) {
         settings.rtol = 1e-9;
         const Motion flat = move(posts(1, angle, -3, redundant), settings);
         EXPECT_THAT(flat.outcome.notices, ::testing::Contains(::testing::HasSubstr("singular position")));
+        EXPECT_TRUE(flat.outcome.status.ok() || settings.integrator == "radau5") << flat.outcome.status.message;
         if (!flat.outcome.status.ok()) continue;
         ++ended;
         EXPECT_LT((flat.end[0].r - at).norm(), settings.integrator == "implicit_euler" ? 1e-4 : 1e-6);
       }
     }
   }
-  EXPECT_GE(ended, 1);  // exactly there at least; beside it the projection moves more than the tolerance
+  EXPECT_GE(ended, 13);
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ Settings settings_of(Analysis analysis, std::string_view jacobian, std::string_v
   settings.analysis = analysis;
   settings.integrator = "implicit_euler";
   settings.jacobian = jacobian;
+  settings.stopping = "correction";
   settings.formulation = formulation;
   settings.step = step;
   settings.end = settings.every = end;

@@ -39,6 +39,7 @@ std::vector<Cell> make_cells(std::span<const Scene> scenes, Analysis analysis, c
           settings.formulation = formulation.name;
           settings.integrator = kIntegrator;
           settings.jacobian = policy.name;
+          settings.stopping = "correction";
           settings.linear_solver = choice.solver;
           settings.linear_system = choice.system;
           settings.step = kStep;

@@ -63,6 +63,7 @@ FigureResult order_paper(const FigureRequest& request) {
         Settings settings;
         settings.formulation = name;
         settings.integrator = "implicit_euler";
+        settings.stopping = "correction";
         settings.step = step;
         settings.end = settings.every = kEnd;
         settings.tolerance = kPosition / (step * step);

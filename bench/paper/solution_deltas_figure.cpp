@@ -79,6 +79,7 @@ FigureResult solution_deltas(const FigureRequest& request) {
   std::vector<std::vector<double>> first;  // by step, of the first formulation: rA
   std::vector<Curve> between;              // of the others from it
   settings.integrator = "implicit_euler";
+  settings.stopping = "correction";
   for (const FormulationEntry& formulation : formulations()) {
     settings.formulation = formulation.name;
     double above[2] = {};

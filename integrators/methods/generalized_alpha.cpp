@@ -53,12 +53,16 @@ class GeneralizedAlpha : public FixedSteps {
         aside_(nv_ + nc_),
         there_(nv_ + nc_) {}
 
-  bool solves_index3() const override { return true; }
+  double index3_scale() const override { return scale_.position; }
   Status prepare() override { return system_.prepare(); }
 
   Status begin() override {
     if (Status status = FixedSteps::begin(); !status.ok()) return status;
-    return start();
+    if (run_.singular_for == 0) return start();
+    // The limit of v̇ stands in the state. That of v̈ is left out, and what it makes of v.
+    a_ = x_.z.head(nv_);
+    z_n_ = x_.z;
+    return {};
   }
 
   Status step(double t) override {
@@ -81,7 +85,7 @@ class GeneralizedAlpha : public FixedSteps {
       x_.z += delta;
       return form_ == Form::stabilized2 ? correct_velocity(t, delta) : Status{};
     };
-    Status status = newton_.solve(t, scale_.position, x_.q, residual, matrix, correct);
+    Status status = newton_.solve(t, scale_.position, x_.z, x_.q, residual, matrix, correct);
     if (!status.ok()) return status;
     advance();
     a_.noalias() = k_.gain() * x_.z.head(nv_) + held_a_;

@@ -20,8 +20,13 @@ class HalfImplicit final : public FixedSteps {
         dq_(nv_),
         rows_(nc_) {}
 
-  bool solves_index3() const override { return true; }
+  double index3_scale() const override { return h_ * h_; }
   Status prepare() override { return ends_.prepare(); }
+  Status begin() override {
+    Status status = FixedSteps::begin();
+    if (run_.singular_for > 0) place_beside(ends_.begin().problem);
+    return status;
+  }
   Status resume() override {
     velocity_rows_ = velocity_rows(ends_.begin().problem);
     return {};
@@ -54,7 +59,7 @@ class HalfImplicit final : public FixedSteps {
       return {};
     };
     broyden_.restart();
-    if (Status status = newton_.solve(t, h_ * h_, x_.q, residual, matrix, correct); !status.ok()) return status;
+    if (Status status = newton_.solve(t, h_ * h_, x_.z, x_.q, residual, matrix, correct); !status.ok()) return status;
     advance();
     end.problem.set_velocity(span(x_.v));
     ends_.take_turns();

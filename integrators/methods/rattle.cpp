@@ -30,6 +30,7 @@ class Rattle final : public FixedSteps {
 
   Status begin() override {
     if (Status status = FixedSteps::begin(); !status.ok()) return status;
+    if (run_.singular_for > 0) place_beside(ends_.begin().problem);
     return factor(ends_.begin(), 0);
   }
 
@@ -96,7 +97,7 @@ class Rattle final : public FixedSteps {
       z_ += delta;
       return {};
     };
-    return newton_.solve(t, position, x_.q, residual, matrix, correct);
+    return newton_.solve(t, position, z_, x_.q, residual, matrix, correct);
   }
 
   void add_velocity_rows(Vector& r) {

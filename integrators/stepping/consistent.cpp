@@ -75,6 +75,7 @@ Status Consistent::accelerations(double t, std::span<double> z) {
 Status Consistent::position_correction(double t) {
   std::ranges::fill(moves(), 0.0);
   problem_.position_residual(rows());
+  off_ = largest(rows());
   for (double& x : rows()) x = -x;
   return system_.solve(t, span(rhs_));
 }
@@ -136,6 +137,7 @@ Status Consistent::project(State& at, bool& moved) {
   for (int k = 0;; ++k) {
     if (Status status = position_correction(at.t); !status.ok()) return status;
     const double correction = largest(moves());
+    if (k == 0) measure_steepness(off_, correction);
     if (k == 0 && correction <= kNegligible) break;
     if (k == kCorrections || !(correction < before)) {
       return {Failure::inconsistent_state, at.t,
@@ -150,7 +152,7 @@ Status Consistent::project(State& at, bool& moved) {
     stand(at);
     moved = true;
     first = std::max(first, correction);
-    if (first * correction <= kRounding) break;
+    if (first * correction * amplification_ <= kRounding) break;
     before = correction;
   }
   for (int k = 0; k < kCorrections; ++k) {
@@ -161,8 +163,39 @@ Status Consistent::project(State& at, bool& moved) {
     moved_by_.tail(problem_.nv()) += rhs_.head(problem_.nv());
     problem_.set_velocity(span(at.v));
     moved = true;
-    if (first * correction <= kRounding) break;
+    if (first * correction * amplification_ <= kRounding) break;
   }
+  return {};
+}
+
+// After the first correction of a position by `moved`, which was off the constraints by `off`.
+void Consistent::measure_steepness(double off, double moved) {
+  constexpr double kSteep = 30, kSlow = 0.1;
+  amplification_ = 1;
+  if (!(off > 0 && moved > 0)) return;
+  const double steepness = moved / off;
+  if (usual_steepness_ == 0) usual_steepness_ = steepness;
+  if (steepness > kSteep * usual_steepness_) {
+    amplification_ = steepness / usual_steepness_;
+    beside_singular_ = true;
+  } else {
+    usual_steepness_ += kSlow * (steepness - usual_steepness_);
+  }
+}
+
+bool Consistent::beside_singular() {
+  return std::exchange(beside_singular_, false);
+}
+
+Status Consistent::along_constraints(const State& at, std::span<double> x) {
+  problem_.set_velocity(x);
+  problem_.velocity_residual(rows());
+  problem_.set_velocity(span(at.v));
+  problem_.nu(span(rows_));
+  for (std::size_t k = 0; k < nc_; ++k) rows()[k] = -rows()[k] - span(rows_)[k];
+  std::ranges::fill(moves(), 0.0);
+  if (Status status = system_.solve(at.t, span(rhs_)); !status.ok()) return status;
+  for (std::size_t k = 0; k < nv_; ++k) x[k] += moves()[k];
   return {};
 }
 

@@ -51,6 +51,14 @@ class Consistent {
   Status project(State& at, bool& moved);
   // How far project() moved the last state, δq and then δv.
   std::span<const double> moved_by() const { return span(moved_by_); }
+  // Of project(): how many times more than it usually does it moves positions for what they are off the constraints,
+  // |δq|/|Φ|: 1, or far more beside a singular position, as the inverse of the distance. The last time, and whether
+  // ever since asked last.
+  double amplification() const { return amplification_; }
+  bool beside_singular();
+  // x ← its part along the constraints, M-orthogonally, with the factorization at hand; nv numbers. The problem stands
+  // at `at`, before and after.
+  Status along_constraints(const State& at, std::span<double> x);
   // (a, λ) of the state the problem stands at, from those of a state nearby and its factorization.
   Status refine(State& at);
   // Accelerations, projection, refinement: the consistent state beside (q, v).
@@ -73,6 +81,7 @@ class Consistent {
   // δq and δv for the constraints' residuals at the problem's point, in moves().
   Status position_correction(double t);
   Status velocity_correction(double t);
+  void measure_steepness(double off, double moved);
   std::span<double> moves() { return std::span(rhs_.data(), nv_); }
   std::span<double> rows() { return std::span(rhs_.data() + nv_, nc_); }
 
@@ -80,6 +89,9 @@ class Consistent {
   std::unique_ptr<Aside> aside_;
   StepSystem system_;
   bool prepared_ = false;
+  double usual_steepness_ = 0, amplification_ = 1;  // of |δq|/|Φ|
+  bool beside_singular_ = false;
+  double off_ = 0;  // largest |Φ| that the last position_correction() was for
   const std::size_t nv_, nc_;
   Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_;
 };

@@ -2,8 +2,9 @@
 // jumps of the data stepped onto, an exact end.
 //
 // A Method is a stepper with: Status attempt(to, rejections, error), Status complete(error), Status interpolate(t),
-// interpolated(), settle(), cross(t), state(); double first_step(end); double retry(h, rejections, usual), the step to
-// try after so many rejections in a row; double adopt(h, wanted), the step after a completed one of length h.
+// interpolated(), settle(), cross(t), state(); double first_step(end, singular_for), Run's; double retry(h, rejections,
+// usual), the step to try after so many rejections in a row; double adopt(h, wanted), the step after a completed one of
+// length h.
 #pragma once
 
 #include <algorithm>
@@ -38,6 +39,8 @@ class Course {
   }
   double turned(double h) const { return h * run_.problem.fastest_turn(); }  // rad, the fastest body at its speed now
   double end() const { return run_.settings.end; }
+  // See Run::singular_for; 0 once the run is under way.
+  double singular_for(double t) const { return t > 0 ? 0 : run_.singular_for; }
   Statistics& statistics() { return run_.statistics; }
 
   const bool every_step;
@@ -57,9 +60,10 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
   SampleTimes& times = course.times;
   StepController controller(rule);
   Creeping creeping(end);
-  double h = method.first_step(end);
-  double usual = 0;    // length of the steps so far, those long ago forgotten
-  int rejections = 0;  // in a row
+  const double singular_for = course.singular_for(method.state().t);
+  double h = method.first_step(end, singular_for);
+  double usual = singular_for > 0 ? h : 0;  // length of the steps so far, those long ago forgotten
+  int rejections = 0;                       // in a row
   while (method.state().t < end) {
     const double t = method.state().t;
     if (interruption_requested) return interrupted(t);
@@ -105,7 +109,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
     if (crosses) {  // what error control has learnt is of the motion before
       controller = StepController(rule);
       creeping = Creeping(end);
-      h = method.first_step(end);
+      h = method.first_step(end, 0);
     }
     if (leave()) return {};
   }

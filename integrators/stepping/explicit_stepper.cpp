@@ -68,10 +68,16 @@ void ExplicitStepper::advance(double h, Terms terms, Vector& y) const {
   for (const Term& term : terms) y.noalias() += (h * term.weight) * k_.col(term.stage);
 }
 
-double ExplicitStepper::norm(Terms terms) {
+// Of projected stages, without what the projection at the end of the step takes out.
+Status ExplicitStepper::norm(Terms terms, double& size) {
   combined_.setZero();
   for (const Term& term : terms) combined_.noalias() += term.weight * k_.col(term.stage);
-  return error_norm(span(combined_), span(scale_));
+  if (project_stages_) {
+    for (const std::span<double> part : {span(combined_).first(nv_), span(combined_).subspan(nv_)})
+      if (Status status = consistent_.along_constraints(next_, part); !status.ok()) return status;
+  }
+  size = error_norm(span(combined_), span(scale_));
+  return {};
 }
 
 // Stands at y, or at the point of the constraints beside it; writes position, velocity and (a, λ) there into `at`, f
@@ -151,7 +157,7 @@ Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
   y_n_.tail(nv) = state_.v;
   k_.col(0) << state_.v, state_.z.head(nv);
   if (Status status = run_through_stages(to); !status.ok()) return status;
-  if (error_needs_last_) {
+  if (end_is_evaluated()) {
     if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
   } else {
     next_.v = y_.tail(nv);
@@ -159,21 +165,23 @@ Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
   }
   component_sizes(problem_, span(next_.q), span(next_.v), span(sizes_next_));
   scale_.array() = atol_ + rtol_ * sizes_.array().max(sizes_next_.array());
-  error = h_ * norm(pair_.error);
-  if (!pair_.third_order_error.empty() && error > 0) {
-    error *= error / std::hypot(error, 0.1 * h_ * norm(pair_.third_order_error));
-  }
+  if (Status status = norm(pair_.error, error); !status.ok()) return status;
+  error *= h_;
+  if (pair_.third_order_error.empty() || !(error > 0)) return {};
+  double third = 0;
+  if (Status status = norm(pair_.third_order_error, third); !status.ok()) return status;
+  error *= error / std::hypot(error, 0.1 * h_ * third);
   return {};
 }
 
 Status ExplicitStepper::complete(double& error, double most) {
-  if (!error_needs_last_) {
+  if (!end_is_evaluated()) {
     if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
   }
   bool moved = false;
   if (Status status = consistent_.project(next_, moved); !status.ok()) return status;
   if (moved) {
-    error = std::max(error, error_norm(consistent_.moved_by(), span(scale_)));
+    error = std::max(error, error_norm(consistent_.moved_by(), span(scale_)) / consistent_.amplification());
     if (!(error <= most)) return {};
     if (Status status = consistent_.refine(next_); !status.ok()) return status;
   }

@@ -52,6 +52,7 @@ class ExplicitStepper {
   // Whether stability holds the steps, not accuracy.
   bool stiff() const { return stiffness_.stiff(); }
   double last_step() const { return h_; }
+  bool beside_singular() { return consistent_.beside_singular(); }  // since asked last
 
   const State& state() const { return state_; }
   const State& interpolated() const { return sample_; }
@@ -59,7 +60,9 @@ class ExplicitStepper {
  private:
   // y_n + h Σ weight k
   void advance(double h, Terms terms, Vector& y) const;
-  double norm(Terms terms);
+  Status norm(Terms terms, double& size);
+  // Within the attempt, where the error asks for it.
+  bool end_is_evaluated() const { return error_needs_last_ || project_stages_; }
   Status evaluate(State& at, const Vector& y, Eigen::Index k);
   Status run_through_stages(double to);
   void test_stiffness();

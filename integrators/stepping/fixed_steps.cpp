@@ -20,7 +20,7 @@ FixedSteps::FixedSteps(const Run& run)
       x_(run.state),
       q_n_(run.state.q),
       v_n_(run.state.v),
-      output_(run.settings, h_) {}
+      output_(run.settings) {}
 
 Status FixedSteps::march() {
   if (Status status = prepare(); !status.ok()) return status;
@@ -91,7 +91,8 @@ Status FixedSteps::begin() {
 Status FixedSteps::give_out(Problem& problem) {
   if (Status status = complete(); !status.ok()) return status;
   const bool last = x_.t >= settings_.end;
-  const State& given = solves_index3() ? output_.choose(problem, x_, last, run_.statistics) : x_;
+  const double scale = index3_scale();
+  const State& given = scale > 0 ? output_.choose(problem, x_, scale, last, run_.statistics) : x_;
   clock_.lap(Phase::other);
   sample(run_.observe, problem, given, run_.statistics);
   clock_.skip();
@@ -101,6 +102,13 @@ Status FixedSteps::give_out(Problem& problem) {
 Problem& FixedSteps::stand() {
   place(problem_);
   return problem_;
+}
+
+void FixedSteps::place_beside(Problem& problem) {
+  Vector half = 0.5 * h_ * x_.v, q(x_.q.size());
+  problem.retract(span(x_.q), span(half), span(q));
+  problem.set_position(x_.t + 0.5 * h_, span(q));
+  problem.set_velocity(span(x_.v));
 }
 
 Status FixedSteps::accept(Problem& problem) {

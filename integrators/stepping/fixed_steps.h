@@ -44,13 +44,17 @@ class FixedSteps {
   virtual Status resume() { return {}; }
   // Finds the (a, λ) of a sample, where steps do not.
   virtual Status complete() { return {}; }
-  // Whether (a, λ) are solved from Φ/h² = 0, and better may be given out.
-  virtual bool solves_index3() const { return false; }
+  // δq/δa of a step whose (a, λ) are solved from Φ = 0, by which rounding is magnified and better may be given out;
+  // else 0.
+  virtual double index3_scale() const { return 0; }
 
   void place(Problem& problem) const {
     problem.set_position(x_.t, span(x_.q));
     problem.set_velocity(span(x_.v));
   }
+  // In the middle of the step that x_ leads to, for a first step out of a singular position: there G has its rank. It
+  // costs that one step an error of order h in the directions of the reactions.
+  void place_beside(Problem& problem);
   // Completes and gives out x_, where the problem stands; the time it takes outside is left out.
   Status give_out(Problem& problem);
 

@@ -24,8 +24,8 @@ double apart(std::span<const double> x, std::span<const double> y) {
 
 }  // namespace
 
-const State& Index1Output::choose(Problem& problem, const State& at, bool last, Statistics& statistics) {
-  const double rounding = std::numeric_limits<double>::epsilon() * largest(span(at.q)) / (h_ * h_);
+const State& Index1Output::choose(Problem& problem, const State& at, double scale, bool last, Statistics& statistics) {
+  const double rounding = std::numeric_limits<double>::epsilon() * largest(span(at.q)) / scale;
   const double size = std::max(largest(at.a()), problem.model().gravity.norm());
   const bool rounded = size > 0 && rounding > kOfNoAccount * size;
   if ((!rounded && !last) || !solve(problem, at)) return at;

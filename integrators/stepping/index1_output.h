@@ -1,11 +1,12 @@
 // Accelerations and multipliers of index 3 measured by those of index 1, and given way where rounding has spoilt them.
 //
-// A method that solves Φ/h² = 0 finds a and λ as second differences of positions: with rounding of the size ε|q|/h²
-// beside the error of its order. At index 1, from M a + Gᵀλ = Q and G a = γ at the same (q, v, t), there is no such
+// A method that solves Φ/h² = 0 finds a and λ as second differences of positions: with rounding of the size ε|q|/s
+// beside the error of its order, where s = δq/δa of a step is h² in the Euler schemes and about a quarter of it in
+// generalized-α. At index 1, from M a + Gᵀλ = Q and G a = γ at the same (q, v, t), there is no such
 // rounding. At an output time
 //
-//   ε|q|/h² of no account beside a        what the step has computed is given out; nothing is computed for it
-//   |a₃ − a₁| explained by ε|q|/h²        a₁ and λ₁ are given out
+//   ε|q|/s of no account beside a         what the step has computed is given out; nothing is computed for it
+//   |a₃ − a₁| explained by ε|q|/s         a₁ and λ₁ are given out
 //   |a₃ − a₁| larger                      the order of the method is in it: what the step has computed is given out
 //
 // At the last output time both are found in any case: what they differ by is about the error of a₃ and λ₃.
@@ -20,16 +21,15 @@ namespace poinsot {
 
 class Index1Output {
  public:
-  Index1Output(const Settings& settings, double h) : choice_(settings.linear()), h_(h) {}
+  explicit Index1Output(const Settings& settings) : choice_(settings.linear()) {}
 
-  // The state to be given out for `at`, where the problem stands before and after.
-  const State& choose(Problem& problem, const State& at, bool last, Statistics& statistics);
+  // The state to be given out for `at`, where the problem stands before and after; s is `scale`.
+  const State& choose(Problem& problem, const State& at, double scale, bool last, Statistics& statistics);
 
  private:
   bool solve(Problem& problem, const State& at);
 
   LinearChoice choice_;
-  const double h_;
   Problem* of_ = nullptr;
   std::optional<Consistent> consistent_;
   std::optional<State> found_;

@@ -5,12 +5,77 @@
 #include <algorithm>
 #include <limits>
 
+#include "formulations/gradient.h"
+
 namespace poinsot {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+double longest_arm(const Model& model) {
+  double arm = 0;
+  for (const Row& row : model.rows) {
+    if (row.i != kGround) arm = std::max(arm, row.s_i.norm());
+    if (row.j != kGround) arm = std::max(arm, row.s_j.norm());
+  }
+  return arm > 0 ? arm : 1;
+}
+
+double rounding_of(const Problem& problem, const Eigen::VectorXd& q) {
+  return 16 * kEpsilon * std::sqrt(problem.bodies()) * std::max(1.0, q.cwiseAbs().maxCoeff());
+}
+
+double largest(const auto& x) {
+  return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0;
+}
+
+}  // namespace
+
+NewtonLoop::NewtonLoop(Problem& problem, StepSystem& system, const Settings& settings, Refresh refresh,
+                       Statistics& statistics)
+    : problem_(problem),
+      system_(system),
+      settings_(settings),
+      refresh_(refresh),
+      stopping_(stopping_tests().require(settings.stopping).test),
+      statistics_(statistics),
+      arm_(longest_arm(problem.model())),
+      delta_(problem.nv() + problem.nc()),
+      momentum_(problem.nv()) {}
+
+double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
+  const Eigen::Index nv = problem_.nv(), per_body = nv / problem_.bodies(), turns = per_body - 3;
+  const double turn = arm_ * arm_;
+  double most = 0, all = 0, sum = 0;
+  for (Eigen::Index b = 0; b < nv; b += per_body) {
+    const double of = delta_.segment<3>(b).squaredNorm() + turn * delta_.segment(b + 3, turns).squaredNorm();
+    most = std::max(most, of);
+    all += of;
+    sum += z.segment<3>(b).squaredNorm() + turn * z.segment(b + 3, turns).squaredNorm();
+  }
+  if (!std::isfinite(all)) return all;
+  const double size = std::max(std::sqrt(sum / problem_.bodies()), problem_.model().gravity.norm());
+  const double accelerations = most == 0 ? 0 : std::sqrt(most) / size;
+  if (of_this_step) return accelerations;
+  const double multipliers = largest(delta_.tail(problem_.nc()));
+  return multipliers == 0 ? accelerations : std::max(accelerations, multipliers / largest(z.tail(problem_.nc())));
+}
 
 bool NewtonLoop::is_rounding(double position, const Vector& q) const {
-  constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
-  return position * delta_.head(problem_.nv()).cwiseAbs().maxCoeff() <=
-         kRounding * std::sqrt(problem_.bodies()) * std::max(1.0, q.cwiseAbs().maxCoeff());
+  return position * largest(delta_.head(problem_.nv())) <= rounding_of(problem_, q);
+}
+
+// The residual is in delta_.
+bool NewtonLoop::balanced(double position, const Vector& z, const Vector& q) {
+  if (!(position * largest(delta_.tail(problem_.nc())) <= rounding_of(problem_, q))) return false;
+  if (!gradient_) {
+    Vector sums = Vector::Zero(problem_.nv());
+    for (const Eigen::Triplet<double>& entry : gradient(problem_)) sums[entry.col()] += std::abs(entry.value());
+    gradient_ = largest(sums);
+  }
+  problem_.momentum(span(z).first(index(problem_.nv())), span(momentum_));
+  return largest(delta_.head(problem_.nv())) <=
+         256 * kEpsilon * (largest(momentum_) + *gradient_ * largest(z.tail(problem_.nc())));
 }
 
 Status NewtonLoop::not_converged(double t, double correction) const {

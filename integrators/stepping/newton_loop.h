@@ -1,19 +1,32 @@
 // Newton's method for the unknowns z = (a, λ) of one step, as the implicit integrators share it.
 //
-//   matrix · correction = −residual(z),  z ← z ⊕ correction,  until the 2-norm of the correction is below the tolerance
+//   matrix · correction = −residual(z),  z ← z ⊕ correction
 //
-// or rounding lets it shrink no further. What a step's residual, matrix and ⊕ are, the integrator says. Nothing is
-// allocated in a step.
+// What a step's residual, matrix and ⊕ are, the integrator says. Nothing is allocated in a regular step. It ends
+//   relative      where no body's acceleration is corrected by more than tolerance · max(|g|, rms of accelerations), a
+//                 turn counted as the way it makes at the model's longest arm. λ is not looked at: it stands linearly
+//                 in the residual, so that its correction leaves nothing behind with a matrix of this step. With one of
+//                 steps before, the largest correction of λ is to be below tolerance · max |λ| besides.
+//   correction    where the 2-norm of the correction of all unknowns is below the tolerance, as in the original study,
+//                 (46)
+// by the settings' key "stopping", or where it can do no better in this arithmetic, once corrections have stopped to
+// shrink (with small steps Φ/h² magnifies the rounding of Φ; beside a singular position λ is noise, and the part of a
+// that the constraints say least of): where
+//   positions are corrected by no more than their rounding, 16 ε √bodies · max(1, |q|): that of each body's orientation
+//   moves all that hang on it, which adds up to √N of it over N bodies in a row;
+//   or Φ is so small and |M a + Gᵀλ − Q| ≤ 256 ε (|M a| + |Gᵀ||λ|), in maximum norms.
 #pragma once
 
 #include <Eigen/Core>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include "integrators/integrator.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/stepping/step_system.h"
 #include "integrators/stepping/vectors.h"
+#include "integrators/stopping_test.h"
 
 namespace poinsot {
 
@@ -21,39 +34,38 @@ class NewtonLoop {
  public:
   using Vector = Eigen::VectorXd;
 
-  NewtonLoop(const Problem& problem, StepSystem& system, const Settings& settings, Refresh refresh,
-             Statistics& statistics)
-      : problem_(problem),
-        system_(system),
-        settings_(settings),
-        refresh_(refresh),
-        statistics_(statistics),
-        delta_(problem.nv() + problem.nc()) {}
+  NewtonLoop(Problem& problem, StepSystem& system, const Settings& settings, Refresh refresh, Statistics& statistics);
 
-  // The step to t. `position` is δq/δa of the step, `q` the vector that positions' rounding is measured by.
+  // The step to t, for the unknowns z, from what they are. `position` is δq/δa of the step, `q` the vector that
+  // positions' rounding is measured by.
   //   residual(r)     writes the residual at z, nv + nc
   //   matrix()        assembles and factors: Status
   //   correct(delta)  turns the linear system's solution into the correction and applies it to z: Status
   template <class Residual, class Matrix, class Correct>
-  Status solve(double t, double position, const Vector& q, Residual&& residual, Matrix&& matrix, Correct&& correct) {
+  Status solve(double t, double position, const Vector& z, const Vector& q, Residual&& residual, Matrix&& matrix,
+               Correct&& correct) {
     double correction = 0, before = INFINITY;
+    bool stalled = false, of_this_step = false;
     for (int k = 0; k < settings_.max_iterations; ++k) {
       residual(delta_);
+      if (stalled && balanced(position, z, q)) return {};
       if (due(k)) {
         if (Status status = matrix(); !status.ok()) return status;
         slow_ = false;
+        of_this_step = refresh_ != Refresh::before_step;
       }
       delta_ = -delta_;
       if (Status status = system_.solve(t, span(delta_)); !status.ok()) return status;
       if (Status status = correct(delta_); !status.ok()) return status;
-      correction = delta_.norm();
+      correction = stopping_ == Stopping::relative ? relative(z, of_this_step) : delta_.norm();
       ++statistics_.newton_iterations;
       if (k > 0) {
         statistics_.convergence.sum += correction / before;
         ++statistics_.convergence.count;
         slow_ = !(correction < kSlow * before);
       }
-      if (correction < settings_.tolerance || (correction > 0.5 * before && is_rounding(position, q))) return {};
+      stalled = correction > 0.5 * before;
+      if (correction <= settings_.tolerance || (stalled && is_rounding(position, q))) return {};
       before = correction;
       if (!std::isfinite(correction)) break;
     }
@@ -77,19 +89,21 @@ class NewtonLoop {
     return true;
   }
 
-  // A correction that has stopped to shrink and moves positions by no more than their rounding: Newton's method cannot
-  // do better in this arithmetic, whatever the tolerance asks (with small steps Φ/h² magnifies the rounding of Φ). The
-  // rounding of each body's orientation moves all that hang on it; over N bodies in a row this adds up to √N of it.
+  double relative(const Vector& z, bool of_this_step) const;
   bool is_rounding(double position, const Vector& q) const;
+  bool balanced(double position, const Vector& z, const Vector& q);
   Status not_converged(double t, double correction) const;
 
-  const Problem& problem_;
+  Problem& problem_;
   StepSystem& system_;
   const Settings& settings_;
   Refresh refresh_;
+  Stopping stopping_;
   Statistics& statistics_;
-  Vector delta_;
-  bool slow_ = false;  // the last corrections did not shrink as they should
+  double arm_;  // m, the longest of a body to a constraint
+  Vector delta_, momentum_;
+  std::optional<double> gradient_;  // |Gᵀ|, found where it is asked for first: directions and arms stay what they are
+  bool slow_ = false;               // the last corrections did not shrink as they should
 };
 
 }  // namespace poinsot

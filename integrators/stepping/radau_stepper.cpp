@@ -335,7 +335,7 @@ Status RadauStepper::error_of(const State& from, double h, double& error) {
 
 Status RadauStepper::complete(double& error, double most) {
   if (Status status = consistent_.complete(next_); !status.ok()) return status;
-  error = std::max(error, error_norm(consistent_.moved_by(), span(scale_)));
+  error = std::max(error, error_norm(consistent_.moved_by(), span(scale_)) / consistent_.amplification());
   if (!(error <= most)) return {};
   before_ = state_;
   std::swap(state_, next_);

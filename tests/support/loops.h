@@ -136,4 +136,18 @@ inline Scene posts(int N, double angle, double w, bool redundant) {
   return scene;
 }
 
+// All posts swing alike, as one pendulum of the posts' and the couplers' inertia: their angle after `time`.
+inline double swung(int N, double angle, double w, double time) {
+  const double J = (N + 1) * (0.1 + 0.25) + N, m = (N + 1) * 0.5 + N;
+  constexpr int kSteps = 20000;
+  const double h = time / kSteps;
+  double phi = angle;
+  for (int n = 0; n < kSteps; ++n) {  // midpoint rule
+    const double half = phi + 0.5 * h * w, w_half = w - 0.5 * h * m * 9.81 * std::cos(phi) / J;
+    w -= h * m * 9.81 * std::cos(half) / J;
+    phi += h * w_half;
+  }
+  return phi;
+}
+
 }  // namespace poinsot::test

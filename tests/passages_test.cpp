@@ -1,0 +1,73 @@
+// Singular positions, passed on the branch that the velocities lead to: posts in a row with couplers, all in one line
+// where a run starts, beside it, or on the way.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "integrators/integrator.h"
+#include "tests/support/loops.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+constexpr double kEnd = 0.2, kSpin = -3;
+
+struct Passage {
+  int loops;
+  double angle;  // rad, at the start
+  bool redundant;
+
+  Scene scene() const { return posts(loops, angle, kSpin, redundant); }
+  double off(const BodyState& post) const {
+    const double phi = swung(loops, angle, kSpin, kEnd);
+    return (post.r - Vector3(0.5 * std::cos(phi), 0.5 * std::sin(phi), 0)).norm();
+  }
+  friend std::ostream& operator<<(std::ostream& out, const Passage& p) {
+    return out << fmt::format("{} loops from {} rad, {}", p.loops, p.angle, p.redundant ? "redundant" : "planar");
+  }
+};
+
+std::vector<Passage> passages() {
+  std::vector<Passage> all;
+  for (const int loops : {1, 2})
+    for (const double angle : {0.0, 1e-13, 1e-7, 0.05})
+      for (const bool redundant : {true, false}) all.push_back({loops, angle, redundant});
+  return all;
+}
+
+class Passages : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(All, Passages, ::testing::ValuesIn(formulation_names()),
+                         [](const auto& test) { return test.param; });
+
+TEST_P(Passages, OfStepsOfFixedLength) {
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;
+    for (const Passage& passage : passages()) {
+      for (const double tolerance : {1e-3, 1e-8}) {
+        SCOPED_TRACE(::testing::Message() << integrator.name << ' ' << tolerance << ' ' << passage);
+        Settings settings = dynamics(GetParam(), 1e-2, kEnd, kEnd);
+        settings.integrator = integrator.name;
+        settings.tolerance = tolerance;
+        settings.max_iterations = Settings{}.max_iterations;
+        const Recorded r = run(passage.scene(), settings);
+        ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+        EXPECT_LT(passage.off(r.samples.back().bodies[0]), integrator.order == 1 ? 1e-2 : 5e-4);
+      }
+    }
+  }
+}
+
+TEST_P(Passages, OfErrorControl) {
+  for (const Passage& passage : passages()) {
+    SCOPED_TRACE(passage);
+    for (const double rtol : {1e-6, 1e-8}) {
+      const Recorded r = run(passage.scene(), controlled("dop853", GetParam(), rtol, kEnd, kEnd));
+      ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+      EXPECT_LT(passage.off(r.samples.back().bodies[0]), 10 * rtol);
+      EXPECT_LT(r.outcome.statistics.rejected_steps, 100);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace poinsot::test
