@@ -1,0 +1,122 @@
+#include "bench/cases/case_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/cases/watch.h"
+#include "bench/study/measure.h"
+#include "bench/study/output_file.h"
+#include "core/input_error.h"
+#include "core/interruption.h"
+#include "core/scene_writer.h"
+#include "integrators/simulate.h"
+
+namespace poinsot::cases {
+namespace {
+
+constexpr std::string_view kWrongInput = "input_error";
+
+struct Result {
+  std::string status = "ok", message;
+  std::vector<double> values;  // none after a failure
+
+  bool ok() const { return status == "ok"; }
+};
+
+std::string fields(const Study& study, const Case& one, const Result& result, std::size_t columns) {
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  const StudyScene& scene = study.scenes[one.scene];
+  fmt::format_to(out, "{},{}", study::csv_field(scene.name), scene.scene.bodies.size());
+  for (const double value : one.parameters) fmt::format_to(out, ",{}", value);
+  for (const std::string& value : study.settings[one.settings].values) fmt::format_to(out, ",{}", value);
+  fmt::format_to(out, ",{}", result.status);
+  for (std::size_t k = 0; k < columns; ++k) {
+    text.push_back(',');
+    if (k < result.values.size() && std::isfinite(result.values[k])) fmt::format_to(out, "{}", result.values[k]);
+  }
+  std::string message = result.message;
+  std::ranges::replace_if(
+      message, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  fmt::format_to(out, ",{}", study::csv_field(message));
+  return fmt::to_string(text);
+}
+
+Result failed(const Status& status) {
+  return {std::string(name(status.failure)), status.message, {}};
+}
+
+}  // namespace
+
+bool same_scene(const Study& study, std::int64_t one, std::int64_t other) {
+  const auto settings = static_cast<std::int64_t>(study.settings.size());
+  return one / settings == other / settings;
+}
+
+std::shared_ptr<const study::Reference> References::find(const Scene& scene, const study::ReferenceSettings& settings) {
+  const std::string key = study::reference_key(scene, settings, scene.source.empty() ? to_json(scene) : std::string());
+  std::promise<std::shared_ptr<const study::Reference>> promise;
+  const auto future = promise.get_future().share();
+  {
+    std::unique_lock lock(access_);
+    if (const auto at = std::ranges::find(known_, key, &Known::first); at != known_.end()) {
+      const auto found = at->second;
+      lock.unlock();  // it may be under way in another thread
+      return found.get();
+    }
+    if (known_.size() == kMost) known_.erase(known_.begin());
+    known_.emplace_back(key, future);
+  }
+  try {
+    std::vector<std::string> notices;
+    promise.set_value(std::make_shared<const study::Reference>(study::reference(scene, settings, cache_, notices)));
+  } catch (...) {
+    promise.set_exception(std::current_exception());
+  }
+  return future.get();
+}
+
+CaseRunner::CaseRunner(const Study& study, References& references)
+    : study_(study), references_(references), names_(parameter_names(study)), columns_(study.kept.columns().size()) {}
+
+const Scene& CaseRunner::scene_of(const Case& one) {
+  const Scene& scene = study_.scenes[one.scene].scene;
+  if (one.parameters.empty()) return scene;
+  std::map<std::string, double> values;
+  for (std::size_t k = 0; k < names_.size(); ++k) values.emplace(names_[k], one.parameters[k]);
+  varied_ = with_parameters(scene, values);
+  return varied_;
+}
+
+std::optional<CaseRow> CaseRunner::run(std::int64_t number) {
+  const Case one = case_of(study_, number);
+  const Settings& settings = study_.settings[one.settings].settings;
+  Result result;
+  try {
+    const Scene& scene = scene_of(one);
+    Watch watch(study_.kept, study_.scenes[one.scene].columns);
+    const Outcome outcome = simulate(scene, settings, [&](const Sample& sample) { watch.observe(sample); });
+    if (outcome.status.failure == Failure::interrupted) return {};
+    if (!outcome.status.ok()) {
+      result = failed(outcome.status);
+    } else {
+      std::shared_ptr<const study::Reference> reference;
+      if (study_.kept.errors) {
+        reference = references_.find(scene, {settings.end, settings.every, study_.kept.digits});
+        if (interruption_requested) return {};  // and the reference perhaps with it
+        if (reference->given < 0) {
+          result.message = study::why_none(*reference);
+          reference = nullptr;
+        }
+      }
+      result.values = watch.values(outcome.statistics, reference.get());
+    }
+  } catch (const InputError& error) {
+    result = {std::string(kWrongInput), error.what(), {}};
+  }
+  return make_row(study_, one, fields(study_, one, result, columns_), !result.ok());
+}
+
+}  // namespace poinsot::cases

@@ -1,0 +1,60 @@
+// The module that joins the ranks of an MPI job (bench/cases/ranks.h). It uses nothing of the program but that header.
+#include <mpi.h>
+
+#include <algorithm>
+
+#include "bench/cases/ranks.h"
+
+namespace {
+
+using poinsot::cases::Ranks;
+
+class MpiRanks final : public Ranks {
+ public:
+  MpiRanks() {
+    int provided = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  }
+
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+
+  void broadcast(std::string& bytes) override {
+    auto length = static_cast<unsigned long long>(bytes.size());
+    MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
+    bytes.resize(length);
+    constexpr unsigned long long kPiece = 1 << 30;
+    for (unsigned long long begin = 0; begin < length; begin += kPiece)
+      MPI_Bcast(bytes.data() + begin, static_cast<int>(std::min(kPiece, length - begin)), MPI_BYTE, 0, MPI_COMM_WORLD);
+  }
+
+  void send(int to, std::string_view bytes) override {
+    MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, 0, MPI_COMM_WORLD);
+  }
+
+  std::optional<Message> receive() override {
+    int there = 0, size = 0;
+    MPI_Status status;
+    MPI_Iprobe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &there, &status);
+    if (!there) return {};
+    MPI_Get_count(&status, MPI_BYTE, &size);
+    Message message{status.MPI_SOURCE, std::string(static_cast<std::size_t>(size), '\0')};
+    MPI_Recv(message.bytes.data(), size, MPI_BYTE, message.from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    return message;
+  }
+
+  void finish() override { MPI_Finalize(); }
+  void abort(int status) override { MPI_Abort(MPI_COMM_WORLD, status); }
+
+ private:
+  int rank_ = 0, size_ = 1;
+};
+
+}  // namespace
+
+extern "C" Ranks* poinsot_join_ranks();
+extern "C" Ranks* poinsot_join_ranks() {
+  return new MpiRanks;
+}
