@@ -18,13 +18,6 @@ namespace {
 
 constexpr std::string_view kWrongInput = "input_error";
 
-struct Result {
-  std::string status = "ok", message;
-  std::vector<double> values;  // none after a failure
-
-  bool ok() const { return status == "ok"; }
-};
-
 std::string fields(const Study& study, const Case& one, const Result& result, std::size_t columns) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
@@ -42,10 +35,6 @@ std::string fields(const Study& study, const Case& one, const Result& result, st
       message, [](char c) { return c == '\n' || c == '\r'; }, ' ');
   fmt::format_to(out, ",{}", study::csv_field(message));
   return fmt::to_string(text);
-}
-
-Result failed(const Status& status) {
-  return {std::string(name(status.failure)), status.message, {}};
 }
 
 }  // namespace
@@ -90,33 +79,73 @@ const Scene& CaseRunner::scene_of(const Case& one) {
   return varied_;
 }
 
+Result CaseRunner::computed(const Case& one, const Scene& scene) {
+  const Settings& settings = study_.settings[one.settings].settings;
+  Watch watch(study_.kept, study_.scenes[one.scene].columns);
+  const Outcome outcome = simulate(scene, settings, [&](const Sample& sample) { watch.observe(sample); });
+  if (!outcome.status.ok()) return {std::string(name(outcome.status.failure)), outcome.status.message, {}};
+  Result result;
+  std::shared_ptr<const study::Reference> reference;
+  if (study_.kept.errors) {
+    reference = references_.find(scene, {settings.end, settings.every, study_.kept.digits});
+    if (reference->given < 0) {
+      result.message = study::why_none(*reference);
+      reference = nullptr;
+    }
+  }
+  result.values = watch.values(outcome.statistics, reference.get());
+  return result;
+}
+
 std::optional<CaseRow> CaseRunner::run(std::int64_t number) {
   const Case one = case_of(study_, number);
-  const Settings& settings = study_.settings[one.settings].settings;
   Result result;
   try {
-    const Scene& scene = scene_of(one);
-    Watch watch(study_.kept, study_.scenes[one.scene].columns);
-    const Outcome outcome = simulate(scene, settings, [&](const Sample& sample) { watch.observe(sample); });
-    if (outcome.status.failure == Failure::interrupted) return {};
-    if (!outcome.status.ok()) {
-      result = failed(outcome.status);
-    } else {
-      std::shared_ptr<const study::Reference> reference;
-      if (study_.kept.errors) {
-        reference = references_.find(scene, {settings.end, settings.every, study_.kept.digits});
-        if (interruption_requested) return {};  // and the reference perhaps with it
-        if (reference->given < 0) {
-          result.message = study::why_none(*reference);
-          reference = nullptr;
-        }
-      }
-      result.values = watch.values(outcome.statistics, reference.get());
-    }
+    result = computed(one, scene_of(one));
   } catch (const InputError& error) {
     result = {std::string(kWrongInput), error.what(), {}};
   }
+  if (interruption_requested) return {};  // what it was at may have ended early
   return make_row(study_, one, fields(study_, one, result, columns_), !result.ok());
+}
+
+std::vector<CaseRow> CaseRunner::run_timed(const std::vector<std::int64_t>& numbers) {
+  std::vector<Case> all;
+  std::vector<Result> results;
+  std::vector<study::Cell> cells;
+  for (const std::int64_t number : numbers) {
+    all.push_back(case_of(study_, number));
+    const Case& one = all.back();
+    try {
+      const Scene& scene = scene_of(one);
+      results.push_back(computed(one, scene));
+      cells.push_back({study_.scenes[one.scene].name, &scene, study_.settings[one.settings].settings, {}, {}});
+    } catch (const InputError& error) {
+      results.push_back({std::string(kWrongInput), error.what(), {}});
+      cells.emplace_back();
+    }
+    cells.back().failure = results.back().ok() ? "" : results.back().message;
+    if (!results.back().ok() && cells.back().failure.empty()) cells.back().failure = results.back().status;
+  }
+  study::measure(cells, study_.repetitions, {});
+  std::vector<CaseRow> rows;
+  if (interruption_requested) return rows;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    Result& result = results[k];
+    if (result.ok()) {
+      const auto of = [&](study::PhaseSeconds phase) {
+        std::vector<double> seconds;
+        for (const Statistics& run : cells[k].runs) seconds.push_back(phase(run));
+        return study::timing(seconds);
+      };
+      const study::Timing total = of(study::total);
+      result.values.insert(result.values.end(),
+                           {total.median, total.spread, of(study::assembly).median, of(study::factor).median,
+                            of(study::solve).median, of(study::rest).median});
+    }
+    rows.push_back(make_row(study_, all[k], fields(study_, all[k], result, columns_), !result.ok()));
+  }
+  return rows;
 }
 
 }  // namespace poinsot::cases

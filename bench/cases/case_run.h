@@ -31,6 +31,13 @@ class References {
   std::vector<Known> known_;  // the latest last
 };
 
+struct Result {
+  std::string status = "ok", message;
+  std::vector<double> values;  // by Kept::columns(); none after a failure
+
+  bool ok() const { return status == "ok"; }
+};
+
 // For one thread.
 class CaseRunner {
  public:
@@ -43,6 +50,7 @@ class CaseRunner {
 
  private:
   const Scene& scene_of(const Case& one);
+  Result computed(const Case& one, const Scene& scene);  // but for the times
 
   const Study& study_;
   References& references_;

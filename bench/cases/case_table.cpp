@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include "bench/study/cache.h"
 #include "bench/study/csv.h"
@@ -44,9 +45,12 @@ std::uint64_t hex(std::string_view digits) {
   return value;
 }
 
+constexpr char kOk = ' ', kFailed = '!';  // after the key
+
 // Whether the line, without its end, is a row; of which case.
-bool is_row(std::string_view line, std::uint64_t& key, std::int64_t& number) {
-  if (line.size() <= kHead || line[kHex] != ' ' || line[2 * kHex + 1] != ' ') return false;
+bool is_row(std::string_view line, std::uint64_t& key, std::int64_t& number, bool& failed) {
+  if (line.size() <= kHead || line[kHex] != ' ') return false;
+  failed = line[2 * kHex + 1] == kFailed;
   if (hex(line.substr(0, kHex)) != content_hash(line.substr(kHex + 1))) return false;
   key = hex(line.substr(kHex + 1, kHex));
   return std::from_chars(line.data() + kHead, line.data() + line.size(), number).ec == std::errc();
@@ -89,7 +93,8 @@ class Lines {
 }  // namespace
 
 CaseRow make_row(const Study& study, const Case& one, const std::string& fields, bool failed) {
-  const std::string rest = fmt::format("{:016x} {},{}", key_of(study, one), one.number, fields);
+  const std::string rest =
+      fmt::format("{:016x}{}{},{}", key_of(study, one), failed ? kFailed : kOk, one.number, fields);
   return {one.number, fmt::format("{:016x} {}\n", content_hash(rest), rest), failed};
 }
 
@@ -107,12 +112,14 @@ CaseTable::~CaseTable() {
   for (const Part& part : parts_) close(part.descriptor);
 }
 
-void CaseTable::place(std::int64_t number, std::size_t part, std::uint64_t offset, bool once) {
+void CaseTable::place(std::int64_t number, std::size_t part, std::uint64_t offset, bool failed, bool once) {
   std::uint64_t& place = places_[static_cast<std::size_t>(number)];
   if (once && place != kNone)
     throw InputError(fmt::format("case {} stands in {} and in {}; expected each shard once", number,
                                  parts_[place >> kPartShift].file.string(), parts_[part].file.string()));
-  if (place == kNone) place = part << kPartShift | offset;
+  if (place != kNone) return;
+  place = part << kPartShift | offset;
+  failures_ += failed;
 }
 
 std::int64_t CaseTable::read(const fs::path& file, bool once) {
@@ -132,17 +139,18 @@ std::int64_t CaseTable::read(const fs::path& file, bool once) {
   parts_.push_back({file, descriptor});
   const std::size_t part = parts_.size() - 1;
   std::int64_t taken = 0;
-  std::map<std::uint64_t, std::uint64_t> elsewhere;  // offset by key, of rows under other numbers
+  std::map<std::uint64_t, std::pair<std::uint64_t, bool>> elsewhere;  // by key: rows under other numbers
   while (lines.next(line)) {
     std::uint64_t key = 0;
     std::int64_t number = 0;
-    if (!is_row(line, key, number)) {
+    bool failed = false;
+    if (!is_row(line, key, number, failed)) {
       ++damaged_;
     } else if (number >= 0 && number < study_.size() && key == key_of(study_, case_of(study_, number))) {
-      place(number, part, lines.offset(), once);
+      place(number, part, lines.offset(), failed, once);
       ++taken;
     } else {
-      elsewhere.emplace(key, lines.offset());
+      elsewhere.insert_or_assign(key, std::pair(lines.offset(), failed));
     }
   }
   damaged_ += lines.torn();
@@ -150,7 +158,7 @@ std::int64_t CaseTable::read(const fs::path& file, bool once) {
     if (has(number)) continue;
     const auto found = elsewhere.find(key_of(study_, case_of(study_, number)));
     if (found == elsewhere.end()) continue;
-    place(number, part, found->second, once);
+    place(number, part, found->second.first, found->second.second, once);
     elsewhere.erase(found);
     ++taken;
   }

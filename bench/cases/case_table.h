@@ -3,7 +3,8 @@
 // A part (cases.part, shard-2-of-4.part) has notes ("# key: text") that say which program computed it, then a line for
 // each case, written in one call:
 //
-//   CHECKSUM KEY NUMBER,scene,bodies,...        checksum of all that follows it, key of the case (study_file.h)
+//   CHECKSUM KEY NUMBER,scene,bodies,...        checksum of all that follows it, key of the case (study_file.h), after
+//                                               which stands ! in the place of the blank where the case failed
 //
 // A torn last line and lines whose checksum is wrong are no rows: their cases are computed again. So is what a changed
 // study asks for; cases that it still has, perhaps under another number, are not. In memory stand eight bytes a case.
@@ -76,7 +77,7 @@ class CaseTable {
     std::filesystem::path file;
     int descriptor = -1;
   };
-  void place(std::int64_t number, std::size_t part, std::uint64_t offset, bool once);
+  void place(std::int64_t number, std::size_t part, std::uint64_t offset, bool failed, bool once);
 
   const Study& study_;
   std::vector<Part> parts_;

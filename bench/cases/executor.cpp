@@ -2,6 +2,7 @@
 
 #include <sched.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <exception>
@@ -58,6 +59,21 @@ void run_threads(const Study& study, References& references, int threads, const 
   }
   pool.clear();
   if (first) std::rethrow_exception(first);
+}
+
+void run_timed(const Study& study, References& references, const Work& work) {
+  CaseRunner runner(study, references);
+  std::vector<std::int64_t> block;
+  for (bool more = true; more && !interruption_requested;) {
+    const std::vector<std::int64_t> next = work.take();
+    more = !next.empty();
+    if (!block.empty() && (!more || !same_scene(study, block.front(), next.front()))) {
+      for (CaseRow& row : runner.run_timed(block)) work.put(std::move(row));
+      block.clear();
+      work.meanwhile();
+    }
+    block.insert(block.end(), next.begin(), next.end());
+  }
 }
 
 int processors() {

@@ -62,25 +62,28 @@ Quantity read_quantity(const JsonValue& item) {
     take(quantity, *taken);
   }
   const auto at = item.optional("at");
-  if (at) {
-    if (at->size("an array of times") == 0) at->expected("an array of times, at least one");
+  if (at && at->is_array()) {
+    if (at->size("") == 0) at->expected("an array of times, at least one");
     for (std::size_t k = 0; k < at->size(""); ++k) {
       const JsonValue t = at->at(k);
       quantity.at.push_back(t.number("a time, s"));
       if (k > 0 && !(quantity.at[k] > quantity.at[k - 1])) t.expected("a time after the one before it");
     }
+  } else if (at) {
+    at->keys("times", {"from", "to", "count"});
+    quantity.at = read_range(*at);
+    if (quantity.at.back() < quantity.at.front()) at->required("to").expected("a time after \"from\"");
   } else if (!taken) {
     quantity.final = true;
   }
   return quantity;
 }
 
-// The column as it is kept where there are no other quantities of it.
-std::string at_name(const std::string& name, double t) {
-  return fmt::format("{}@{}", name, t);
-}
-
 }  // namespace
+
+std::string Kept::at_name(const std::string& quantity, double t) {
+  return fmt::format("{}@{:.12g}", quantity, t);
+}
 
 std::vector<std::string> Kept::columns() const {
   std::vector<std::string> names;

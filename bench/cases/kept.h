@@ -6,7 +6,8 @@
 // gives the columns violation_position, violation_velocity; energy_drift (largest |E − E(0)| over the largest kinetic
 // energy; empty where the scene's energy changes); steps, newton_iterations, factorizations; error_position ... against
 // a reference (bench/study/reference.h); seconds (median of the repetitions), spread, seconds_assembly ...; x.final,
-// x.min, x.max, x.range = max − min, over the output times, x@0.1, x@0.2. Times must be output times.
+// x.min, x.max, x.range = max − min, over the output times, x@0.1, x@0.2. Times must be output times; evenly spaced
+// ones are {"from": 0, "to": 1, "count": 11}.
 #pragma once
 
 #include <string>
@@ -33,7 +34,8 @@ struct Kept {
   int digits = 10;  // of the reference that errors are against
 
   std::vector<std::string> columns() const;
-  std::string text() const;  // all there is to it
+  static std::string at_name(const std::string& quantity, double t);  // "x@0.1"
+  std::string text() const;                                           // all there is to it
 };
 
 // "keep" of a study. `timed`: whether runs are repeated.

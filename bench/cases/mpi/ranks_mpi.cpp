@@ -2,6 +2,8 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <list>
+#include <utility>
 
 #include "bench/cases/ranks.h"
 
@@ -30,11 +32,15 @@ class MpiRanks final : public Ranks {
       MPI_Bcast(bytes.data() + begin, static_cast<int>(std::min(kPiece, length - begin)), MPI_BYTE, 0, MPI_COMM_WORLD);
   }
 
+  // Two ranks may send to one another at a time, so neither waits for the other to receive.
   void send(int to, std::string_view bytes) override {
-    MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, 0, MPI_COMM_WORLD);
+    forget_sent();
+    Sent& sent = sent_.emplace_back(std::string(bytes));
+    MPI_Isend(sent.bytes.data(), static_cast<int>(sent.bytes.size()), MPI_BYTE, to, 0, MPI_COMM_WORLD, &sent.request);
   }
 
   std::optional<Message> receive() override {
+    forget_sent();
     int there = 0, size = 0;
     MPI_Status status;
     MPI_Iprobe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &there, &status);
@@ -45,11 +51,28 @@ class MpiRanks final : public Ranks {
     return message;
   }
 
-  void finish() override { MPI_Finalize(); }
+  void finish() override {
+    for (Sent& sent : sent_) MPI_Wait(&sent.request, MPI_STATUS_IGNORE);
+    MPI_Finalize();
+  }
   void abort(int status) override { MPI_Abort(MPI_COMM_WORLD, status); }
 
  private:
+  struct Sent {
+    explicit Sent(std::string what) : bytes(std::move(what)) {}
+    std::string bytes;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+  void forget_sent() {
+    sent_.remove_if([](Sent& sent) {
+      int done = 0;
+      MPI_Test(&sent.request, &done, MPI_STATUS_IGNORE);
+      return done != 0;
+    });
+  }
+
   int rank_ = 0, size_ = 1;
+  std::list<Sent> sent_;  // under way
 };
 
 }  // namespace
