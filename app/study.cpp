@@ -140,7 +140,9 @@ void compute(const Options& options, Computation& c, Ranks* ranks) {
     progress.at({before + static_cast<double>(done), all, before},
                 fmt::format(", {:.3g} cases/s, {} failed", static_cast<double>(done) / passed, c.table.failures()));
   };
-  const auto take = [&] { return undone.take(1); };
+  // Those of one scene together: it is read once for all of them.
+  const std::size_t together = std::clamp<std::size_t>(c.study.settings.size(), 1, 16);
+  const auto take = [&] { return undone.take(together); };
   if (c.study.timed()) {
     c.core = pin_to_one_core();
     run_timed(c.study, references, {take, put, tell});

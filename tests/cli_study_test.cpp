@@ -186,7 +186,7 @@ TEST_F(CliStudy, ATenthIsPartOfTheWholeAndAChangedStudyKeepsWhatItStillAsksFor) 
   ASSERT_EQ(study({"--quick", "--out", "out"}).status, 0);
   const std::vector<std::string> quick = lines(read("out/cases.csv"));
   ASSERT_EQ(quick.size(), 9u);
-  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(quick[k + 1], expected[1 + k / 2 * 20 + k % 2]);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(quick[k + 1], expected[1 + k / 2 * 22 + k % 2]);
   ASSERT_EQ(study({"--out", "out"}).status, 0);
   EXPECT_EQ(lines(read("out/cases.csv")), expected);
   const auto rows = [&] { return lines(read("out/cases.part")).size(); };

@@ -3,7 +3,6 @@ reader's messages, are in study_schema_test.json; cases_study_test.cpp gives the
 
 import json
 import pathlib
-import re
 import sys
 
 import jsonschema
@@ -22,8 +21,8 @@ def main():
         expected = "error" not in case or case.get("schema") == "accepts"
         if validator.is_valid(build(table["base"], case)) != expected:
             wrong.append(f"{case['what']}: the schema should {'accept' if expected else 'refuse'} this")
-    texts = {path: re.sub(r"(?m)//[^\"]*$", "", path.read_text()) for path in sorted((root / "bench/studies").glob("*.json"))}
-    studies = {path: document for path, text in texts.items() if "study" in (document := json.loads(text))}
+    texts = {path: path.read_text() for path in sorted((root / "bench/studies").glob("*.json"))}
+    studies = {path: json.loads(text) for path, text in texts.items() if '"study":' in text}  # others are scenes
     for path, document in studies.items():
         for error in validator.iter_errors(document):
             wrong.append(f"{path.name}: {error.message}")

@@ -73,9 +73,13 @@ CaseRunner::CaseRunner(const Study& study, References& references)
 const Scene& CaseRunner::scene_of(const Case& one) {
   const Scene& scene = study_.scenes[one.scene].scene;
   if (one.parameters.empty()) return scene;
+  if (varied_of_ == one.scene && varied_by_ == one.parameters) return varied_;
+  varied_by_.clear();  // until it is read
   std::map<std::string, double> values;
   for (std::size_t k = 0; k < names_.size(); ++k) values.emplace(names_[k], one.parameters[k]);
   varied_ = with_parameters(scene, values);
+  varied_of_ = one.scene;
+  varied_by_ = one.parameters;
   return varied_;
 }
 

@@ -1,7 +1,7 @@
 // One case, computed: what the study keeps of it, as the fields of its row.
 //
-// What does not change from case to case is kept: the model where no parameter varies, a scene's reference. A case
-// whose input is wrong, or whose numerics fail, is a row with its status and message.
+// What does not change from case to case is kept: the scene where only settings differ, its reference. A case whose
+// input is wrong, or whose numerics fail, is a row with its status and message.
 #pragma once
 
 #include <future>
@@ -56,7 +56,9 @@ class CaseRunner {
   References& references_;
   std::vector<std::string> names_;  // of the parameters
   std::size_t columns_;             // kept
-  Scene varied_;
+  Scene varied_;                    // the scene of the last case with parameters, of this one and these:
+  std::size_t varied_of_ = 0;
+  std::vector<double> varied_by_;
 };
 
 // Whether two cases differ in their settings alone.

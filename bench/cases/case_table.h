@@ -20,8 +20,8 @@
 
 namespace poinsot::cases {
 
-// Whose cases a process computes: `place` of `places`, counted from 1; with `quick` a tenth of them, every tenth place
-// along the longest dimension of the study.
+// Whose cases a process computes: `place` of `places`, counted from 1; with `quick` a tenth of them, one in ten places
+// along the longest dimension of the study (0, 11, 22, ...).
 class Selection {
  public:
   Selection(const Study& study, bool quick, int place = 1, int places = 1);

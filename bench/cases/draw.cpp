@@ -90,7 +90,7 @@ Drawn histogram(const Picture& picture, const Rows& rows) {
   drawn.table.rows = {{picture.x, fmt::format("{}", values.size()), text(mean),
                        text(n > 1 ? std::sqrt(square / (n - 1)) : 0), text(low), quantile(0.05), quantile(0.5),
                        quantile(0.95), text(values.back())}};
-  Curve curve{picture.title, picture.x, "", {}};
+  Curve curve{"", picture.x, "", {}};
   for (std::size_t k = 0; k < counts.size(); ++k)
     for (const std::size_t edge : {k, k + 1})
       curve.points.push_back({low + width * static_cast<double>(edge), static_cast<double>(counts[k])});
@@ -106,7 +106,7 @@ Drawn points(const Picture& picture, const Rows& rows) {
     const std::string name = picture.series.empty() ? picture.y : row[series];
     const double at = number(row[x]), value = number(row[y]);
     if (!std::isfinite(at) || !std::isfinite(value)) return;
-    curves.try_emplace(name, Curve{picture.title, name, "", {}}).first->second.points.push_back({at, value});
+    curves.try_emplace(name, Curve{"", name, "", {}}).first->second.points.push_back({at, value});
   });
   drawn.table.header = {"series", "cases", "least", "greatest"};
   for (auto& [name, curve] : curves) {
@@ -176,7 +176,7 @@ Drawn ratio(const Picture& picture, const Rows& rows, const Study& study) {
     for (const auto& [name, value] : compared.y) {
       if (name == picture.to) continue;
       const double r = value / base->second;
-      curves.try_emplace(name, Curve{picture.title, name, "", {}}).first->second.points.push_back({compared.x, r});
+      curves.try_emplace(name, Curve{"", name, "", {}}).first->second.points.push_back({compared.x, r});
       ratios[name].push_back(r);
     }
   }
