@@ -120,19 +120,19 @@ Drawn points(const Picture& picture, const Rows& rows) {
 }
 
 Drawn curves(const Picture& picture, const Rows& rows, const Kept& kept, const Selection& selection) {
-  constexpr std::int64_t kMost = 12;  // curves that can be told apart
+  constexpr std::int64_t kMost = 7;  // curves that can be told apart, and named below them
+  const std::string name = picture.series.empty() ? "case" : picture.series;
   Drawn drawn = begin(picture, picture.x, picture.y);
   const std::vector<double>& times = std::ranges::find(kept.quantities, picture.x, &Quantity::name)->at;
   const std::size_t x = rows.column(Kept::at_name(picture.x, times.front())),
-                    y = rows.column(Kept::at_name(picture.y, times.front())),
-                    series = rows.column(picture.series.empty() ? "case" : picture.series);
+                    y = rows.column(Kept::at_name(picture.y, times.front())), series = rows.column(name);
   const std::int64_t every = std::max<std::int64_t>(1, (selection.size() + kMost - 1) / kMost);
-  drawn.table.header = {picture.series.empty() ? "case" : picture.series, "least x", "greatest x", "least y",
-                        "greatest y"};
+  drawn.table.header = {name, "least x", "greatest x", "least y", "greatest y"};
   std::int64_t count = 0;
   rows.for_each([&](const std::vector<std::string>& row) {
+    const double label = number(row[series]);
     Curve curve{
-        picture.title, fmt::format("{} {}", picture.series.empty() ? "case" : picture.series, row[series]), "", {}};
+        "", fmt::format("{} {}", name, std::isfinite(label) ? fmt::format("{:.4g}", label) : row[series]), "", {}};
     study::Range across, up;
     for (std::size_t k = 0; k < times.size(); ++k) {
       const double at = number(row[x + k]), value = number(row[y + k]);
