@@ -74,10 +74,15 @@ const Scene& CaseRunner::scene_of(const Case& one) {
   const Scene& scene = study_.scenes[one.scene].scene;
   if (one.parameters.empty()) return scene;
   if (varied_of_ == one.scene && varied_by_ == one.parameters) return varied_;
-  varied_by_.clear();  // until it is read
+  if (!text_ || text_of_ != one.scene) {
+    text_.emplace(scene);
+    text_of_ = one.scene;
+  }
   std::map<std::string, double> values;
   for (std::size_t k = 0; k < names_.size(); ++k) values.emplace(names_[k], one.parameters[k]);
-  varied_ = with_parameters(scene, values);
+  varied_by_.clear();  // until it is read
+  // References are known by the scene's text.
+  varied_ = study_.kept.errors ? with_parameters(scene, values) : text_->with(values);
   varied_of_ = one.scene;
   varied_by_ = one.parameters;
   return varied_;

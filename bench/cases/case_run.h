@@ -13,6 +13,7 @@
 
 #include "bench/cases/case_table.h"
 #include "bench/study/reference.h"
+#include "core/varied_scene.h"
 
 namespace poinsot::cases {
 
@@ -56,7 +57,9 @@ class CaseRunner {
   References& references_;
   std::vector<std::string> names_;  // of the parameters
   std::size_t columns_;             // kept
-  Scene varied_;                    // the scene of the last case with parameters, of this one and these:
+  std::optional<VariedScene> text_;
+  std::size_t text_of_ = 0;
+  Scene varied_;  // the scene of the last case with parameters, of this one and these:
   std::size_t varied_of_ = 0;
   std::vector<double> varied_by_;
 };
