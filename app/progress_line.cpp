@@ -30,7 +30,7 @@ study::ProgressCallback ProgressLine::callback() {
   return [this](const study::Progress& progress) { at(progress); };
 }
 
-void ProgressLine::at(const study::Progress& progress) {
+void ProgressLine::at(const study::Progress& progress, std::string_view more) {
   const auto& [done, all, skipped] = progress;
   if (!enabled_) return;
   const auto now = Clock::now();
@@ -41,8 +41,8 @@ void ProgressLine::at(const study::Progress& progress) {
   if (now < next_ || done <= skipped) return;
   next_ = now + kBetween;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  fmt::print(stderr, "\r\x1b[K{:3.0f} %  {:.6g} of {:.6g} {}, {} left", 100 * done / all, done, all, unit_,
-             duration(elapsed * (all - done) / (done - skipped)));
+  fmt::print(stderr, "\r\x1b[K{:3.0f} %  {:.6g} of {:.6g} {}, {} left{}", 100 * done / all, done, all, unit_,
+             duration(elapsed * (all - done) / (done - skipped)), more);
   std::fflush(stderr);
   drawn_ = true;
 }

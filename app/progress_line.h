@@ -16,7 +16,8 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  void at(const study::Progress& progress);
+  // `more` stands at the end of the line.
+  void at(const study::Progress& progress, std::string_view more = {});
   study::ProgressCallback callback();  // must not outlive the line
   void clear();
 

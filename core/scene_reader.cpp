@@ -15,6 +15,7 @@
 #include "core/scene_validation.h"
 #include "core/scene_values.h"
 #include "core/table_file.h"
+#include "core/varied_scene.h"
 
 namespace poinsot {
 namespace {
@@ -92,14 +93,13 @@ bool load_tables(JsonDocument& document, const std::filesystem::path& folder) {
   return any;
 }
 
-}  // namespace
-
-Scene parse_scene(std::string_view text, std::string_view file, const ParameterValues& set) {
-  JsonDocument document(text, file);
+void require_keys(const JsonDocument& document) {
   document.root().keys("a scene", {"$schema", "scene", "name", "about", "parameters", "tables", "gravity", "bodies",
                                    "constraints", "joints", "drivers", "forces"});
-  const bool with_values = set_parameters(document, set);
-  const bool with_files = load_tables(document, std::filesystem::path(file).parent_path());
+}
+
+// All but the text that is the scene.
+Scene read_document(const JsonDocument& document, std::string_view file, const ParameterValues& set) {
   Definitions definitions(document);
   const JsonValue root = document.root(&definitions);
   const JsonValue version = root.required("scene");
@@ -133,6 +133,27 @@ Scene parse_scene(std::string_view text, std::string_view file, const ParameterV
     scene.notices.push_back(
         "the scene has joints and says nothing of gravity, so there is none; \"gravity\": "
         "[0, 0, -9.81] is the earth's, [0, 0, 0] says that none is meant");
+  return scene;
+}
+
+ParameterValues texts_of(const std::map<std::string, double>& values) {
+  ParameterValues texts;
+  for (const auto& [name, value] : values) texts.emplace(name, fmt::format("{}", value));
+  return texts;
+}
+
+void require_read(const Scene& scene) {
+  if (scene.source.empty()) throw InputError("with_parameters: found a scene that was not read, expected one that was");
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, std::string_view file, const ParameterValues& set) {
+  JsonDocument document(text, file);
+  require_keys(document);
+  const bool with_values = set_parameters(document, set);
+  const bool with_files = load_tables(document, std::filesystem::path(file).parent_path());
+  Scene scene = read_document(document, file, set);
   scene.source = with_values || with_files ? document.text() : std::string(text);
   return scene;
 }
@@ -142,12 +163,19 @@ Scene read_scene(const std::filesystem::path& file, const ParameterValues& set) 
 }
 
 Scene with_parameters(const Scene& scene, const std::map<std::string, double>& values) {
-  if (scene.source.empty()) throw InputError("with_parameters: found a scene that was not read, expected one that was");
-  ParameterValues texts;
-  for (const auto& [name, value] : values) texts.emplace(name, fmt::format("{}", value));
-  Scene varied = parse_scene(scene.source, printable(scene.name), texts);
+  require_read(scene);
+  Scene varied = parse_scene(scene.source, printable(scene.name), texts_of(values));
   for (std::size_t k = 0; k < varied.parameters.size(); ++k) varied.parameters[k].set |= scene.parameters[k].set;
   return varied;
+}
+
+VariedScene::VariedScene(const Scene& scene)
+    : name_(printable(scene.name)), document_((require_read(scene), scene.source), name_) {}
+
+Scene VariedScene::with(const std::map<std::string, double>& values) {
+  const ParameterValues texts = texts_of(values);
+  set_parameters(document_, texts);
+  return read_document(document_, name_, texts);
 }
 
 }  // namespace poinsot

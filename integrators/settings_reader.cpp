@@ -268,21 +268,25 @@ void read_settings(const std::filesystem::path& file, Settings& settings) {
 
 void parse_settings(std::string_view text, std::string_view file, Settings& settings) {
   const JsonDocument document(text, file);
-  const JsonValue root = document.root();
+  read_settings(document.root(), settings);
+}
+
+void read_settings(const JsonValue& object, Settings& settings) {
   std::vector<std::string_view> keys;
   for (const SettingEntry& entry : setting_entries()) keys.push_back(entry.key);
-  root.keys("a solver configuration", keys);
-  for (const SettingEntry& entry : setting_entries()) {
-    const std::optional<JsonValue> value = root.optional(entry.key);
-    if (!value) continue;
-    const Source source{&*value, nullptr, {}};
-    if (std::holds_alternative<Assembly Settings::*>(entry.member))
-      settings.assembly = value->boolean() ? Assembly::always : Assembly::never;
-    else if (entry.names)
-      set_name(entry, value->string(one_of(entry)), source, settings);
-    else
-      set_number(entry, value->number(allowed_number(entry)), source, settings);
-  }
+  object.keys("a solver configuration", keys);
+  for (const SettingEntry& entry : setting_entries())
+    if (const std::optional<JsonValue> value = object.optional(entry.key)) read_setting(entry, *value, settings);
+}
+
+void read_setting(const SettingEntry& entry, const JsonValue& value, Settings& settings) {
+  const Source source{&value, nullptr, {}};
+  if (std::holds_alternative<Assembly Settings::*>(entry.member))
+    settings.assembly = value.boolean() ? Assembly::always : Assembly::never;
+  else if (entry.names)
+    set_name(entry, value.string(one_of(entry)), source, settings);
+  else
+    set_number(entry, value.number(allowed_number(entry)), source, settings);
 }
 
 std::string to_json(const Settings& settings) {

@@ -18,6 +18,8 @@
 
 namespace poinsot {
 
+class JsonValue;
+
 struct SettingEntry {
   std::string_view key;  // in the file; on the command line with dashes, "--linear-solver"
   std::string about;     // one line, with the unit
@@ -54,6 +56,9 @@ void set_setting(const SettingEntry& entry, std::string_view text, Settings& set
 // Sets what the file says, keeps the rest. Throws InputError: file, key path, what was found, what is allowed.
 void read_settings(const std::filesystem::path& file, Settings& settings);
 void parse_settings(std::string_view text, std::string_view file, Settings& settings);
+// The same of an object within a document, and of the value of one key.
+void read_settings(const JsonValue& object, Settings& settings);
+void read_setting(const SettingEntry& entry, const JsonValue& value, Settings& settings);
 
 // The settings as a configuration file, every key of it that means something to the integrator.
 std::string to_json(const Settings& settings);

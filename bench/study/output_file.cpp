@@ -33,8 +33,10 @@ struct Unfinished {
 std::array<Unfinished, 32> unfinished;
 
 void remember(const fs::path& file) {
+  constexpr pid_t kTaken = -1;  // until the path stands there: another thread may look for a place, too
   for (Unfinished& free : unfinished) {
-    if (free.owner != 0 || file.native().size() >= sizeof free.path) continue;
+    pid_t nobody = 0;
+    if (file.native().size() >= sizeof free.path || !free.owner.compare_exchange_strong(nobody, kTaken)) continue;
     std::strcpy(free.path, file.c_str());
     free.owner = getpid();
     return;
@@ -43,7 +45,7 @@ void remember(const fs::path& file) {
 
 void forget(const fs::path& file) {
   for (Unfinished& one : unfinished)
-    if (one.owner != 0 && file == one.path) one.owner = 0;
+    if (one.owner == getpid() && file == one.path) one.owner = 0;
 }
 
 std::string shown(const fs::path& target) {

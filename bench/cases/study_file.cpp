@@ -1,0 +1,355 @@
+#include "bench/cases/study_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "bench/cases/random_mechanism.h"
+#include "bench/study/cache.h"
+#include "core/input_error.h"
+#include "core/json_document.h"
+#include "core/scene_generator.h"
+#include "core/scene_writer.h"
+#include "integrators/settings_reader.h"
+
+namespace poinsot::cases {
+namespace fs = std::filesystem;
+namespace {
+
+using SceneOf = std::function<Scene(const std::string& file)>;
+constexpr std::int64_t kMostCases = 1'000'000'000;
+
+void add_scene(Study& study, const JsonValue& item, std::string name, Scene scene) {
+  for (const StudyScene& other : study.scenes)
+    if (other.name == name) item.fail(fmt::format("there is a scene '{}' already, expected another name", name));
+  const std::uint64_t hash = study::content_hash(scene.source.empty() ? to_json(scene) : scene.source);
+  for (const std::string& notice : scene.notices) study.notices.push_back(fmt::format("scene '{}': {}", name, notice));
+  study.scenes.push_back({std::move(name), std::move(scene), {}, hash});
+}
+
+// {"random_mechanisms": n, "bodies": [from, to]}: by turns open and closed, of evenly growing size.
+void add_random_mechanisms(Study& study, const JsonValue& item, std::uint64_t seed) {
+  item.keys("random mechanisms", {"random_mechanisms", "bodies"});
+  constexpr std::int64_t kMost = 10'000;
+  const JsonValue count = item.required("random_mechanisms"), bodies = item.required("bodies");
+  const std::int64_t n = read_count(count, 1, kMost);
+  constexpr std::string_view kEnds = "an array of 2 whole numbers, from and to, the first one not greater";
+  if (bodies.size(kEnds) != 2) bodies.expected(kEnds);
+  const JsonValue from = bodies.at(0), to = bodies.at(1);
+  const std::int64_t a = read_count(from, 1, kMost), b = read_count(to, 1, kMost);
+  if (a > b) bodies.expected(kEnds);
+  for (std::int64_t k = 0; k < n; ++k) {
+    const std::int64_t size = n > 1 ? a + (b - a) * k / (n - 1) : a;
+    const bool closed = k % 2 == 1 && size > 1;
+    add_scene(study, item, fmt::format("{}_{}", closed ? "closed" : "open", k + 1),
+              random_mechanism(static_cast<int>(size), closed, seed + static_cast<std::uint64_t>(k)));
+  }
+}
+
+void add_made(Study& study, const JsonValue& item) {
+  item.keys("a made scene", {"make", "bodies"});
+  const JsonValue structure = item.required("make"), bodies = item.required("bodies");
+  std::vector<std::string_view> names;
+  for (const SceneGenerator& generator : scene_generators()) names.push_back(generator.name);
+  const std::string allowed = fmt::format("one of {}", fmt::join(names, ", "));
+  const SceneGenerator* generator = find_scene_generator(structure.string(allowed));
+  if (!generator) structure.expected(allowed);
+  constexpr std::int64_t kMost = 10'000'000;
+  const std::int64_t n = read_count(bodies, 1, kMost);
+  add_scene(study, item, fmt::format("{}_{}", generator->name, n), generator->make(static_cast<int>(n)));
+}
+
+void read_scenes(Study& study, const JsonValue& root, std::uint64_t seed, const SceneOf& scene_of) {
+  constexpr std::string_view kAllowed = "an array of scenes, at least one";
+  const JsonValue list = root.required("scenes");
+  const std::size_t size = list.size(kAllowed);
+  if (size == 0) list.expected(kAllowed);
+  for (std::size_t k = 0; k < size; ++k) {
+    const JsonValue item = list.at(k);
+    if (item.is_string()) {
+      const std::string& file = item.string();
+      try {
+        add_scene(study, item, fs::path(file).stem().string(), scene_of(file));
+      } catch (const InputError& error) {
+        item.fail(error.what());
+      }
+    } else if (item.optional("random_mechanisms")) {
+      add_random_mechanisms(study, item, seed);
+    } else if (item.optional("make")) {
+      add_made(study, item);
+    } else {
+      item.expected("the name of a scene file, {\"make\": ...} or {\"random_mechanisms\": ...}");
+    }
+  }
+}
+
+// Each choice so far with each value.
+void vary_setting(Study& study, const JsonValue& item) {
+  item.keys("a setting that varies", {"setting", "values", "from", "to", "count", "spacing"});
+  const JsonValue key = item.required("setting");
+  const SettingEntry* entry = find_setting(key.string("the key of a solver configuration"));
+  if (!entry) {
+    std::vector<std::string_view> keys;
+    for (const SettingEntry& one : setting_entries()) keys.push_back(one.key);
+    key.expected(fmt::format("one of {}", fmt::join(keys, ", ")));
+  }
+  if (std::ranges::find(study.settings_varied, entry->key) != study.settings_varied.end())
+    key.fail(fmt::format("'{}' varies already, expected another setting", entry->key));
+  std::vector<std::function<void(Settings&)>> values;
+  std::vector<double> range;
+  const auto list = item.optional("values");
+  if (list) {
+    constexpr std::string_view kAllowed = "an array of values, at least one";
+    if (list->size(kAllowed) == 0) list->expected(kAllowed);
+  } else if (item.optional("from")) {
+    range = read_range(item);
+  } else {
+    item.expected("\"values\", or \"from\", \"to\" and \"count\"");
+  }
+  std::vector<SettingsChoice> all;
+  for (const SettingsChoice& before : study.settings) {
+    for (std::size_t k = 0; k < (list ? list->size("") : range.size()); ++k) {
+      SettingsChoice choice = before;
+      if (list) {
+        const JsonValue value = list->at(k);
+        read_setting(*entry, value, choice.settings);
+      } else {
+        const nlohmann::json number = range[k];
+        read_setting(*entry, JsonValue(number, fmt::format("{}", item.path())), choice.settings);
+      }
+      choice.values.push_back(value_text(*entry, choice.settings));
+      all.push_back(std::move(choice));
+    }
+  }
+  study.settings_varied.emplace_back(entry->key);
+  study.settings = std::move(all);
+}
+
+void require_parameter(const Study& study, const JsonValue& place, const std::string& name) {
+  for (const StudyScene& one : study.scenes) {
+    std::vector<std::string_view> known;
+    for (const Parameter& parameter : one.scene.parameters) known.push_back(parameter.name);
+    if (std::ranges::find(known, name) == known.end())
+      place.fail(fmt::format("scene '{}' has no parameter '{}'; it has {}", one.name, name,
+                             known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
+  }
+  const std::vector<std::string> varied = parameter_names(study);
+  if (std::ranges::find(varied, name) != varied.end())
+    place.fail(fmt::format("'{}' varies already, expected another parameter", name));
+}
+
+void vary_parameter(Study& study, const JsonValue& item) {
+  item.keys("a parameter that varies", {"parameter", "values", "from", "to", "count", "spacing"});
+  const JsonValue name = item.required("parameter");
+  require_parameter(study, name, name.string("the name of a parameter"));
+  ParameterAxis axis;
+  axis.names = {name.string()};
+  if (const auto list = item.optional("values")) {
+    constexpr std::string_view kAllowed = "an array of numbers, at least one";
+    const std::size_t size = list->size(kAllowed);
+    if (size == 0) list->expected(kAllowed);
+    for (std::size_t k = 0; k < size; ++k) {
+      const JsonValue value = list->at(k);
+      axis.values.push_back(value.number());
+    }
+  } else {
+    axis.values = read_range(item);
+  }
+  study.axes.push_back(std::move(axis));
+}
+
+void read_variation(Study& study, const JsonValue& root, std::uint64_t seed) {
+  const auto list = root.optional("vary");
+  if (!list) return;
+  std::uint32_t stream = 1;  // 0 is that of random mechanisms
+  for (std::size_t k = 0; k < list->size("an array of what varies"); ++k) {
+    const JsonValue item = list->at(k);
+    if (item.optional("setting")) {
+      vary_setting(study, item);
+    } else if (const auto samples = item.optional("samples")) {
+      if (!root.optional("seed")) samples->fail("the study has no \"seed\", expected one where samples are drawn");
+      ParameterAxis axis = read_samples(item, seed, stream);
+      stream += static_cast<std::uint32_t>(axis.names.size());
+      const JsonValue parameters = item.required("parameters");
+      for (const std::string& name : axis.names) {
+        const JsonValue place = parameters.required(name);
+        require_parameter(study, place, name);
+      }
+      study.axes.push_back(std::move(axis));
+    } else if (item.optional("parameter")) {
+      vary_parameter(study, item);
+    } else {
+      item.expected("an object with \"parameter\", \"setting\" or \"samples\"");
+    }
+  }
+}
+
+// Whatever the scene: names, numbers, the grid of times.
+std::string why_refused(Settings& settings, std::vector<std::string>& notices) {
+  try {
+    check_numbers(settings);
+    if (settings.analysis == Analysis::dynamics)
+      if (const auto refusal = refusal_of(integrators().require(settings.integrator), settings.formulation))
+        return fmt::format("integrator '{}' refuses formulation '{}': {}", settings.integrator, refusal->formulation,
+                           refusal->why);
+    fit_time_grid(settings, notices);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+// Those that no run can have are told by their cases, unless all are such.
+void settle_settings(Study& study, const JsonValue& root) {
+  bool any = false;
+  std::string first;
+  for (SettingsChoice& choice : study.settings) {
+    if (study.kept.errors && choice.settings.every == 0) choice.settings.every = choice.settings.end / kErrorTimes;
+    std::vector<std::string> notices;
+    const std::string why = why_refused(choice.settings, notices);
+    any = any || why.empty();
+    if (first.empty()) first = why;
+    for (const std::string& notice : notices)
+      if (std::ranges::find(study.notices, notice) == study.notices.end()) study.notices.push_back(notice);
+    choice.hash = study::content_hash(to_json(choice.settings));
+    for (const StudyScene& one : study.scenes)
+      for (const Column& column : one.columns) {
+        choice.settings.signals |= column.of == Column::signal;
+        choice.settings.reactions |= column.of == Column::reaction;
+      }
+  }
+  if (!any) root.fail(first);
+}
+
+std::vector<std::string> varied_columns(const Study& study) {
+  std::vector<std::string> names = parameter_names(study);
+  names.insert(names.end(), study.settings_varied.begin(), study.settings_varied.end());
+  return names;
+}
+
+void require_distinct_columns(const Study& study, const JsonValue& root) {
+  std::set<std::string> seen{"case", "scene", "bodies", "status", "message"};
+  for (const std::vector<std::string>& names : {varied_columns(study), study.kept.columns()})
+    for (const std::string& name : names)
+      if (!seen.insert(name).second)
+        root.fail(fmt::format("the table would have two columns '{}'; expected other names", name));
+}
+
+// Columns of the quantities kept, in each scene.
+void find_columns(Study& study, const JsonValue& root) {
+  for (StudyScene& one : study.scenes) {
+    Model model;
+    try {
+      model = compile(one.scene);
+    } catch (const InputError& error) {
+      root.fail(fmt::format("scene '{}': {}", one.name, error.what()));
+    }
+    for (const Quantity& quantity : study.kept.quantities) one.columns.push_back(require_column(root, quantity, model));
+  }
+}
+
+Study parse(std::string_view text, std::string_view file, const SceneOf& scene_of) {
+  const JsonDocument document(text, file);
+  const JsonValue root = document.root();
+  root.keys("a study", {"$schema", "study", "name", "about", "seed", "scenes", "settings", "vary", "repetitions",
+                        "keep", "pictures"});
+  const JsonValue version = root.required("study");
+  constexpr std::string_view kVersion = "1, the version of the format";
+  if (version.is_string() || version.number(kVersion) != 1) version.expected(kVersion);
+  if (const auto schema = root.optional("$schema")) (void)schema->string();  // for editors
+
+  Study study;
+  if (const auto name = root.optional("name")) study.name = name->string();
+  if (const auto about = root.optional("about")) study.about = about->string();
+  std::uint64_t seed = 0;
+  constexpr std::int64_t kMostSeed = 1'000'000'000'000'000;
+  if (const auto given = root.optional("seed")) seed = static_cast<std::uint64_t>(read_count(*given, 0, kMostSeed));
+  read_scenes(study, root, seed, scene_of);
+  study.settings.emplace_back();
+  if (const auto settings = root.optional("settings")) read_settings(*settings, study.settings.front().settings);
+  read_variation(study, root, seed);
+  constexpr std::int64_t kMostRepetitions = 1000;
+  if (const auto repetitions = root.optional("repetitions"))
+    study.repetitions = static_cast<int>(read_count(*repetitions, 1, kMostRepetitions));
+  if (study.size() > kMostCases) root.fail(fmt::format("found more than {} cases", kMostCases));
+  study.kept = read_kept(root, study.timed());
+  find_columns(study, root);
+  settle_settings(study, root);
+  for (const SettingsChoice& choice : study.settings) require_output_times(root, study.kept, choice.settings);
+  require_distinct_columns(study, root);
+  std::vector<std::string> columns = study.kept.columns();
+  study.columns_hash = study::content_hash(
+      fmt::format("{} {} {}", fmt::join(varied_columns(study), ","), study.kept.text(), fmt::join(columns, ",")));
+  const std::vector<std::string> varied = varied_columns(study);
+  columns.insert(columns.end(), varied.begin(), varied.end());
+  columns.insert(columns.end(), {"case", "scene", "bodies"});
+  study.pictures = read_pictures(root, columns, study.kept);
+  return study;
+}
+
+}  // namespace
+
+std::int64_t Study::size() const {
+  double all = static_cast<double>(scenes.size()) * static_cast<double>(settings.size());
+  for (const ParameterAxis& axis : axes) all *= static_cast<double>(axis.size());
+  return all > 1e15 ? static_cast<std::int64_t>(1e15) : static_cast<std::int64_t>(all);
+}
+
+Case case_of(const Study& study, std::int64_t number) {
+  Case one;
+  one.number = number;
+  const auto digit = [&](std::int64_t size) {
+    const std::int64_t k = number % size;
+    number /= size;
+    return k;
+  };
+  one.settings = static_cast<std::size_t>(digit(static_cast<std::int64_t>(study.settings.size())));
+  std::vector<std::int64_t> places(study.axes.size());
+  for (std::size_t a = study.axes.size(); a-- > 0;) places[a] = digit(study.axes[a].size());
+  for (std::size_t a = 0; a < study.axes.size(); ++a) study.axes[a].append(places[a], one.parameters);
+  one.scene = static_cast<std::size_t>(number);
+  return one;
+}
+
+std::vector<std::string> parameter_names(const Study& study) {
+  std::vector<std::string> names;
+  for (const ParameterAxis& axis : study.axes) names.insert(names.end(), axis.names.begin(), axis.names.end());
+  return names;
+}
+
+std::uint64_t key_of(const Study& study, const Case& one) {
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "{:x} {:x} {}", study.scenes[one.scene].hash, study.settings[one.settings].hash,
+                 study.repetitions);
+  for (const double value : one.parameters) fmt::format_to(out, " {:x}", std::bit_cast<std::uint64_t>(value));
+  return study::content_hash({text.data(), text.size()}) ^ study.columns_hash;
+}
+
+Study read_study(const fs::path& file) {
+  const std::string text = read_text(file.string());
+  nlohmann::json scenes = nlohmann::json::object();
+  Study study = parse(text, shown_input(file.string()), [&](const std::string& name) {
+    Scene scene = read_scene(file.parent_path() / name);
+    scenes[name] = scene.source;
+    return scene;
+  });
+  study.content = nlohmann::json{{"file", shown_input(file.string())}, {"study", text}, {"scenes", scenes}}.dump(2);
+  return study;
+}
+
+Study parse_content(std::string_view content) {
+  const nlohmann::json json = nlohmann::json::parse(content);
+  Study study = parse(json["study"].get<std::string>(), json["file"].get<std::string>(), [&](const std::string& name) {
+    return parse_scene(json["scenes"][name].get<std::string>(), name);
+  });
+  study.content = content;
+  return study;
+}
+
+}  // namespace poinsot::cases

@@ -1,0 +1,94 @@
+// The study file's reader, by the table that also holds the JSON schema to it, and how cases are numbered and keyed.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "bench/cases/case_table.h"
+#include "bench/cases/study_file.h"
+#include "core/input_error.h"
+
+namespace poinsot::cases {
+namespace {
+using Json = nlohmann::json;
+
+const char* const kPendulum = R"({"scene": 1, "name": "pendulum", "parameters": {"l": 1}, "gravity": [0, 0, -9.81],
+  "bodies": [{"name": "rod", "mass": 3, "inertia": [1, "1/100", 1], "position": [0, "l", 0]}],
+  "joints": [{"type": "revolute", "name": "hinge", "bodies": ["ground", "rod"], "point": [0, 0, 0], "axis": [1, 0, 0]}]})";
+
+Study study_of(const Json& document) {
+  return parse_content(
+      Json{{"file", "study.json"}, {"study", document.dump()}, {"scenes", {{"pendulum.json", kPendulum}}}}.dump());
+}
+
+Json table() {
+  std::ifstream in(POINSOT_SOURCE_DIR "/tests/study_schema_test.json");
+  return Json::parse(in);
+}
+
+TEST(CasesStudy, AnswersEveryCaseOfTheTable) {
+  const Json cases = table();
+  for (const Json& c : cases["cases"]) {
+    Json document = cases["base"];
+    if (c.contains("set"))
+      for (const auto& [pointer, value] : c["set"].items()) document[Json::json_pointer(pointer)] = value;
+    if (c.contains("remove")) {
+      for (const Json& pointer : c["remove"]) {
+        const Json::json_pointer place(pointer.get<std::string>());
+        document[place.parent_pointer()].erase(place.back());
+      }
+    }
+    if (c.value("what", "") == "a scene that is not there") continue;  // that is for files
+    std::string error;
+    try {
+      (void)study_of(document);
+    } catch (const InputError& refused) {
+      error = refused.what();
+    }
+    const std::string expected = c.value("error", "");
+    EXPECT_TRUE(expected.empty() ? error.empty() : error.starts_with(expected)) << c["what"] << ": " << error;
+  }
+}
+
+TEST(CasesStudy, TheLastDimensionVariesFastestAndKeysAreOfWhatIsComputed) {
+  Json document = table()["base"];
+  Study study = study_of(document);
+  ASSERT_EQ(study.size(), 4);
+  EXPECT_EQ(case_of(study, 0).parameters, std::vector{1.0});
+  EXPECT_EQ(case_of(study, 1).settings, 1u);
+  EXPECT_EQ(case_of(study, 2).parameters, std::vector{1.5});
+  EXPECT_EQ(header(study),
+            "case,scene,bodies,l,formulation,status,rod.y.final,rod.y.range,rod.y@0.005,violation_position,"
+            "violation_velocity,message");
+  std::set<std::uint64_t> keys;
+  for (std::int64_t k = 0; k < 4; ++k) keys.insert(key_of(study, case_of(study, k)));
+  EXPECT_EQ(keys.size(), 4u);
+  // The same cases under other numbers; other cases where anything changes.
+  document["vary"][0]["values"] = {0.5, 1, 1.5};
+  study = study_of(document);
+  for (std::int64_t k = 2; k < 6; ++k) EXPECT_TRUE(keys.contains(key_of(study, case_of(study, k)))) << k;
+  document["settings"]["step"] = 0.0005;
+  study = study_of(document);
+  for (std::int64_t k = 0; k < 6; ++k) EXPECT_FALSE(keys.contains(key_of(study, case_of(study, k)))) << k;
+}
+
+TEST(CasesStudy, ShardsAndATenthAreDisjointAndComplete) {
+  Json document = table()["base"];
+  document.erase("pictures");
+  document["vary"][0] = {{"parameter", "l"}, {"from", 1}, {"to", 2}, {"count", 37}};
+  const Study study = study_of(document);
+  std::set<std::int64_t> all;
+  for (int place = 1; place <= 5; ++place) {
+    const Selection shard(study, false, place, 5);
+    for (std::int64_t k = 0; k < shard.size(); ++k) EXPECT_TRUE(all.insert(shard.at(k)).second);
+  }
+  EXPECT_EQ(all.size(), 74u);
+  const Selection quick(study, true);
+  ASSERT_EQ(quick.size(), 8);  // four of 37 lengths, in both formulations
+  for (std::int64_t k = 0; k < quick.size(); ++k) EXPECT_EQ(quick.at(k), k / 2 * 22 + k % 2);
+}
+
+}  // namespace
+}  // namespace poinsot::cases
