@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "bench/paper/cell_rows.h"
 #include "bench/paper/published.h"
@@ -12,45 +11,6 @@
 namespace poinsot::report {
 using namespace study;
 namespace {
-
-// A repetition of a cell.
-struct Run {
-  double total = 0;               // s
-  std::array<double, 4> phase{};  // µs a step
-};
-
-struct Cell {
-  std::vector<std::string> key;     // analysis, mechanism, formulation, jacobian
-  std::map<std::string, Run> runs;  // by repetition
-};
-
-std::vector<Cell> cells_of(const CsvTable& raw) {
-  std::vector<int> key, phases;
-  for (const char* name : {"analysis", "mechanism", "formulation", "jacobian"}) key.push_back(raw.column(name));
-  for (const char* name : {"assembly_s", "factor_s", "solve_s", "other_s"}) phases.push_back(raw.column(name));
-  const int solver = raw.column("linear_solver"), repetition = raw.column("repetition"), steps = raw.column("steps"),
-            total = raw.column("total_s");
-  std::vector<int> all{solver, repetition, steps, total};
-  all.insert(all.end(), key.begin(), key.end());
-  all.insert(all.end(), phases.begin(), phases.end());
-  if (std::ranges::min(all) < 0 || raw.rows.empty()) return {};
-  const auto field = [](const std::vector<std::string>& row, int column) -> const std::string& {
-    return row[static_cast<std::size_t>(column)];
-  };
-  std::vector<Cell> cells;
-  for (const auto& row : raw.rows) {
-    if (field(row, solver) != field(raw.rows.front(), solver)) continue;
-    std::vector<std::string> own;
-    for (const int column : key) own.push_back(field(row, column));
-    auto cell = std::ranges::find(cells, own, &Cell::key);
-    if (cell == cells.end()) cell = cells.insert(cell, {own, {}});
-    Run run{csv_number(field(row, total)), {}};
-    for (std::size_t k = 0; k < phases.size(); ++k)
-      run.phase[k] = 1e6 * csv_number(field(row, phases[k])) / csv_number(field(row, steps));
-    cell->runs.emplace(field(row, repetition), run);  // measured once more beside other solvers: the first counts
-  }
-  return cells;
-}
 
 double median(const std::vector<double>& values) {
   return median_interval(values).median;
@@ -69,16 +29,20 @@ void add_published(Ratio& ratio) {
 }  // namespace
 
 std::vector<Ratio> ratios(const CsvTable& raw) {
-  const std::vector<Cell> cells = cells_of(raw);
+  std::vector<RawCell> cells = raw_cells(raw);
+  if (cells.empty()) return {};
+  const std::string solver = cells.front().linear_solver;
+  std::erase_if(cells, [&](const RawCell& c) { return c.block > 0 || c.linear_solver != solver; });
   std::vector<Ratio> all;
-  for (const Cell& cell : cells) {
-    if (cell.key[2] == paper::kSubject) continue;
-    std::vector<std::string> key = cell.key;
-    key[2] = paper::kSubject;
-    const auto subject = std::ranges::find(cells, key, &Cell::key);
+  for (const RawCell& cell : cells) {
+    if (cell.formulation == paper::kSubject) continue;
+    const auto subject = std::ranges::find_if(cells, [&](const RawCell& c) {
+      return c.analysis == cell.analysis && c.mechanism == cell.mechanism && c.jacobian == cell.jacobian &&
+             c.formulation == paper::kSubject;
+    });
     if (subject == cells.end()) continue;
     std::vector<double> quotients;
-    std::array<std::vector<double>, 4> saved;
+    std::array<std::vector<double>, kPhases.size()> saved;
     for (const auto& [repetition, run] : cell.runs) {
       const auto other = subject->runs.find(repetition);
       if (other == subject->runs.end() || !(other->second.total > 0) || !std::isfinite(run.total)) continue;
@@ -86,7 +50,7 @@ std::vector<Ratio> ratios(const CsvTable& raw) {
       for (std::size_t k = 0; k < saved.size(); ++k) saved[k].push_back(run.phase[k] - other->second.phase[k]);
     }
     if (quotients.empty()) continue;
-    Ratio ratio{cell.key[0], cell.key[1], cell.key[2], cell.key[3], median_interval(quotients), {}, 0, 0};
+    Ratio ratio{cell.analysis, cell.mechanism, cell.formulation, cell.jacobian, median_interval(quotients), {}, 0, 0};
     for (std::size_t k = 0; k < saved.size(); ++k) ratio.saved[k] = median(saved[k]);
     add_published(ratio);
     all.push_back(std::move(ratio));

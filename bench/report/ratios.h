@@ -8,13 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/report/raw_cells.h"
 #include "bench/study/csv.h"
 #include "bench/study/interval.h"
 #include "bench/study/report.h"
 
 namespace poinsot::report {
-
-inline constexpr std::array<std::string_view, 4> kPhases{"assembly", "factorization", "solves", "the rest"};
 
 struct Ratio {
   std::string analysis, mechanism, formulation, jacobian;

@@ -2,8 +2,8 @@
 //
 // Between the k-th smallest and the k-th largest of n values lies the median of what they are drawn from with
 // probability 1 − 2 P(B < k), B binomial (n, 1/2), whatever the distribution (David and Nagaraja, Order Statistics,
-// section 7.1). Taken is the largest k with at least kConfidence, or all the values where they are too few for it; the
-// probability is told.
+// section 7.1). Taken is the largest k with at least the confidence asked for, or all the values where they are too few
+// for it; the probability is told.
 #pragma once
 
 #include <vector>
@@ -20,6 +20,6 @@ struct Interval {
 };
 
 // At least one value.
-Interval median_interval(std::vector<double> values);
+Interval median_interval(std::vector<double> values, double confidence = kConfidence);
 
 }  // namespace poinsot::study
