@@ -88,7 +88,8 @@ void add_compare(CLI::App& app, int& status) {
       "Times have changed where the interval of the quotients of their repetitions does not hold 1; they are compared\n"
       "of one processor, compiler and flags only. The exit status is 0 whatever changed.");
   command->callback([options, &status] {
-    const Comparison result = compare(read_results(options->a), read_results(options->b));
+    const Results a = read_results(options->a), b = read_results(options->b);
+    const Comparison result = compare(a, b);
     if (options->json)
       print_json(stdout, as_json(result));
     else

@@ -77,7 +77,7 @@ TEST_F(Chart, ThePictureShowsWhatTheReferenceResolves) {
   ASSERT_NE(line, std::string::npos);
   const double x = std::stod(svg.substr(svg.find("d=\"M ", line) + 5));
   EXPECT_GT(x, 0);
-  EXPECT_LT(x, 360);  // the first of three panels beside one another on 1080 points
+  EXPECT_LT(x, 396);  // the first of three panels beside one another on 1188 points
 }
 
 TEST_F(Chart, KinematicsTakesPartWhereDriversPrescribeAll) {

@@ -17,17 +17,19 @@ namespace {
 
 constexpr const char* kRaw = "raw";
 
-// What is made of times that stand elsewhere, or of times without repetitions; empty: a table of values.
-std::string why_no_values(const std::string& file) {
+enum class Holds { values, lone_times, what_stands_elsewhere };
+
+// Tables of formulations by `tables` are made of raw.csv, those of all charts of the charts; `scale` keeps no
+// repetitions.
+Holds holds(const CsvTable& table) {
   for (const Section& section : contents())
     for (const Item& item : section.items) {
-      const bool its = item.figure == file || std::ranges::find(item.tables, file) != std::end(item.tables);
-      if (!its) continue;
-      if (item.command == "tables") return "made of raw.csv";
-      if (item.command == "scale") return "times without their repetitions";
-      if (item.command.starts_with("chart")) return "made of the charts";
+      if (item.figure != table.file && std::ranges::find(item.tables, table.file) == std::end(item.tables)) continue;
+      if (item.command == "scale") return Holds::lone_times;
+      if (item.command.starts_with("chart") || (item.command == "tables" && table.column("formulation") >= 0))
+        return Holds::what_stands_elsewhere;
     }
-  return {};
+  return Holds::values;
 }
 
 class Comparer {
@@ -78,8 +80,9 @@ class Comparer {
     if (a.header != b.header) return leave_out(a, "nothing", "the columns are others");
     if (a.file == kRaw) return compare_raw(a, b);
     if (is_chart(a)) return compare_charts(a, b);
-    if (const std::string why = why_no_values(a.file); !why.empty()) return leave_out(a, "nothing", why);
-    compare_values(a, b);
+    const Holds what = holds(a);
+    if (what == Holds::lone_times) return leave_out(a, "nothing", "times without their repetitions");
+    if (what == Holds::values) compare_values(a, b);
   }
 
   void changed(const std::string& file, const std::string& cell, const std::string& quantity, const std::string& before,
@@ -118,8 +121,8 @@ class Comparer {
     const Interval ratio = median_interval(ratios, kOfChange);
     ++result_.times;
     quotients_.push_back(ratio.median);
-    result_.by_chance += 1 - ratio.confidence;
-    if (!ratio.contains(1) && ratio.confidence > 0)
+    if (ratio.confidence > 0) result_.by_chance += 1 - ratio.confidence;
+    if (ratio.confidence > 0 && !ratio.contains(1))
       result_.changed_times.push_back(
           {"raw.csv", a.name(), median_interval(before).median, median_interval(after).median, ratio});
   }

@@ -129,7 +129,7 @@ std::string chart_html(const CsvTable& chart) {
   for (const FormulationEntry& entry : formulations()) place(markers, std::string(entry.name));
   for (const ChartRow& row : rows)
     if (row.measured.status != "reference") place(colours, row.integrator);
-  std::string html = "<div class=\"panels\">\n";
+  std::string html = "<div class=\"panels two\">\n";
   for (std::size_t quantity = 0; quantity < kQuantities.size(); ++quantity) {
     const CostCurves curves(rows, quantity, agreement[quantity]);
     if (curves.all().empty()) continue;

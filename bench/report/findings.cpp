@@ -136,9 +136,19 @@ Finding matched(const Table& table, Ledger& ledger) {
   return finding;
 }
 
+enum class Verdict { holds, fails, open };
+
 // A claim of the paper, and whether the numbers bear it out.
-std::string claim(const std::string& said, bool holds, const std::string& found) {
-  return fmt::format("{} {}: {}.", said, holds ? "It holds" : "It does not hold", found);
+std::string claim(const std::string& said, Verdict verdict, const std::string& found) {
+  const char* words[] = {"It holds", "It does not hold", "These measurements leave it open"};
+  return fmt::format("The paper: {}. {}: {}.", said, words[static_cast<int>(verdict)], found);
+}
+Verdict verdict(bool holds) {
+  return holds ? Verdict::holds : Verdict::fails;
+}
+
+Verdict of_counts(std::size_t faster, std::size_t slower, std::size_t count) {
+  return faster == count ? Verdict::holds : slower > 0 ? Verdict::fails : Verdict::open;
 }
 
 // Most over least of a column, by mechanism.
@@ -160,7 +170,7 @@ std::optional<std::string> claim_of_iterations(const Results& results, Ledger& l
     for (const char* code : {"paper C1", "paper C2", "C1", "C2"}) add_ratios(*table, code, theirs);
   }
   if (ours.empty() || theirs.empty()) return {};
-  return claim("The paper: the formulations need comparably many iterations.", ours.high <= theirs.high,
+  return claim("the formulations need comparably many iterations", verdict(ours.high <= theirs.high),
                fmt::format("of a mechanism, the most over the least is {} with the {} matrix, {} in the original codes",
                            ledger.range("iterations, most over least", ours, 2), paper::kLikeForLike,
                            ledger.range("iterations, most over least, original codes", theirs, 2)));
@@ -172,8 +182,8 @@ std::optional<std::string> claim_of_order(const Results& results, Ledger& ledger
   if (column < 0) return {};
   Range exponents;
   for (const auto& row : table->rows) exponents.add(csv_number(row[static_cast<std::size_t>(column)]));
-  return claim("The paper: implicit Euler is of first order in all formulations.",
-               exponents.low > 0.9 && exponents.high < 1.1,
+  return claim("implicit Euler is of first order in all formulations",
+               verdict(std::lround(exponents.low) == 1 && std::lround(exponents.high) == 1),
                fmt::format("the exponents of its coordinates are {}; positions are prescribed there, so that this says "
                            "nothing of the equations of motion",
                            ledger.range("exponents", exponents, 3)));
@@ -196,7 +206,7 @@ std::optional<std::string> claim_of_deltas(const Results& results, Ledger& ledge
         ledger.text(fmt::format("{}: difference of the solutions, %", other), fmt::format("{:.1g}", it->second.high))));
   }
   if (parts.empty()) return {};
-  return claim("The paper: the solutions of the double pendulum are nearly identical.", most < 1,
+  return claim("the solutions of the double pendulum are nearly identical", verdict(most < 1),
                fmt::format("errors differ from those of {}: {}", kSubject, fmt::join(parts, ", ")));
 }
 
@@ -213,7 +223,7 @@ std::optional<std::string> claim_of_linear_systems(const Results& results, Ledge
       shares.add(100 * (at(factor) + at(solve)) / at(total));
   }
   if (shares.empty()) return {};
-  return claim("The paper: solving the linear systems is a critical bottleneck.", shares.high > 50,
+  return claim("solving the linear systems is a critical bottleneck", verdict(shares.high > 50),
                fmt::format("factorizations and solves take {} % of a step in compiled code",
                            ledger.range("share of the linear systems, %", shares, 0)));
 }
@@ -221,7 +231,7 @@ std::optional<std::string> claim_of_linear_systems(const Results& results, Ledge
 std::optional<std::string> claim_of_reps(const std::vector<Ratio>& all, Ledger& ledger) {
   const std::string baseline = others().front(), other = others().back();
   Range quotient;
-  std::size_t faster = 0, count = 0;
+  std::size_t faster = 0, slower = 0, count = 0;
   for (const Ratio& one : all) {
     if (one.formulation != baseline || one.jacobian != paper::kLikeForLike) continue;
     for (const Ratio& two : all) {
@@ -231,24 +241,29 @@ std::optional<std::string> claim_of_reps(const std::vector<Ratio>& all, Ledger& 
       const double x = one.over.median / two.over.median;
       quotient.add(x);
       faster += one.over.low > two.over.high;
+      slower += one.over.high < two.over.low;
       ++count;
     }
   }
   if (count == 0) return {};
-  return claim(fmt::format("The paper: {} is faster than {}.", other, baseline), faster == count,
-               fmt::format("{} takes {} times as long as {}, and is slower beyond the noise in {} of {} comparisons",
-                           baseline, ledger.range("ratio of the two", quotient, 2), other,
-                           ledger.count("slower beyond the noise", faster), ledger.count("comparisons", count)));
+  return claim(
+      fmt::format("{} is faster than {}", other, baseline), of_counts(faster, slower, count),
+      fmt::format("{} takes {} times as long as {}; of {} comparisons {} is the faster one beyond the noise in {}, "
+                  "the slower one in {}",
+                  baseline, ledger.range("ratio of the two", quotient, 2), other, ledger.count("comparisons", count),
+                  other, ledger.count("faster beyond the noise", faster),
+                  ledger.count("slower beyond the noise", slower)));
 }
 
 std::optional<std::string> claim_of_subject(const std::vector<Ratio>& all, Ledger& ledger) {
-  std::size_t faster = 0, count = 0;
+  std::size_t faster = 0, slower = 0, count = 0;
   for (const Ratio& r : all)
-    if (r.jacobian == paper::kLikeForLike) ++count, faster += r.over.low > 1;
+    if (r.jacobian == paper::kLikeForLike) ++count, faster += r.over.low > 1, slower += r.over.high < 1;
   if (count == 0) return {};
-  return claim(fmt::format("The paper: {} is the fastest.", kSubject), faster == count,
-               fmt::format("like for like it is faster beyond the noise in {} of {} comparisons",
-                           ledger.count("faster beyond the noise", faster), ledger.count("comparisons of all", count)));
+  return claim(fmt::format("{} is the fastest", kSubject), of_counts(faster, slower, count),
+               fmt::format("of {} comparisons like for like it is faster beyond the noise in {} and slower in {}",
+                           ledger.count("comparisons of all", count), ledger.count("faster than others", faster),
+                           ledger.count("slower than others", slower)));
 }
 
 Finding claims(const Results& results, const std::vector<Ratio>& all, Ledger& ledger) {
@@ -266,7 +281,7 @@ Finding choices(const std::vector<const CsvTable*>& charts) {
   for (const CsvTable* chart : charts)
     for (const auto quantity : {kQuantities.front(), kQuantities.back()})
       if (const std::string said = chart->note(fmt::format("conclusion, {}", quantity)); !said.empty())
-        finding.sentences.push_back(fmt::format("{}, {}: {}.", chart->file, quantity, said));
+        finding.sentences.push_back(fmt::format("{}: {}.", chart->file, said));
   return finding;
 }
 

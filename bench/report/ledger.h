@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -21,7 +22,8 @@ class Ledger {
     return value;
   }
   std::string number(std::string_view quantity, double value, int decimals) {
-    return text(quantity, fmt::format("{:.{}f}", value, decimals));
+    const double unit = std::pow(10.0, decimals);
+    return text(quantity, fmt::format("{:.{}f}", std::round(value * unit) == 0 ? 0.0 : value, decimals));
   }
   std::string count(std::string_view quantity, std::size_t value) { return text(quantity, std::to_string(value)); }
   // "1.20 to 1.55"

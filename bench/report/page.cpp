@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
 #include <set>
 
 #include "bench/report/assets.h"
@@ -31,6 +33,13 @@ std::string table_block(std::string_view caption, const std::string& file, const
     html = fmt::format("<details><summary>{} (table)</summary>\n{}</details>\n", escape(caption), html);
   return fmt::format("{}<p class=\"source\">{}{}</p>\n", html, link(file, file),
                      settings.empty() ? "" : fmt::format(" · {}", escape(settings)));
+}
+
+// Those that are not what is told of all under "Origin".
+std::string own_settings(const Results& results, const CsvTable& table) {
+  const CsvTable* raw = results.find("raw");
+  const std::string settings = table.note("settings");
+  return raw && raw->note("settings") == settings ? "" : settings;
 }
 
 std::string missing_block(const Results& results, std::string_view what, std::string_view by) {
@@ -63,7 +72,8 @@ std::string item_block(const Results& results, const Item& item, std::set<std::s
     const std::string file(name);
     used.insert(file);
     if (const CsvTable* table = results.find(file))
-      html += table_block(caption_of(item, file), file + ".csv", table->header, table->rows, table->note("settings"));
+      html +=
+          table_block(caption_of(item, file), file + ".csv", table->header, table->rows, own_settings(results, *table));
     else
       missing.push_back(file + ".csv");
   }
@@ -84,7 +94,7 @@ std::string charts_block(const Results& results, std::set<std::string>& used) {
   return html.empty() ? missing_block(results, "work-precision charts", "chart --all --quick") : html;
 }
 
-std::string findings_block(const Results& results, const Findings& found) {
+std::string findings_block(const Findings& found) {
   std::string html;
   for (const Finding& finding : found.all) {
     html += fmt::format("<section class=\"finding\" aria-labelledby=\"{}\"><h3 id=\"{}\">{}</h3>\n<ul>\n", finding.id,
@@ -97,24 +107,21 @@ std::string findings_block(const Results& results, const Findings& found) {
   for (const Table& table : found.tables)
     html += (table.text.empty() ? "" : fmt::format("<p>{}</p>\n", escape(table.text))) +
             table_block(table.title, table.file + ".csv", table.header, table.rows, "");
-  (void)results;
   return html;
 }
 
-// Each origin once; where the folder's tables have several of a kind, which files each is of.
+// Each origin once; where the folder's tables have several of a kind, of which files those are that fewer have.
 std::vector<std::pair<std::string, std::string>> origins(const Results& results) {
   std::vector<std::pair<std::string, std::string>> all;
   for (const std::string_view key : kOrigin) {
-    std::vector<std::string> values;
+    std::map<std::string, std::vector<std::string>> files;
     for (const auto& [name, table] : results.tables)
-      if (const std::string value = table.note(key); !value.empty() && std::ranges::find(values, value) == values.end())
-        values.push_back(value);
-    for (const std::string& value : values) {
-      std::vector<std::string> files;
-      for (const auto& [name, table] : results.tables)
-        if (table.note(key) == value) files.push_back(name);
-      all.emplace_back(key, values.size() == 1 ? value : fmt::format("{} (of {})", value, fmt::join(files, ", ")));
-    }
+      if (const std::string value = table.note(key); !value.empty()) files[value].push_back(name);
+    std::vector<std::pair<std::string, std::vector<std::string>>> sorted(files.begin(), files.end());
+    std::ranges::stable_sort(sorted, std::greater(), [](const auto& one) { return one.second.size(); });
+    for (const auto& [value, of] : sorted)
+      all.emplace_back(key,
+                       &value == &sorted.front().first ? value : fmt::format("{} (of {})", value, fmt::join(of, ", ")));
   }
   return all;
 }
@@ -165,7 +172,7 @@ Page page(const Results& results) {
   const Findings found = findings(results);
   std::set<std::string> used{"raw"};
   std::string nav = "<li><a href=\"#s-findings\">Findings</a></li>", body;
-  body += section("findings", "Findings", findings_block(results, found));
+  body += section("findings", "Findings", findings_block(found));
   for (const Section& s : contents()) {
     std::string own;
     for (const Item& item : s.items) own += item_block(results, item, used);

@@ -12,14 +12,17 @@ namespace poinsot::report {
 using study::Range;
 namespace {
 
-constexpr double kWidth = 460, kHeight = 300, kLeft = 62, kRight = 12, kTop = 12, kBottom = 44, kNames = 136;
+constexpr double kWidth = 480, kHeight = 300, kLeft = 62, kRight = 12, kTop = 12, kBottom = 44, kNames = 162;
 
 // A number as a tick says it: "1e-4", "0.5", "2000".
 std::string tick_text(double x) {
-  const std::string text = fmt::format("{:.4g}", x);
+  if (x == 0 || (std::abs(x) >= 1e-2 && std::abs(x) < 1e5)) return fmt::format("{:.4g}", x);
+  std::string text = fmt::format("{:.2e}", x);
   const std::size_t e = text.find('e');
-  if (e == std::string::npos) return text;
-  return fmt::format("{}e{}", text.substr(0, e), std::stoi(text.substr(e + 1)));
+  std::string digits = text.substr(0, e);
+  while (digits.back() == '0') digits.pop_back();
+  if (digits.back() == '.') digits.pop_back();
+  return fmt::format("{}e{}", digits, std::stoi(text.substr(e + 1)));
 }
 
 class Axis {
@@ -27,7 +30,9 @@ class Axis {
   Axis(Range range, bool log, double from, double to) : log_(log), from_(from), to_(to) {
     low_ = log ? std::log10(range.low) : range.low;
     high_ = log ? std::log10(range.high) : range.high;
-    const double room = std::max(0.03 * (high_ - low_), log ? 0.1 : 1e-12 + 1e-3 * std::abs(high_));
+    const double room = std::max(0.03 * (high_ - low_), log            ? 0.1
+                                                        : high_ > low_ ? 0
+                                                                       : std::max(1e-3 * std::abs(high_), 1e-300));
     low_ -= room, high_ += room;
   }
 

@@ -21,7 +21,7 @@ struct SvgCurve {
   bool dashed = false;
   bool labelled = false;  // its name at its end
 };
-inline constexpr int kColours = 9, kGrey = -1, kLine = -1;
+inline constexpr int kColours = 10, kGrey = -1, kLine = -1;
 
 struct SvgPanel {
   std::string title, x, y;

@@ -71,6 +71,21 @@ async function holdsTheTables(page) {
   for (const { file, rows } of tables) expect(squeeze(rows) === squeeze(csv(file)), `the table of ${file} holds its fields`);
 }
 
+// Every word with a digit that the page shows, but for the ticks of axes, stands in a file beside it.
+async function saysNothingOfItsOwn(page) {
+  const words = (text) => new Set((text.match(/[\w.+\-−]*\d[\w.+\-]*/g) ?? []).map((word) => word.replace(/[.-]+$/, "")));
+  const known = words(readdirSync(folder).filter((file) => file.endsWith(".csv")).map((file) => `${readFileSync(join(folder, file), "utf8")}\n${file}`).join("\n"));
+  const shown = words(await page.evaluate(() => {
+    const copy = document.body.cloneNode(true), words = [];
+    for (const one of copy.querySelectorAll("script, .tick")) one.remove();
+    const walk = document.createTreeWalker(copy, NodeFilter.SHOW_TEXT);
+    while (walk.nextNode()) words.push(walk.currentNode.data);
+    return words.join("\n");
+  }));
+  const unknown = [...shown].filter((word) => !known.has(word));
+  expect(shown.size > 100 && unknown.length === 0, `every number stands in a table, found beside them ${unknown.slice(0, 10).join(" ")}`);
+}
+
 async function accessible(page, axe, what) {
   await page.evaluate(axe);
   const found = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
@@ -110,6 +125,7 @@ try {
       if (width !== 800) await accessible(page, axe, what);
       if (width === 1400 && !dark) {
         await holdsTheTables(page);
+        await saysNothingOfItsOwn(page);
         expect(await page.evaluate(() => window.hacked === undefined && document.querySelectorAll("img").length === 0), "no name becomes markup");
         if (!given) expect((await page.locator("h3").allTextContents()).includes(EVIL), "a scene's name stands as it is");
         expect(await page.locator("svg[role=img]:not([aria-label])").count() === 0, "every picture has a text");
