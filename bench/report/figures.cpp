@@ -124,7 +124,9 @@ std::string chart_html(const CsvTable& chart) {
   const std::vector<ChartRow> rows = chart_rows(chart);
   const auto reference = std::ranges::find(rows, "reference", [](const ChartRow& r) { return r.measured.status; });
   const PerQuantity agreement = reference == rows.end() ? PerQuantity{} : reference->measured.error;
-  const std::string settings = chart.note("settings"), end = settings.substr(0, settings.find(" s;"));
+  const std::string settings = chart.note("settings"), to = "to t = ";
+  const std::string until =
+      settings.starts_with(to) ? settings.substr(to.size(), settings.find(" s;") - to.size()) : "";
   std::vector<std::string> colours, markers;
   for (const FormulationEntry& entry : formulations()) place(markers, std::string(entry.name));
   for (const ChartRow& row : rows)
@@ -159,12 +161,10 @@ std::string chart_html(const CsvTable& chart) {
       for (std::size_t k = 0; k < rows.size(); ++k) {
         const Measured& m = rows[k].measured;
         if (!m.ok() || rows[k].method() != curve.method || !(m.error[quantity] <= 1)) continue;
-        drawn.points.push_back(
-            {m.error[quantity], m.seconds,
-             fmt::format("{}, {} {}: error {}, {} s\n{}", curve.method, rows[k].parameter, rows[k].value,
-                         m.error[quantity], m.seconds,
-                         command(rows[k], chart.file, end.starts_with("to t = ") ? end.substr(7) : end)),
-             front[k]});
+        std::string tip = fmt::format("{}, {} {}", curve.method, rows[k].parameter, rows[k].value);
+        if (named)
+          tip += fmt::format(": error {}, {} s\n{}", m.error[quantity], m.seconds, command(rows[k], chart.file, until));
+        drawn.points.push_back({m.error[quantity], m.seconds, std::move(tip), front[k]});
       }
       if (!drawn.points.empty()) panel.curves.push_back(std::move(drawn));
     }

@@ -51,16 +51,15 @@ std::string table_html(std::string_view caption, const std::vector<std::string>&
       escape(caption), escape(caption));
   for (const std::string& name : header) html += fmt::format("<th scope=\"col\">{}</th>", escape(name));
   html += "</tr></thead>\n<tbody>";
-  for (const auto& row : rows) {
+  for (const auto& row : rows) {  // a row and a cell end where the next begin
     html += "<tr>";
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      if (k == 0)
-        html += fmt::format("<th scope=\"row\">{}</th>", escape(row[k]));
-      else
-        html += fmt::format("<td{}>{}</td>", std::isfinite(study::csv_number(row[k])) ? " class=\"n\"" : "",
-                            escape(row[k]));
-    }
-    html += "</tr>\n";
+    for (std::size_t k = 0; k < row.size(); ++k)
+      html += fmt::format("<{}>{}",
+                          k == 0                                     ? "th scope=\"row\""
+                          : std::isfinite(study::csv_number(row[k])) ? "td"
+                                                                     : "td class=\"t\"",
+                          escape(row[k]));
+    html += '\n';
   }
   return html + "</tbody></table></div>\n";
 }

@@ -17,7 +17,7 @@ constexpr std::array kCounts{"factored",       "steps", "newton_iterations", "ja
 
 std::string RawCell::name() const {
   return fmt::format("{}, {}, {}, {}, {}{}", analysis, mechanism, formulation, jacobian, linear_solver,
-                     block == 0 ? "" : " (beside the other solvers)");
+                     block == 0 ? "" : fmt::format(" #{}", block + 1));
 }
 
 std::vector<RawCell> raw_cells(const CsvTable& raw) {

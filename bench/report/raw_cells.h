@@ -23,7 +23,7 @@ struct RawCell {
   std::map<std::string, Run> runs;            // by repetition
   std::map<std::string, std::string> counts;  // steps, iterations and so on of the first repetition, by column
 
-  std::string name() const;
+  std::string name() const;  // of its own in the file
 };
 
 // In the order of the file; nothing where the table is not raw.csv.
