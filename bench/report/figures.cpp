@@ -161,9 +161,10 @@ std::string chart_html(const CsvTable& chart) {
       for (std::size_t k = 0; k < rows.size(); ++k) {
         const Measured& m = rows[k].measured;
         if (!m.ok() || rows[k].method() != curve.method || !(m.error[quantity] <= 1)) continue;
-        std::string tip = fmt::format("{}, {} {}", curve.method, rows[k].parameter, rows[k].value);
+        std::string tip = curve.method;
         if (named)
-          tip += fmt::format(": error {}, {} s\n{}", m.error[quantity], m.seconds, command(rows[k], chart.file, until));
+          tip += fmt::format(", {} {}: error {}, {} s\n{}", rows[k].parameter, rows[k].value, m.error[quantity],
+                             m.seconds, command(rows[k], chart.file, until));
         drawn.points.push_back({m.error[quantity], m.seconds, std::move(tip), front[k]});
       }
       if (!drawn.points.empty()) panel.curves.push_back(std::move(drawn));

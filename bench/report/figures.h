@@ -11,7 +11,7 @@ namespace poinsot::report {
 std::string panels_html(const study::CsvTable& points, const std::string& title);
 
 // Of a work-precision chart: a panel for each quantity, above it what follows from it. Methods that this names are in
-// colour; a point tells its method and setting, of these also error, time and command.
+// colour; a point tells its method, of these also setting, error, time and command.
 std::string chart_html(const study::CsvTable& chart);
 
 }  // namespace poinsot::report

@@ -105,25 +105,39 @@ std::string axes_svg(const SvgPanel& panel, const Axis& x, const Axis& y, double
   return text;
 }
 
+// Points that tell the same are one path.
+std::string marks_svg(const SvgPanel& panel, const SvgCurve& curve, const Axis& x, const Axis& y) {
+  std::string text, path;
+  const SvgPoint* last = nullptr;
+  const auto finish = [&] {
+    if (path.empty()) return;
+    const std::string tip = last->tip.empty() ? "" : fmt::format("<title>{}</title>", escape(last->tip));
+    text += fmt::format("<path class=\"m{}\" d=\"{}\">{}</path>", last->strong ? " strong" : "", path, tip);
+    path.clear();
+  };
+  for (const SvgPoint& p : curve.points) {
+    if (!shown(panel, p)) continue;
+    if (last && (last->tip != p.tip || last->strong != p.strong)) finish();
+    last = &p;
+    path += marker_path(curve.marker, x.at(p.x), y.at(p.y), p.strong ? 4 : 3);
+  }
+  finish();
+  return text;
+}
+
 std::string curve_svg(const SvgPanel& panel, const SvgCurve& curve, const Axis& x, const Axis& y) {
-  std::string line, marks, band, back;
+  std::string line, band, back;
   for (std::size_t k = 0; k < curve.points.size(); ++k) {
     const SvgPoint& p = curve.points[k];
     if (!shown(panel, p)) continue;
     line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", x.at(p.x), y.at(p.y));
-    if (!curve.low.empty()) {
-      band += fmt::format("{}{:.1f} {:.1f}", band.empty() ? "M" : "L", x.at(p.x), y.at(curve.low[k]));
-      back = fmt::format("L{:.1f} {:.1f}", x.at(p.x), y.at(curve.high[k])) + back;
-    }
-    if (curve.marker == kLine) continue;
-    marks += fmt::format("<path class=\"m{}\" d=\"{}\">", p.strong ? " strong" : "",
-                         marker_path(curve.marker, x.at(p.x), y.at(p.y), p.strong ? 4 : 3));
-    if (!p.tip.empty()) marks += fmt::format("<title>{}</title>", escape(p.tip));
-    marks += "</path>";
+    if (curve.low.empty()) continue;
+    band += fmt::format("{}{:.1f} {:.1f}", band.empty() ? "M" : "L", x.at(p.x), y.at(curve.low[k]));
+    back = fmt::format("L{:.1f} {:.1f}", x.at(p.x), y.at(curve.high[k])) + back;
   }
   if (!band.empty()) band = fmt::format("<path class=\"band\" d=\"{}{}z\"/>", band, back);
   return fmt::format("<g class=\"{}\">{}<path class=\"l{}\" d=\"{}\"/>{}</g>\n", colour_class(curve), band,
-                     curve.dashed ? " dashed" : "", line, marks);
+                     curve.dashed ? " dashed" : "", line, curve.marker == kLine ? "" : marks_svg(panel, curve, x, y));
 }
 
 // Names beside the last points, one below another where they would cover one another.
