@@ -50,9 +50,8 @@ std::string ratio_sentence(const std::vector<const Ratio*>& own, const std::stri
   }
   const auto what = [&](const char* name) { return fmt::format("{}, {}: {}", analysis, other, name); };
   std::string text = fmt::format(
-      "{}: {} takes {} times as long as {} (medians of {} mechanisms; their intervals of {} % or more lie within {}); "
-      "it "
-      "is slower beyond the noise in {} of them.",
+      "{}: {} takes {} times as long as {} (medians of {} mechanisms; their intervals, of at least {} % "
+      "confidence, lie within {}); it is slower beyond the noise in {} of them.",
       analysis, other, ledger.range(what("ratio"), medians, 2), kSubject, ledger.count(what("mechanisms"), own.size()),
       ledger.number(what("confidence of the intervals, %"), std::floor(1000 * confidence) / 10, 1),
       ledger.range(what("intervals"), within, 2), ledger.count(what("slower beyond the noise"), apart));
