@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <memory>
 #include <set>
@@ -14,6 +15,7 @@
 #include "bench/study/fronts.h"
 #include "bench/study/measure.h"
 #include "bench/study/plot.h"
+#include "bench/study/scene_check.h"
 #include "bench/study/startable_scene.h"
 #include "core/input_error.h"
 #include "core/json_document.h"
@@ -24,12 +26,16 @@ using namespace study;
 namespace {
 namespace fs = std::filesystem;
 
-// By default: all of dynamics, each by its own name.
-std::string compared_integrators() {
-  std::vector<std::string_view> names;
+std::vector<std::string> integrators_of(Analysis analysis) {
+  std::vector<std::string> names;
   for (const IntegratorEntry& entry : integrators())
-    if (entry.analysis == Analysis::dynamics && !entry.picks) names.push_back(entry.name);
-  return fmt::format("{}", fmt::join(names, ","));
+    if (entry.analysis == analysis && !entry.picks) names.emplace_back(entry.name);
+  return names;
+}
+
+// By default: all of dynamics, each by its own name; kinematics takes part where it computes the motion, too.
+std::string compared_integrators() {
+  return fmt::format("{}", fmt::join(integrators_of(Analysis::dynamics), ","));
 }
 
 struct Options {
@@ -54,7 +60,8 @@ std::vector<fs::path> scene_files(const Options& options) {
   }
   if (files.empty()) throw InputError("found no scene, expected poinsot chart SCENE, or --all");
   std::set<std::string> stems;
-  if (files.size() > 1) stems = {"fronts_integrators", "fronts_methods"};  // written, too
+  if (files.size() > 1)
+    stems = {"fronts_integrators", "fronts_methods", "fronts_choice", "fronts_plot"};  // written, too
   for (const fs::path& file : files)
     if (!stems.insert(stem_of(file)).second)
       throw InputError(fmt::format("{}: two tables would be written as {}.csv", shown_input(file), stem_of(file)));
@@ -74,9 +81,16 @@ SweepPlan plan_of(const Options& options) {
   return plan;
 }
 
+SweepPlan plan_for(const Scene& scene, const SweepPlan& asked, const Options& options) {
+  SweepPlan plan = asked;
+  if (options.integrators == compared_integrators() && without_freedom(scene))
+    std::ranges::copy(integrators_of(Analysis::kinematics), std::back_inserter(plan.integrators));
+  return plan;
+}
+
 int chart(const Options& options) {
   const std::vector<fs::path> files = scene_files(options);
-  const SweepPlan plan = plan_of(options);
+  const SweepPlan asked = plan_of(options);
   std::vector<Scene> scenes;
   for (const fs::path& file : files) scenes.push_back(read_startable_scene(file, values_set(options.set)));
   if (!options.end.empty()) (void)end_time(options.end, scenes.front());  // a wrong one, before anything is written
@@ -90,6 +104,7 @@ int chart(const Options& options) {
   study::Progress told{0, static_cast<double>(scenes.size())};
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const double end = end_time(options.end, scenes[k]);
+    const SweepPlan plan = plan_for(scenes[k], asked, options);
     std::vector<std::string> said = scenes[k].notices;
     const Reference r = reference(scenes[k], {end, end / kOutputs, plan.digits}, Cache(options.cache), said);
     for (const std::string& notice : said) {
@@ -110,7 +125,7 @@ int chart(const Options& options) {
       told.skipped = before + here.skipped / here.all;
       progress.at(told);
     });
-    charts.push_back({stem.filename(), file.rows()});
+    charts.push_back({stem.filename(), file.rows(), r.agreement});
     plots.push_back({file.path(), stem});
   }
   progress.clear();
@@ -121,15 +136,24 @@ int chart(const Options& options) {
   }
   std::vector<fs::path> written;
   for (const Plot& plot : plots) written.push_back(plot.csv);
+  std::vector<std::string> compared = asked.integrators;
+  std::ranges::copy(integrators_of(Analysis::kinematics), std::back_inserter(compared));
   if (charts.size() > 1) {
     std::vector<std::string> foot = origin_lines(core);
     foot.push_back(options.quick ? "settings: the reduced set, --quick" : "settings: the full set");
-    std::ranges::copy(write_report(fronts_report(plan.integrators, charts, foot), options.out, "fronts"),
-                      std::back_inserter(written));
+    Report report = fronts_report(compared, charts, foot);
+    if (const std::string why = write_plots({fronts_plot(charts)}, options.out, foot); why.empty()) {
+      report.text +=
+          "\n\n![Time against the error in positions, of the cheapest method of each integrator](fronts_plot.svg)";
+    } else {
+      print_error(why);
+      status = kNumericsFailed;
+    }
+    std::ranges::copy(write_report(report, options.out, "fronts"), std::back_inserter(written));
   }
   if (options.quiet) return status;
   for (const fs::path& file : written) fmt::print("{}\n", file.string());
-  fmt::print("{}", fronts_summary(plan.integrators, charts));
+  fmt::print("{}", fronts_summary(compared, charts));
   return status;
 }
 

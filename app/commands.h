@@ -10,6 +10,8 @@ namespace poinsot::app {
 void add_run(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_view(CLI::App& app, int& status);
+void add_report(CLI::App& app, int& status);
+void add_compare(CLI::App& app, int& status);
 void add_list(CLI::App& app, int& status);
 void add_tables(CLI::App& app, int& status);
 void add_make(CLI::App& app, int& status);

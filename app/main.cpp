@@ -149,6 +149,8 @@ int main(int argc, char** argv) {
   add_run(app, status);
   add_check(app, status);
   add_view(app, status);
+  add_report(app, status);
+  add_compare(app, status);
   add_list(app, status);
   add_tables(app, status);
   add_make(app, status);

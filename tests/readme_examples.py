@@ -1,4 +1,5 @@
-"""Runs the README's examples: readme_examples.py SOURCE PROGRAM_DIRECTORY.
+"""Runs the examples of README.md and of the pages beside models and program: readme_examples.py SOURCE
+PROGRAM_DIRECTORY.
 
 A block marked `sh` is run as it stands by a shell that stops at the first failure, in one temporary directory for all
 blocks, with the program on the PATH and the models where the README says. A block marked `bash` takes long and has its
@@ -16,11 +17,18 @@ import tempfile
 
 source = pathlib.Path(sys.argv[1]).resolve()
 environment = dict(os.environ, PATH=os.path.abspath(sys.argv[2]) + os.pathsep + os.environ["PATH"])
-text = (source / "README.md").read_text(encoding="utf-8")
+text = "\n".join((source / page).read_text(encoding="utf-8") for page in ("README.md", "models/README.md", "app/README.md"))
 blocks = re.findall(r"^```(\w+)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 presets = {preset["name"] for preset in json.loads((source / "CMakePresets.json").read_text())["configurePresets"]}
 example = "".join(file.read_text() for file in sorted((source / "tests/example_project").iterdir()))
 problems = []
+
+
+def timeless(printed):
+    """Without the lines that say how long a step took, and what is rounding."""
+    return [line for line in printed.splitlines() if "us a step" not in line and "largest violation" not in line]
+
+
 # A program that was built without npm has no page to write.
 no_page = "without the page" in subprocess.run(["poinsot", "view", "-", "--out", "-"], env=environment, capture_output=True,
                                                stdin=subprocess.DEVNULL, text=True).stderr
@@ -30,7 +38,7 @@ if no_page:
 with tempfile.TemporaryDirectory() as directory:
     os.symlink(source / "models", pathlib.Path(directory) / "models")
     environment["XDG_CACHE_HOME"] = directory
-    for language, block in blocks:
+    for number, (language, block) in enumerate(blocks):
         if language == "sh":
             if no_page:
                 block = re.sub(r"^poinsot view .*$", "", block, flags=re.MULTILINE)
@@ -38,6 +46,9 @@ with tempfile.TemporaryDirectory() as directory:
                                   stdin=subprocess.DEVNULL, capture_output=True, text=True)
             if done.returncode != 0:
                 problems.append(f"exit status {done.returncode}:\n{block}{done.stdout}{done.stderr}")
+            shown = blocks[number + 1] if number + 1 < len(blocks) else ("", "")
+            if shown[0] == "text" and f"{block}```\n\n```text\n" in text and timeless(done.stdout) != timeless(shown[1]):
+                problems.append(f"prints something else:\n{block}{done.stdout}")
         elif language == "bash":
             problems += [f"no script {script}" for script in re.findall(r"^bash (\S+)", block, re.MULTILINE)
                          if not (source / script).is_file()]

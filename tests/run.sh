@@ -3,7 +3,7 @@
 # undefined-behaviour sanitizers. Ends with ctest's summary, or at the first thing that fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-bash cmake/install_packages.sh chromium   # in which the page of `poinsot view` is looked at
+bash cmake/install_packages.sh chromium   # in which the pages of `poinsot view` and `report` are looked at
 
 # Layouts differ between versions of clang-format; the project's is that of Debian 12.
 format=clang-format

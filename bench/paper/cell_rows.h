@@ -15,7 +15,8 @@
 
 namespace poinsot::paper {
 
-inline constexpr std::string_view kSubject = "rA";  // the formulation the paper proposes
+inline constexpr std::string_view kSubject = "rA";         // the formulation the paper proposes
+inline constexpr const char* kLikeForLike = "simplified";  // the Newton matrix of the original codes
 inline constexpr const char* kNone = "-";
 
 std::string_view analysis_name(Analysis analysis);

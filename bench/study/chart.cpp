@@ -61,8 +61,8 @@ std::vector<std::string> chart_notes(const Scene& scene, double end, const Refer
       "over {:g} s (error control: {:g} s) are left out",
       plan.repetitions, plan.longest, kPatience * plan.longest));
   lines.push_back(fmt::format(
-      "front: no other case is as accurate and as fast; errors below {:g} times what the reference resolves count as "
-      "equal, errors over {:g} not at all",
+      "front: the curve through a method's cases is below all others by more than the noise of the times; errors below "
+      "{:g} times what the reference resolves count as equal, errors over {:g} not at all",
       kResolved, kUseless));
   return lines;
 }

@@ -11,7 +11,7 @@
 #include <iterator>
 #include <limits>
 
-#include "bench/study/csv.h"
+#include "bench/study/cost_curve.h"
 #include "bench/study/output_file.h"
 #include "core/input_error.h"
 
@@ -93,6 +93,22 @@ bool ChartRow::of(const Case& one) const {
          linear_solver == one.settings.linear_solver && parameter == one.parameter() && value == one.value();
 }
 
+std::string ChartRow::method() const {
+  const std::string name = fmt::format("{} in {}", integrator, formulation);
+  return linear_solver == kUsualSolver ? name : fmt::format("{} with {}", name, linear_solver);
+}
+
+std::vector<ChartRow> chart_rows(const CsvTable& table) {
+  std::vector<ChartRow> rows;
+  if (!is_chart(table)) return rows;
+  for (const auto& fields : table.rows) rows.push_back(row_of(fields));
+  return rows;
+}
+
+bool is_chart(const CsvTable& table) {
+  return fmt::format("{}", fmt::join(table.header, ",")) == header();
+}
+
 ChartFile::ChartFile(fs::path file, std::vector<std::string> notes, bool fresh)
     : file_(std::move(file)), notes_(std::move(notes)) {
   for (std::string& note : notes_) note = on_one_line(note);
@@ -120,6 +136,7 @@ void ChartFile::read() {
   if (head < lines.size() && lines[head] == kUnfinished) ++head;
   if (lines.size() <= head || lines[head] != header()) refuse("the file is not the beginning of this chart");
   for (std::size_t k = head + 1; k < lines.size(); ++k) {
+    if (lines[k].starts_with("#")) continue;  // a conclusion
     const std::vector<std::string> f = csv_fields(lines[k]);
     if (f.size() != kColumns) refuse(fmt::format("line {} is not a row of a chart", k + 1));
     if (f[5] != "reference") rows_.push_back(row_of(f));
@@ -139,6 +156,10 @@ void ChartFile::write_all(const Reference* reference) const {
     file.write(line(row));
   }
   for (const ChartRow& row : rows_) file.write(line(row));
+  for (std::size_t k = 0; reference && k < kQuantities.size(); ++k) {
+    const std::string said = CostCurves(rows_, k, reference->agreement[k]).conclusion();
+    if (!said.empty()) file.write(fmt::format("# conclusion, {}: {}\n", kQuantities[k], said));
+  }
   file.commit();
 }
 
@@ -156,10 +177,8 @@ void ChartFile::add(const Case& one, const Measured& measured) {
 }
 
 void ChartFile::finish(const Reference& reference) {
-  std::vector<Measured> measured;
-  for (const ChartRow& row : rows_) measured.push_back(row.measured);
   for (std::size_t quantity = 0; quantity < kQuantities.size(); ++quantity) {
-    const std::vector<bool> on = front(measured, quantity, reference);
+    const std::vector<bool> on = CostCurves(rows_, quantity, reference.agreement[quantity]).front();
     for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k].front[quantity] = on[k];
   }
   out_.close();

@@ -5,7 +5,8 @@
 // finished a note after them says that it is not. Columns: the case
 // (formulation, integrator, linear_solver, parameter, value), its status ("ok", "reference" for how far the reference
 // can be trusted, or why there are no figures), errors of the four quantities, constraint violation, energy drift,
-// seconds and their spread, counts, and by quantity whether the case is on the front (1, 0).
+// seconds and their spread, counts, and by quantity whether the case is on the front (1, 0). Below the rows stands, by
+// quantity, what follows for the accuracies (cost_curve.h).
 #pragma once
 
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/study/csv.h"
 #include "bench/study/sweep.h"
 
 namespace poinsot::study {
@@ -26,6 +28,10 @@ struct ChartRow {
   bool of(const Case& one) const;
   std::string method() const;
 };
+
+// Whether a table is a chart, and its rows: those of a reference have its status and no seconds.
+bool is_chart(const CsvTable& table);
+std::vector<ChartRow> chart_rows(const CsvTable& table);
 
 class ChartFile {
  public:

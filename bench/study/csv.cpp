@@ -1,5 +1,15 @@
 #include "bench/study/csv.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "core/input_error.h"
+
 namespace poinsot::study {
 
 std::vector<std::string> csv_fields(std::string_view line) {
@@ -16,6 +26,46 @@ std::vector<std::string> csv_fields(std::string_view line) {
       result.back() += line[k];
   }
   return result;
+}
+
+int CsvTable::column(std::string_view name) const {
+  const auto it = std::find(header.begin(), header.end(), name);
+  return it == header.end() ? -1 : static_cast<int>(it - header.begin());
+}
+
+std::string CsvTable::note(std::string_view key) const {
+  for (const std::string& line : notes)
+    if (line.starts_with(key) && std::string_view(line).substr(key.size()).starts_with(": "))
+      return line.substr(key.size() + 2);
+  return {};
+}
+
+CsvTable read_csv(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  CsvTable table{file.stem().string(), {}, {}, {}};
+  int number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    if (line.starts_with("#")) {
+      table.notes.push_back(line.starts_with("# ") ? line.substr(2) : line.substr(1));
+    } else if (table.header.empty()) {
+      table.header = csv_fields(line);
+    } else if (!line.empty()) {
+      table.rows.push_back(csv_fields(line));
+      if (table.rows.back().size() != table.header.size())
+        throw InputError(fmt::format("{}: line {}: found {} fields, expected {}", file.string(), number,
+                                     table.rows.back().size(), table.header.size()));
+    }
+  }
+  if (table.header.empty()) throw InputError(fmt::format("{}: found no header, expected a table", file.string()));
+  return table;
+}
+
+double csv_number(std::string_view field) {
+  double x = std::numeric_limits<double>::quiet_NaN();
+  const auto read = std::from_chars(field.data(), field.data() + field.size(), x);
+  return read.ptr == field.data() + field.size() ? x : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace poinsot::study

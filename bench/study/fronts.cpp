@@ -79,10 +79,12 @@ Report fronts_report(const std::vector<std::string>& integrators, const std::vec
   Report report;
   report.title = "Fronts";
   report.text = fmt::format(
-      "On how many of {} charts a method is on the front of a quantity: there no other is as accurate and as fast. "
+      "On how many of {} charts a method is on the front of a quantity: there its curve of time over accuracy is below "
+      "all others by more than the noise of the times. "
       "`any`: on the front of one of them at least, in the scenes named.",
       charts.size());
-  report.tables = {table("fronts_integrators", "Integrators, in any formulation", {"integrator"},
+  report.tables = {choice_table(charts),
+                   table("fronts_integrators", "Integrators, in any formulation", {"integrator"},
                          of_integrators(integrators, charts)),
                    table("fronts_methods", "Integrators and formulations",
                          {"integrator", "formulation", "linear_solver"}, of_methods(integrators, charts))};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/study/chart_file.h"
+#include "bench/study/panels.h"
 #include "bench/study/report.h"
 
 namespace poinsot::study {
@@ -12,7 +13,14 @@ namespace poinsot::study {
 struct SceneChart {
   std::string scene;
   std::vector<ChartRow> rows;  // with their fronts
+  PerQuantity agreement{};     // of the reference
 };
+
+// "For this accuracy on this kind of scene take this": by kind (kSceneKinds), quantity and accuracy the method that is
+// the fastest, or not apart from it, on most of the charts.
+Table choice_table(const std::vector<SceneChart>& charts);
+// A panel for each scene: time against the error in positions, of each integrator in the formulation that is cheapest.
+PanelPlot fronts_plot(const std::vector<SceneChart>& charts);
 
 // Tables by integrator and by method (integrator, formulation and linear solver): of each quantity, the number of
 // charts on whose front it stands, and the scenes of those it stands on with any. `integrators`: every one that was

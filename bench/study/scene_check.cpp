@@ -76,6 +76,13 @@ std::string_view left_free(const Group& joint) {
   return "";
 }
 
+bool without_freedom(const Scene& scene) {
+  const auto model = std::make_shared<const Model>(compile(scene));
+  const auto pfaffian = [](const Row& row) { return row.type == RowType::pfaffian; };
+  return std::none_of(model->rows.begin(), model->rows.end(), pfaffian) &&
+         analyze_rank(model, given_state(*model), RankNames::none).degrees_of_freedom() == 0;
+}
+
 SceneCheck check_scene(const Scene& scene) {
   SceneCheck result;
   result.model = std::make_shared<const Model>(compile(scene));

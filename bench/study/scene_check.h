@@ -41,6 +41,9 @@ struct SceneCheck {
 
 SceneCheck check_scene(const Scene& scene);
 
+// No degree of freedom is left and all constraints are of positions: kinematics computes the motion, too.
+bool without_freedom(const Scene& scene);
+
 // "turning about its axis": what a joint alone leaves of the motion between its bodies.
 std::string_view left_free(const Group& joint);
 

@@ -4,40 +4,13 @@
 // there is none of them, or the program was built without the page, it says so and ends with 77: skipped.
 
 import { execFileSync, spawnSync } from "node:child_process";
-import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { createRequire } from "node:module";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, join, resolve } from "node:path";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+import { browserPath, library, skip } from "./browser.js";
 
 const [program, source, work] = process.argv.slice(2).map((path) => resolve(path));
-const here = dirname(fileURLToPath(import.meta.url));
-
-function skip(why) {
-  const line = "*".repeat(100);
-  console.log(`${line}\nSKIPPED, the page of \`poinsot view\` was not looked at: ${why}\n${line}`);
-  process.exit(77);
-}
-
-function browserPath() {
-  for (const name of ["chromium", "chromium-browser", "google-chrome"]) {
-    const found = spawnSync("which", [name], { encoding: "utf8" });
-    if (found.status === 0) return found.stdout.trim();
-  }
-  return skip("no browser was found (Debian: chromium)");
-}
-
-function library() {
-  mkdirSync(work, { recursive: true });
-  const lock = readFileSync(join(here, "package-lock.json"), "utf8"), installed = join(work, "installed-lock.json");
-  if (!existsSync(installed) || readFileSync(installed, "utf8") !== lock) {
-    for (const file of ["package.json", "package-lock.json"]) copyFileSync(join(here, file), join(work, file));
-    const done = spawnSync("npm", ["ci", "--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error"], { cwd: work, encoding: "utf8", timeout: 120000 });
-    if (done.status !== 0) skip(`npm could not install playwright-core and axe-core: ${(done.stderr ?? String(done.error)).split("\n")[0]}`);
-    writeFileSync(installed, lock);
-  }
-  return createRequire(join(work, "package.json"));
-}
 
 let failures = 0, checks = 0;
 function expect(holds, what) {
@@ -241,7 +214,7 @@ async function names(looker) {
 
 const probe = spawnSync(program, ["view", "none.json", "--out", "none.html"], { encoding: "utf8" });
 if (/without the page/.test(probe.stderr)) skip("the program was built without it (npm was not found)");
-const executablePath = browserPath(), require = library();
+const executablePath = browserPath(), require = library(work);
 const { chromium } = require("playwright-core");
 const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
 try {

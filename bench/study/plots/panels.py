@@ -61,7 +61,10 @@ def draw(rows, notes):
     width, height = (8 if columns == 1 else WIDTH * columns) + 0.4, HEIGHT * lines + 1.1
     figure, axes = matplotlib.pyplot.subplots(lines, columns, figsize=(width, height), squeeze=False,
                                               sharey="row" if note(notes, "shared") == "yes" else False)
-    common = len(markers) > 1 or all(len(of) > 1 and of == series[panels[0]] for of in series.values())
+    common = len(markers) > 1 or all(len(of) > 1 and set(of) & set(series[panels[0]]) for of in series.values())
+    items = handles(names(measured, "series"), colours, names(measured, "variant"), markers)
+    beside = min(len(items), int(0.75 * width))  # entries of the legend that fit beside one another
+    legend = 0.7 + 0.2 * (math.ceil(len(items) / beside) - 1)  # inches
     for k, axis in enumerate(axes.flat):
         if k >= len(panels):
             axis.axis("off")
@@ -77,10 +80,9 @@ def draw(rows, notes):
         if not common:
             axis.legend(handles=handles(series[panels[k]], colours, [], {}), fontsize=8, ncol=3, loc="best")
     figure.suptitle(note(notes, "title"), fontsize=12)
-    figure.tight_layout(rect=(0, (0.7 if common else 0.35) / height, 1, 1 - 0.1 / height))
+    figure.tight_layout(rect=(0, (legend if common else 0.35) / height, 1, 1 - 0.1 / height))
     if common:
-        items = handles(names(measured, "series"), colours, names(measured, "variant"), markers)
-        figure.legend(handles=items, loc="lower center", ncol=len(items), fontsize=9,
+        figure.legend(handles=items, loc="lower center", ncol=beside, fontsize=9,
                       bbox_to_anchor=(0.5, 0.33 / height))
     return figure
 

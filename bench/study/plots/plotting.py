@@ -31,7 +31,7 @@ matplotlib.rcParams.update({
 })
 
 # Told apart also by those who see few colours (Okabe and Ito); black comes last.
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C564B", "#7F7F7F", "#000000"]
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C564B", "#7F7F7F", "#882255", "#000000"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", "*"]
 
 

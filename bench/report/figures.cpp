@@ -1,0 +1,181 @@
+#include "bench/report/figures.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "bench/report/html.h"
+#include "bench/report/svg_panel.h"
+#include "bench/study/chart_file.h"
+#include "bench/study/cost_curve.h"
+#include "bench/study/panels.h"
+#include "formulations/registry.h"
+#include "integrators/integrator.h"
+
+namespace poinsot::report {
+using namespace study;
+namespace {
+
+constexpr std::size_t kCourse = 50;  // more points are a course, not measurements at places of their own
+
+// In the order of appearance.
+int place(std::vector<std::string>& names, const std::string& name) {
+  const auto it = std::ranges::find(names, name);
+  if (it != names.end()) return static_cast<int>(it - names.begin());
+  names.push_back(name);
+  return static_cast<int>(names.size()) - 1;
+}
+
+std::string key_item(int colour, int marker, const std::string& name) {
+  constexpr const char* shapes[] = {"●", "■", "▲", "◆"};
+  const std::string chip = colour != kGrey
+                               ? fmt::format("<span class=\"chip c{}\" aria-hidden=\"true\"></span>", colour % kColours)
+                               : fmt::format("<span aria-hidden=\"true\">{}</span> ", shapes[marker % 4]);
+  return fmt::format("<li>{}{}</li>", chip, escape(name));
+}
+
+std::string figure(const SvgPanel& panel, const std::string& said) {
+  const std::string picture = svg(panel);
+  return fmt::format("<figure><figcaption><b>{}</b>{}</figcaption>\n{}</figure>\n", escape(panel.title),
+                     said.empty() ? "" : fmt::format("<span class=\"said\">{}</span>", escape(said)),
+                     picture.empty() ? "<p>Every value is zero or missing: there is no curve to draw.</p>\n" : picture);
+}
+
+std::string alt_of(const SvgPanel& panel, const std::string& title) {
+  std::vector<std::string> names;
+  for (const SvgCurve& curve : panel.curves)
+    if (!curve.name.empty() && std::ranges::find(names, curve.name) == names.end()) names.push_back(curve.name);
+  return fmt::format("{}, {}: {} over {}. Curves: {}. The numbers are in the table that is linked.", title, panel.title,
+                     panel.y, panel.x, fmt::join(names, ", "));
+}
+
+// A command that computes a case; the scene's file is called as the chart is.
+std::string command(const ChartRow& row, const std::string& scene, const std::string& end) {
+  const IntegratorEntry* entry = integrators().find(row.integrator);
+  const std::string how = entry && entry->analysis == Analysis::kinematics
+                              ? "--analysis kinematics"
+                              : fmt::format("--integrator {}", row.integrator);
+  return fmt::format("poinsot run {}.json --end {} --formulation {} {} --{} {}", scene, end, row.formulation, how,
+                     row.parameter, row.value);
+}
+
+bool names_method(const std::string& said, const std::string& method) {
+  for (std::size_t at = said.find(method); at != std::string::npos; at = said.find(method, at + 1)) {
+    const std::string after = said.substr(at + method.size());
+    const bool begins = at == 0 || !(std::isalnum(static_cast<unsigned char>(said[at - 1])) || said[at - 1] == '_');
+    if (begins && !after.starts_with(" with") && (after.empty() || !std::isalnum(static_cast<unsigned char>(after[0]))))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string panels_html(const CsvTable& points, const std::string& title) {
+  const int panel = points.column("panel"), series = points.column("series"), variant = points.column("variant"),
+            x = points.column("x"), y = points.column("y"), low = points.column("low"), high = points.column("high");
+  if (std::min({panel, series, variant, x, y, low, high}) < 0) return {};
+  std::vector<std::string> order, colours, markers;
+  std::map<std::string, SvgPanel> panels;
+  std::map<std::tuple<std::string, std::string, std::string>, std::size_t> curves;
+  for (const auto& row : points.rows) {
+    const auto field = [&](int column) -> const std::string& { return row[static_cast<std::size_t>(column)]; };
+    const bool guide = field(variant) == kGuide;
+    place(order, field(panel));
+    SvgPanel& own = panels[field(panel)];
+    const auto [at, fresh] = curves.try_emplace({field(panel), field(series), field(variant)}, own.curves.size());
+    if (fresh) {
+      own.curves.push_back(
+          {field(series), guide ? kGrey : place(colours, field(series)), kLine, {}, {}, {}, guide, false});
+      if (!guide) own.curves.back().marker = place(markers, field(variant));
+    }
+    SvgCurve& curve = own.curves[at->second];
+    const std::string name = field(variant).empty() || field(variant) == field(series)
+                                 ? field(series)
+                                 : fmt::format("{}, {}", field(series), field(variant));
+    curve.points.push_back({csv_number(field(x)), csv_number(field(y)),
+                            guide ? "" : fmt::format("{}: {}, {}", name, field(x), field(y)), false});
+    if (!field(low).empty()) {
+      curve.low.push_back(csv_number(field(low)));
+      curve.high.push_back(csv_number(field(high)));
+    }
+  }
+  std::string html = "<div class=\"panels\">\n";
+  for (const std::string& name : order) {
+    SvgPanel& own = panels[name];
+    for (SvgCurve& curve : own.curves)
+      if (curve.points.size() > kCourse) curve.marker = kLine;
+    own.title = name;
+    own.x = points.note("x"), own.y = points.note("y");
+    own.log_x = points.note("x scale") == "log", own.log_y = points.note("y scale") == "log";
+    own.alt = alt_of(own, title);
+    html += figure(own, "");
+  }
+  html += "</div>\n<ul class=\"key\" aria-label=\"Key\">";
+  for (std::size_t k = 0; k < colours.size(); ++k) html += key_item(static_cast<int>(k), 0, colours[k]);
+  if (markers.size() > 1 && markers != colours)
+    for (std::size_t k = 0; k < markers.size(); ++k) html += key_item(kGrey, static_cast<int>(k), markers[k]);
+  return html + "</ul>\n";
+}
+
+std::string chart_html(const CsvTable& chart) {
+  const std::vector<ChartRow> rows = chart_rows(chart);
+  const auto reference = std::ranges::find(rows, "reference", [](const ChartRow& r) { return r.measured.status; });
+  const PerQuantity agreement = reference == rows.end() ? PerQuantity{} : reference->measured.error;
+  const std::string settings = chart.note("settings"), to = "to t = ";
+  const std::string until =
+      settings.starts_with(to) ? settings.substr(to.size(), settings.find(" s;") - to.size()) : "";
+  std::vector<std::string> colours, markers;
+  for (const FormulationEntry& entry : formulations()) place(markers, std::string(entry.name));
+  for (const ChartRow& row : rows)
+    if (row.measured.status != "reference") place(colours, row.integrator);
+  std::string html = "<div class=\"panels two\">\n";
+  for (std::size_t quantity = 0; quantity < kQuantities.size(); ++quantity) {
+    const CostCurves curves(rows, quantity, agreement[quantity]);
+    if (curves.all().empty()) continue;
+    const std::string said = chart.note(fmt::format("conclusion, {}", kQuantities[quantity]));
+    SvgPanel panel;
+    panel.title = fmt::format("Error in {}", kQuantities[quantity]);
+    panel.x = fmt::format("error in {}", kQuantities[quantity]);
+    panel.y = "time, s";
+    panel.falling_x = true;
+    if (curves.rounding_only()) {
+      html += fmt::format("<figure><figcaption><b>{}</b><span class=\"said\">{}</span></figcaption></figure>\n",
+                          escape(panel.title), escape(said));
+      continue;
+    }
+    const std::vector<bool> front = curves.front();
+    for (const CostCurve& curve : curves.all()) {
+      const ChartRow& first = rows[curve.knots.front().row];
+      const bool named = names_method(said, curve.method);
+      SvgCurve drawn{curve.method,
+                     named ? place(colours, first.integrator) : kGrey,
+                     place(markers, first.formulation),
+                     {},
+                     {},
+                     {},
+                     false,
+                     named};
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        const Measured& m = rows[k].measured;
+        if (!m.ok() || rows[k].method() != curve.method || !(m.error[quantity] <= 1)) continue;
+        std::string tip = curve.method;
+        if (named)
+          tip += fmt::format(", {} {}: error {}, {} s\n{}", rows[k].parameter, rows[k].value, m.error[quantity],
+                             m.seconds, command(rows[k], chart.file, until));
+        drawn.points.push_back({m.error[quantity], m.seconds, std::move(tip), front[k]});
+      }
+      if (!drawn.points.empty()) panel.curves.push_back(std::move(drawn));
+    }
+    panel.alt = alt_of(panel, chart.file);
+    html += figure(panel, said);
+  }
+  html += "</div>\n<ul class=\"key\" aria-label=\"Key\">";
+  for (std::size_t k = 0; k < colours.size(); ++k) html += key_item(static_cast<int>(k), 0, colours[k]);
+  for (std::size_t k = 0; k < markers.size(); ++k) html += key_item(kGrey, static_cast<int>(k), markers[k]);
+  return html + "<li>grey: methods that the sentence does not name; large points: on the front</li></ul>\n";
+}
+
+}  // namespace poinsot::report

@@ -1,0 +1,316 @@
+#include "bench/report/findings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "bench/paper/cell_rows.h"
+#include "bench/study/motion.h"
+#include "formulations/registry.h"
+#include "integrators/settings.h"
+
+namespace poinsot::report {
+using namespace study;
+using paper::kSubject;
+namespace {
+
+std::vector<std::string> others() {
+  std::vector<std::string> names;
+  for (const FormulationEntry& entry : formulations())
+    if (entry.name != kSubject) names.emplace_back(entry.name);
+  return names;
+}
+
+std::vector<const Ratio*> pick(const std::vector<Ratio>& all, const std::function<bool(const Ratio&)>& which) {
+  std::vector<const Ratio*> picked;
+  for (const Ratio& one : all)
+    if (which(one)) picked.push_back(&one);
+  return picked;
+}
+
+// "dynamics: rp takes 1.31 to 1.43 times as long as rA (...); in the paper 2.29 to 2.93".
+std::string ratio_sentence(const std::vector<const Ratio*>& own, const std::string& analysis, const std::string& other,
+                           bool with_paper, Ledger& ledger) {
+  Range medians, within, paper;
+  double confidence = 1;
+  std::size_t apart = 0;
+  for (const Ratio* r : own) {
+    medians.add(r->over.median);
+    within.add(r->over.low), within.add(r->over.high);
+    confidence = std::min(confidence, r->over.confidence);
+    apart += r->over.low > 1;
+    for (const double x : {r->paper_c1, r->paper_c2})
+      if (x > 0) paper.add(x);
+  }
+  const auto what = [&](const char* name) { return fmt::format("{}, {}: {}", analysis, other, name); };
+  std::string text = fmt::format(
+      "{}: {} takes {} times as long as {} (medians of {} mechanisms; their intervals, of at least {} % "
+      "confidence, lie within {}); it is slower beyond the noise in {} of them.",
+      analysis, other, ledger.range(what("ratio"), medians, 2), kSubject, ledger.count(what("mechanisms"), own.size()),
+      ledger.number(what("confidence of the intervals, %"), std::floor(1000 * confidence) / 10, 1),
+      ledger.range(what("intervals"), within, 2), ledger.count(what("slower beyond the noise"), apart));
+  if (with_paper && !paper.empty()) {
+    text += fmt::format(" In the paper: {}", ledger.range(what("paper"), paper, 2));
+    text += within.low >= paper.low && within.high <= paper.high ? ", which these confirm."
+            : within.high < paper.low                            ? ", more than any of these."
+            : within.low > paper.high                            ? ", less than any of these."
+                                                                 : ", which these reach in part.";
+  }
+  return text;
+}
+
+Finding with_matrix(const std::vector<Ratio>& all, const std::string& id, const std::string& title,
+                    const std::string& jacobian, bool like_for_like, Ledger& ledger) {
+  Finding finding{id, title, {}};
+  ledger.begin(id);
+  for (const Analysis analysis : {Analysis::dynamics, Analysis::kinematics})
+    for (const std::string& other : others()) {
+      const std::string name(paper::analysis_name(analysis));
+      const auto own = pick(
+          all, [&](const Ratio& r) { return r.analysis == name && r.formulation == other && r.jacobian == jacobian; });
+      if (!own.empty()) finding.sentences.push_back(ratio_sentence(own, name, other, like_for_like, ledger));
+    }
+  return finding;
+}
+
+Finding phases(const std::vector<Ratio>& all, Ledger& ledger) {
+  Finding finding{"phases", "Why: in which phase the time lies", {}};
+  ledger.begin(finding.id);
+  for (const std::string& other : others()) {
+    std::array<double, kPhases.size()> saved{};
+    for (const Ratio* r : pick(all, [&](const Ratio& one) {
+           return one.analysis == paper::analysis_name(Analysis::dynamics) && one.formulation == other &&
+                  one.jacobian == paper::kLikeForLike;
+         }))
+      for (std::size_t k = 0; k < saved.size(); ++k) saved[k] += r->saved[k];
+    double sum = 0;
+    for (const double x : saved) sum += x;
+    if (!(sum > 0)) continue;
+    std::vector<std::string> shares;
+    for (std::size_t k = 0; k < saved.size(); ++k)
+      shares.push_back(fmt::format(
+          "{} % in {}", ledger.number(fmt::format("{}: share of {}, %", other, kPhases[k]), 100 * saved[k] / sum, 0),
+          kPhases[k]));
+    finding.sentences.push_back(fmt::format(
+        "Of the time that {} saves against {} in dynamics like for like, over all mechanisms, {}. A negative share is "
+        "time that it loses there.",
+        kSubject, other, fmt::join(shares, ", ")));
+  }
+  return finding;
+}
+
+Finding matched(const Table& table, Ledger& ledger) {
+  Finding finding{"matched", fmt::format("At matched error: {} against the others", kSubject), {}};
+  ledger.begin(finding.id);
+  for (const std::string& other : others())
+    for (const std::size_t quantity : {std::size_t{0}, kQuantities.size() - 1}) {
+      std::vector<double> ratios;
+      std::size_t slower = 0, faster = 0;
+      for (const auto& row : table.rows) {
+        if (row[2] != other || row[3] != kQuantities[quantity]) continue;
+        const double ratio = csv_number(row[5]), noise = 1 + csv_number(row[6]) / 100;
+        ratios.push_back(ratio);
+        slower += ratio > noise;
+        faster += ratio * noise < 1;
+      }
+      if (ratios.empty()) continue;
+      std::sort(ratios.begin(), ratios.end());
+      const auto what = [&](const char* name) { return fmt::format("{}, {}: {}", other, kQuantities[quantity], name); };
+      Range middle;
+      middle.add(ratios[ratios.size() / 4]);
+      middle.add(ratios[ratios.size() - 1 - ratios.size() / 4]);
+      finding.sentences.push_back(fmt::format(
+          "At the same error in {} and with the same integrator {} takes {} times as long as {} in the median of {} "
+          "comparisons (the middle half: {}); beyond the noise it is slower in {} and faster in {}.",
+          kQuantities[quantity], other, ledger.number(what("ratio"), median_interval(ratios).median, 2), kSubject,
+          ledger.count(what("comparisons"), ratios.size()), ledger.range(what("middle half"), middle, 2),
+          ledger.count(what("slower"), slower), ledger.count(what("faster"), faster)));
+    }
+  return finding;
+}
+
+enum class Verdict { holds, fails, open };
+
+// A claim of the paper, and whether the numbers bear it out.
+std::string claim(const std::string& said, Verdict verdict, const std::string& found) {
+  const char* words[] = {"It holds", "It does not hold", "These measurements leave it open"};
+  return fmt::format("The paper: {}. {}: {}.", said, words[static_cast<int>(verdict)], found);
+}
+Verdict verdict(bool holds) {
+  return holds ? Verdict::holds : Verdict::fails;
+}
+
+Verdict of_counts(std::size_t faster, std::size_t slower, std::size_t count) {
+  return faster == count ? Verdict::holds : slower > 0 ? Verdict::fails : Verdict::open;
+}
+
+// Most over least of a column, by mechanism.
+void add_ratios(const CsvTable& table, const std::string& name, Range& ratios) {
+  const int column = table.column(name);
+  if (column < 0) return;
+  std::map<std::string, Range> by_mechanism;
+  for (const auto& row : table.rows)
+    if (const double x = csv_number(row[static_cast<std::size_t>(column)]); x > 0) by_mechanism[row[0]].add(x);
+  for (const auto& [mechanism, range] : by_mechanism) ratios.add(range.high / range.low);
+}
+
+std::optional<std::string> claim_of_iterations(const Results& results, Ledger& ledger) {
+  Range ours, theirs;
+  for (const Analysis analysis : {Analysis::kinematics, Analysis::dynamics}) {
+    const CsvTable* table = results.find(paper::file_name(analysis, "iterations"));
+    if (!table) continue;
+    add_ratios(*table, fmt::format("ours, {}", paper::kLikeForLike), ours);
+    for (const char* code : {"paper C1", "paper C2", "C1", "C2"}) add_ratios(*table, code, theirs);
+  }
+  if (ours.empty() || theirs.empty()) return {};
+  return claim("the formulations need comparably many iterations", verdict(ours.high <= theirs.high),
+               fmt::format("of a mechanism, the most over the least is {} with the {} matrix, {} in the original codes",
+                           ledger.range("iterations, most over least", ours, 2), paper::kLikeForLike,
+                           ledger.range("iterations, most over least, original codes", theirs, 2)));
+}
+
+std::optional<std::string> claim_of_order(const Results& results, Ledger& ledger) {
+  const CsvTable* table = results.find("order_paper_table");
+  const int column = table ? table->column("exponent") : -1;
+  if (column < 0) return {};
+  Range exponents;
+  for (const auto& row : table->rows) exponents.add(csv_number(row[static_cast<std::size_t>(column)]));
+  return claim("implicit Euler is of first order in all formulations",
+               verdict(std::lround(exponents.low) == 1 && std::lround(exponents.high) == 1),
+               fmt::format("the exponents of its coordinates are {}; positions are prescribed there, so that this says "
+                           "nothing of the equations of motion",
+                           ledger.range("exponents", exponents, 3)));
+}
+
+std::optional<std::string> claim_of_deltas(const Results& results, Ledger& ledger) {
+  const CsvTable* table = results.find("solution_deltas_table");
+  const int column = table ? table->column("from rA, %") : -1;
+  if (column < 0) return {};
+  std::map<std::string, Range> by_formulation;
+  for (const auto& row : table->rows) by_formulation[row[0]].add(csv_number(row[static_cast<std::size_t>(column)]));
+  std::vector<std::string> parts;
+  double most = 0;
+  for (const std::string& other : others()) {
+    const auto it = by_formulation.find(other);
+    if (it == by_formulation.end()) continue;
+    most = std::max(most, it->second.high);
+    parts.push_back(fmt::format(
+        "{} by up to {} %", other,
+        ledger.text(fmt::format("{}: difference of the solutions, %", other), fmt::format("{:.1g}", it->second.high))));
+  }
+  if (parts.empty()) return {};
+  return claim("the solutions of the double pendulum are nearly identical", verdict(most < 1),
+               fmt::format("errors differ from those of {}: {}", kSubject, fmt::join(parts, ", ")));
+}
+
+std::optional<std::string> claim_of_linear_systems(const Results& results, Ledger& ledger) {
+  const CsvTable* table = results.find(paper::file_name(Analysis::dynamics, "phases"));
+  if (!table) return {};
+  const int total = table->column("total"), factor = table->column("factorization"), solve = table->column("solves"),
+            jacobian = table->column("jacobian");
+  if (std::min({total, factor, solve, jacobian}) < 0) return {};
+  Range shares;
+  for (const auto& row : table->rows) {
+    const auto at = [&](int column) { return csv_number(row[static_cast<std::size_t>(column)]); };
+    if (row[static_cast<std::size_t>(jacobian)] == paper::kLikeForLike && at(total) > 0)
+      shares.add(100 * (at(factor) + at(solve)) / at(total));
+  }
+  if (shares.empty()) return {};
+  return claim("solving the linear systems is a critical bottleneck", verdict(shares.high > 50),
+               fmt::format("factorizations and solves take {} % of a step in compiled code",
+                           ledger.range("share of the linear systems, %", shares, 0)));
+}
+
+std::optional<std::string> claim_of_reps(const std::vector<Ratio>& all, Ledger& ledger) {
+  const std::string baseline = others().front(), other = others().back();
+  Range quotient;
+  std::size_t faster = 0, slower = 0, count = 0;
+  for (const Ratio& one : all) {
+    if (one.formulation != baseline || one.jacobian != paper::kLikeForLike) continue;
+    for (const Ratio& two : all) {
+      if (two.analysis != one.analysis || two.mechanism != one.mechanism || two.jacobian != one.jacobian ||
+          two.formulation != other)
+        continue;
+      const double x = one.over.median / two.over.median;
+      quotient.add(x);
+      faster += one.over.low > two.over.high;
+      slower += one.over.high < two.over.low;
+      ++count;
+    }
+  }
+  if (count == 0) return {};
+  return claim(
+      fmt::format("{} is faster than {}", other, baseline), of_counts(faster, slower, count),
+      fmt::format("{} takes {} times as long as {}; of {} comparisons {} is the faster one beyond the noise in {}, "
+                  "the slower one in {}",
+                  baseline, ledger.range("ratio of the two", quotient, 2), other, ledger.count("comparisons", count),
+                  other, ledger.count("faster beyond the noise", faster),
+                  ledger.count("slower beyond the noise", slower)));
+}
+
+std::optional<std::string> claim_of_subject(const std::vector<Ratio>& all, Ledger& ledger) {
+  std::size_t faster = 0, slower = 0, count = 0;
+  for (const Ratio& r : all)
+    if (r.jacobian == paper::kLikeForLike) ++count, faster += r.over.low > 1, slower += r.over.high < 1;
+  if (count == 0) return {};
+  return claim(fmt::format("{} is the fastest", kSubject), of_counts(faster, slower, count),
+               fmt::format("of {} comparisons like for like it is faster beyond the noise in {} and slower in {}",
+                           ledger.count("comparisons of all", count), ledger.count("faster than others", faster),
+                           ledger.count("slower than others", slower)));
+}
+
+Finding claims(const Results& results, const std::vector<Ratio>& all, Ledger& ledger) {
+  Finding finding{"claims", "Where the paper's claims hold", {}};
+  ledger.begin(finding.id);
+  for (const auto& said :
+       {claim_of_subject(all, ledger), claim_of_reps(all, ledger), claim_of_iterations(results, ledger),
+        claim_of_order(results, ledger), claim_of_deltas(results, ledger), claim_of_linear_systems(results, ledger)})
+    if (said) finding.sentences.push_back(*said);
+  return finding;
+}
+
+Finding choices(const std::vector<const CsvTable*>& charts) {
+  Finding finding{"choice", "Which method for which accuracy", {}};
+  for (const CsvTable* chart : charts)
+    for (const auto quantity : {kQuantities.front(), kQuantities.back()})
+      if (const std::string said = chart->note(fmt::format("conclusion, {}", quantity)); !said.empty())
+        finding.sentences.push_back(fmt::format("{}: {}.", chart->file, said));
+  return finding;
+}
+
+}  // namespace
+
+Findings findings(const Results& results) {
+  Findings found;
+  Ledger ledger;
+  const auto keep = [&](Finding finding, const char* command) {
+    if (finding.sentences.empty())
+      found.missing.push_back(fmt::format("{}: poinsot {} --out {}", finding.title, command, results.folder.string()));
+    else
+      found.all.push_back(std::move(finding));
+  };
+  const CsvTable* raw = results.find("raw");
+  const std::vector<Ratio> all = raw ? ratios(*raw) : std::vector<Ratio>();
+  keep(with_matrix(all, "like_for_like", fmt::format("Like for like: how much faster {} is", kSubject),
+                   paper::kLikeForLike, true, ledger),
+       "tables");
+  keep(with_matrix(all, "exact", "With the exact Newton matrix", Settings{}.jacobian, false, ledger), "tables");
+  keep(phases(all, ledger), "tables");
+  const std::vector<const CsvTable*> charts = results.charts();
+  const Table at_matched_error = matched_table(charts);
+  keep(matched(at_matched_error, ledger), "chart --all --quick");
+  keep(claims(results, all, ledger), "tables");
+  keep(choices(charts), "chart --all --quick");
+  if (!all.empty()) found.tables.push_back(ratios_table(all));
+  if (!at_matched_error.rows.empty()) found.tables.push_back(at_matched_error);
+  if (!ledger.table().rows.empty()) found.tables.push_back(ledger.table());
+  return found;
+}
+
+}  // namespace poinsot::report

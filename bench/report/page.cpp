@@ -1,0 +1,214 @@
+#include "bench/report/page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <map>
+#include <set>
+
+#include "bench/report/assets.h"
+#include "bench/report/contents.h"
+#include "bench/report/figures.h"
+#include "bench/report/findings.h"
+#include "bench/report/html.h"
+
+namespace poinsot::report {
+using namespace study;
+namespace {
+
+constexpr std::size_t kLong = 12;  // rows of a table that is folded
+constexpr std::array<std::string_view, 4> kOrigin{"processor", "program", "compiler", "libraries"};
+
+std::string command(const Results& results, std::string_view words) {
+  return fmt::format("<code>poinsot {} --out {}</code>", words, escape(results.folder.string()));
+}
+
+std::string table_block(std::string_view caption, const std::string& file, const std::vector<std::string>& header,
+                        const std::vector<std::vector<std::string>>& rows, const std::string& settings) {
+  std::string html = table_html(caption, header, rows);
+  if (rows.size() > kLong)
+    html = fmt::format("<details><summary>{} (table)</summary>\n{}</details>\n", escape(caption), html);
+  return fmt::format("{}<p class=\"source\">{}{}</p>\n", html, link(file, file),
+                     settings.empty() ? "" : fmt::format(" · {}", escape(settings)));
+}
+
+// Those that are not what is told of all under "Origin".
+std::string own_settings(const Results& results, const CsvTable& table) {
+  const CsvTable* raw = results.find("raw");
+  const std::string settings = table.note("settings");
+  return raw && raw->note("settings") == settings ? "" : settings;
+}
+
+std::string missing_block(const Results& results, std::string_view what, std::string_view by) {
+  return fmt::format("<p class=\"missing\">Missing: {}. {} makes it.</p>\n", escape(what), command(results, by));
+}
+
+// "kinematics_phases" says which of several tables of an item it is.
+std::string caption_of(const Item& item, const std::string& file) {
+  const bool several = !item.tables[1].empty() || !item.figure.empty();
+  return several ? fmt::format("{}: {}", item.title, file) : std::string(item.title);
+}
+
+std::string item_block(const Results& results, const Item& item, std::set<std::string>& used) {
+  std::string html = fmt::format(
+      "<h3>{}</h3>\n",
+      escape(item.number.empty() ? std::string(item.title) : fmt::format("{}: {}", item.number, item.title)));
+  if (!item.text.empty()) html += fmt::format("<p>{}</p>\n", escape(item.text));
+  std::vector<std::string> missing;
+  if (!item.figure.empty()) {
+    const std::string file(item.figure);
+    used.insert(file);
+    if (const CsvTable* points = results.find(file))
+      html += panels_html(*points, std::string(item.title)) +
+              fmt::format("<p class=\"source\">{}</p>\n", link(file + ".csv", file + ".csv"));
+    else
+      missing.push_back(file + ".csv");
+  }
+  for (const std::string_view name : item.tables) {
+    if (name.empty()) continue;
+    const std::string file(name);
+    used.insert(file);
+    if (const CsvTable* table = results.find(file))
+      html +=
+          table_block(caption_of(item, file), file + ".csv", table->header, table->rows, own_settings(results, *table));
+    else
+      missing.push_back(file + ".csv");
+  }
+  if (!missing.empty()) html += missing_block(results, fmt::format("{}", fmt::join(missing, ", ")), item.command);
+  return html;
+}
+
+std::string charts_block(const Results& results, std::set<std::string>& used) {
+  std::string html;
+  for (const CsvTable* chart : results.charts()) {
+    used.insert(chart->file);
+    const std::string scene = chart->note("scene"), title = scene.substr(0, scene.rfind(", content"));
+    html += fmt::format("<h3>{}</h3>\n", escape(title.empty() ? chart->file : title));
+    html += chart_html(*chart);
+    html += table_block(fmt::format("{}: every case", chart->file), chart->file + ".csv", chart->header, chart->rows,
+                        chart->note("settings"));
+  }
+  return html.empty() ? missing_block(results, "work-precision charts", "chart --all --quick") : html;
+}
+
+std::string findings_block(const Findings& found) {
+  std::string html;
+  for (const Finding& finding : found.all) {
+    html += fmt::format("<section class=\"finding\" aria-labelledby=\"{}\"><h3 id=\"{}\">{}</h3>\n<ul>\n", finding.id,
+                        finding.id, escape(finding.title));
+    for (const std::string& sentence : finding.sentences) html += fmt::format("<li>{}</li>\n", escape(sentence));
+    html += "</ul></section>\n";
+  }
+  for (const std::string& what : found.missing)
+    html += fmt::format("<p class=\"missing\">Missing: {}</p>\n", escape(what));
+  for (const Table& table : found.tables)
+    html += (table.text.empty() ? "" : fmt::format("<p>{}</p>\n", escape(table.text))) +
+            table_block(table.title, table.file + ".csv", table.header, table.rows, "");
+  return html;
+}
+
+// Each origin once; where the folder's tables have several of a kind, of which files those are that fewer have.
+std::vector<std::pair<std::string, std::string>> origins(const Results& results) {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const std::string_view key : kOrigin) {
+    std::map<std::string, std::vector<std::string>> files;
+    for (const auto& [name, table] : results.tables)
+      if (const std::string value = table.note(key); !value.empty()) files[value].push_back(name);
+    std::vector<std::pair<std::string, std::vector<std::string>>> sorted(files.begin(), files.end());
+    std::ranges::stable_sort(sorted, std::greater(), [](const auto& one) { return one.second.size(); });
+    for (const auto& [value, of] : sorted)
+      all.emplace_back(key,
+                       &value == &sorted.front().first ? value : fmt::format("{} (of {})", value, fmt::join(of, ", ")));
+  }
+  return all;
+}
+
+std::string origin_block(const Results& results) {
+  std::string html = "<dl>\n";
+  for (const auto& [key, value] : origins(results))
+    html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape(key), escape(value));
+  if (const CsvTable* raw = results.find("raw"))
+    for (const char* key : {"settings", "timing"})
+      html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", key, escape(raw->note(key)));
+  return html + "</dl>\n";
+}
+
+std::string others_block(const Results& results, const std::set<std::string>& used) {
+  std::string html;
+  for (const auto& [name, table] : results.tables)
+    if (!used.contains(name)) html += fmt::format("<li>{}</li>\n", link(name + ".csv", name + ".csv"));
+  return html.empty() ? "" : fmt::format("<h3>Further tables in the folder</h3>\n<ul>{}</ul>\n", html);
+}
+
+std::string section(std::string_view id, std::string_view title, const std::string& body) {
+  return fmt::format("<section aria-labelledby=\"s-{}\">\n<h2 id=\"s-{}\">{}</h2>\n{}</section>\n", id, id,
+                     escape(title), body);
+}
+
+Table contents_table() {
+  Table table{"report_contents",
+              "What the page shows",
+              "",
+              {"section", "number in the paper", "title", "figure", "tables", "command"},
+              {}};
+  for (const Section& s : contents())
+    for (const Item& item : s.items) {
+      std::vector<std::string_view> files;
+      for (const auto file : item.tables)
+        if (!file.empty()) files.push_back(file);
+      table.rows.push_back({std::string(s.title), std::string(item.number), std::string(item.title),
+                            std::string(item.figure), fmt::format("{}", fmt::join(files, " ")),
+                            fmt::format("poinsot {}", item.command)});
+    }
+  return table;
+}
+
+}  // namespace
+
+Page page(const Results& results) {
+  const Findings found = findings(results);
+  std::set<std::string> used{"raw"};
+  std::string nav = "<li><a href=\"#s-findings\">Findings</a></li>", body;
+  body += section("findings", "Findings", findings_block(found));
+  for (const Section& s : contents()) {
+    std::string own;
+    for (const Item& item : s.items) own += item_block(results, item, used);
+    if (s.id == "precision") own += charts_block(results, used);
+    nav += fmt::format("<li><a href=\"#s-{}\">{}</a></li>", s.id, escape(s.title));
+    body += section(s.id, s.title, own);
+  }
+  nav += "<li><a href=\"#s-origin\">Origin</a></li>";
+  std::string origin = origin_block(results);
+  if (results.find("raw"))
+    origin += fmt::format("<p class=\"source\">Every repetition: {}</p>\n", link("raw.csv", "raw.csv"));
+  body += section("origin", "Origin", origin + others_block(results, used));
+
+  Page page;
+  page.html = fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
+      "style-src "
+      "'unsafe-inline'; img-src data:\">\n<link rel=\"icon\" href=\"data:,\">\n<title>Poinsot: report</title>\n"
+      "<style>{}</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#main\">To the findings</a>\n"
+      "<header><h1>Rotation in constrained multibody dynamics: three formulations measured</h1>\n<p>{}</p></header>\n"
+      "<nav aria-label=\"Sections\"><ul>{}</ul></nav>\n<main id=\"main\" "
+      "tabindex=\"-1\">\n{}</main>\n<script>{}</script>\n"
+      "</body>\n</html>\n",
+      kStyle,
+      "Mechanisms are solved in absolute coordinates with the orientation matrix itself (rA), with Euler parameters "
+      "(rp) "
+      "and with Euler angles (reps). Sentences and pictures here are computed from tables in the same folder; each "
+      "names "
+      "its file. A column's heading sorts its table.",
+      nav, body, kScript);
+  page.tables = found.tables;
+  page.tables.push_back(contents_table());
+  for (const auto& [key, value] : origins(results)) page.foot.push_back(fmt::format("{}: {}", key, value));
+  return page;
+}
+
+}  // namespace poinsot::report

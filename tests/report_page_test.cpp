@@ -1,0 +1,184 @@
+// The page of a folder of results: what it says of known numbers, that every number in it stands in a table beside it,
+// and that no name becomes markup.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <set>
+
+#include "bench/report/compare.h"
+#include "bench/report/findings.h"
+#include "bench/report/html.h"
+#include "bench/report/page.h"
+#include "bench/report/ratios.h"
+#include "bench/report/svg_panel.h"
+
+namespace poinsot::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr int kRepetitions = 11;
+
+// rp takes 1.5 times as long as rA, reps as long as it; with a hundredth of noise that both share.
+study::CsvTable raw(double factor = 1) {
+  study::CsvTable table{"raw",
+                        {"analysis", "mechanism", "formulation", "jacobian", "linear_solver", "factored", "repetition",
+                         "steps", "newton_iterations", "jacobian_evaluations", "factorizations", "solves", "total_s",
+                         "assembly_s", "factor_s", "solve_s", "other_s"},
+                        {},
+                        {"processor: P", "program: poinsot", "compiler: C", "libraries: L", "settings: s"}};
+  // rp three times: the second and third, beside other linear solvers, are not what ratios are of.
+  for (const auto& [formulation, seconds] :
+       {std::pair{"rA", 1e-3}, {"rp", 1.5e-3}, {"reps", 1e-3}, {"rp", 4e-3}, {"rp", 5e-3}})
+    for (int r = 1; r <= kRepetitions; ++r) {
+      const double t = factor * seconds * (1 + 0.01 * (r % 3));
+      std::vector<std::string> row{"dynamics",           "four_link", formulation, "simplified", "auto", "klu, G",
+                                   fmt::format("{}", r), "1000",      "3000",      "1000",       "1000", "3000"};
+      for (const double x : {t, 0.25 * t, 0.25 * t, 0.25 * t, 0.25 * t}) row.push_back(fmt::format("{:.9f}", x));
+      table.rows.push_back(row);
+    }
+  return table;
+}
+
+Results results(double factor = 1) {
+  Results r{"results", {}};
+  r.tables.emplace("raw", raw(factor));
+  r.tables.emplace("constraint_counts",
+                   study::CsvTable{"constraint_counts", {"mechanism", "CD"}, {{"<b>&\"", "3"}}, {}});
+  return r;
+}
+
+TEST(Ratios, ArePairedAndKnowThePaper) {
+  const std::vector<Ratio> all = ratios(raw());
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].formulation, "rp");
+  EXPECT_NEAR(all[0].over.median, 1.5, 1e-6);
+  EXPECT_NEAR(all[0].over.high - all[0].over.low, 0, 1e-5) << "noise that both share cancels";
+  EXPECT_GT(all[0].over.confidence, 0.95);
+  EXPECT_NEAR(all[0].saved[0], 0.25 * 0.5 * 1.01, 1e-2);
+  EXPECT_DOUBLE_EQ(all[0].paper_c1, 2.62);
+  EXPECT_DOUBLE_EQ(all[1].paper_c2, 2.41 / 1.44);
+}
+
+TEST(Findings, AreMadeOfTheNumbers) {
+  const Findings found = findings(results());
+  ASSERT_FALSE(found.all.empty());
+  EXPECT_EQ(found.all[0].id, "like_for_like");
+  EXPECT_THAT(found.all[0].sentences[0],
+              HasSubstr("dynamics: rp takes 1.50 to 1.50 times as long as rA (medians of 1 mechanisms"));
+  EXPECT_THAT(found.all[0].sentences[0], HasSubstr("In the paper: 2.41 to 2.62, more than any of these."));
+  EXPECT_THAT(found.missing, ::testing::Contains(HasSubstr("poinsot chart --all")));
+}
+
+// Words with a digit, as tests/report/report_test.js would read them.
+std::set<std::string> numbers(const std::string& text) {
+  std::set<std::string> found;
+  static const std::regex word(R"([\w.+\-−]*\d[\w.+\-]*)");
+  for (std::sregex_iterator it(text.begin(), text.end(), word), end; it != end; ++it) {
+    std::string token = it->str();
+    while (!token.empty() && (token.back() == '.' || token.back() == '-')) token.pop_back();
+    found.insert(token);
+  }
+  return found;
+}
+
+std::string visible(std::string html) {
+  for (const char* pattern :
+       {"<style>[^]*?</style>", "<script>[^]*?</script>", "<text class=\"tick\"[^>]*>[^<]*</text>", "<[^>]*>"})
+    html = std::regex_replace(html, std::regex(pattern), " ");
+  for (const auto& [code, text] :
+       {std::pair{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&#39;", "'"}, {"&amp;", "&"}})
+    for (std::size_t at; (at = html.find(code)) != std::string::npos;) html.replace(at, std::string(code).size(), text);
+  return html;
+}
+
+TEST(Page, EveryNumberStandsInATable) {
+  const Results r = results();
+  const Page made = page(r);
+  std::string all;
+  for (const auto& [name, table] : r.tables) {
+    all += fmt::format("{}\n{}\n", fmt::join(table.header, "\n"), fmt::join(table.notes, "\n"));
+    for (const auto& row : table.rows) all += fmt::format("{}\n", fmt::join(row, "\n"));
+  }
+  for (const study::Table& table : made.tables) all += study::csv(table, made.foot);
+  const std::set<std::string> known = numbers(all), shown = numbers(visible(made.html));
+  EXPECT_GT(shown.size(), 20u);
+  for (const std::string& number : shown) EXPECT_TRUE(known.contains(number)) << number << " stands in no table";
+}
+
+TEST(Page, NoNameBecomesMarkup) {
+  const std::string html = page(results()).html;
+  EXPECT_THAT(html, HasSubstr("&lt;b&gt;&amp;&quot;"));
+  EXPECT_THAT(html, Not(HasSubstr("<b>&")));
+  EXPECT_EQ(link("a\"<b>.csv", "<"), "<a href=\"a%22%3Cb%3E.csv\">&lt;</a>");
+}
+
+TEST(Page, SaysWhatIsMissingAndHowToMakeIt) {
+  const std::string html = page(results()).html;
+  EXPECT_THAT(html,
+              HasSubstr("Missing: energy.csv, energy_table.csv. <code>poinsot figures energy --out results</code>"));
+  EXPECT_THAT(html, Not(HasSubstr("Missing: constraint_counts.csv")));
+}
+
+TEST(SvgPanel, DrawsNothingWhereALogarithmHasNoPlace) {
+  SvgPanel panel;
+  panel.curves.push_back({"a", 0, 0, {{0, 1}, {1, -1}}, {}, {}, false, false});
+  EXPECT_EQ(svg(panel), "");
+  panel.curves[0].points.push_back({1, 1, "<tip>", false});
+  EXPECT_THAT(svg(panel), HasSubstr("<title>&lt;tip&gt;</title>"));
+}
+
+TEST(Compare, FindsATimeThatChangedAndOnlyThat) {
+  EXPECT_TRUE(compare(results(), results()).same());
+  const Comparison slower = compare(results(), results(1.1));
+  EXPECT_EQ(slower.times, 5u);
+  ASSERT_EQ(slower.changed_times.size(), 5u);
+  EXPECT_NEAR(slower.changed_times[0].ratio.median, 1.1, 1e-5);
+  EXPECT_NEAR(slower.common, 1.1, 1e-5);
+  EXPECT_NEAR(slower.by_chance, 5 * 2.0 / 2048, 1e-12);
+}
+
+TEST(Compare, NoiseIsNoChange) {
+  Results noisy = results();
+  for (std::size_t k = 0; k < noisy.tables["raw"].rows.size(); ++k) {
+    std::string& total = noisy.tables["raw"].rows[k][12];
+    total = fmt::format("{:.9f}", study::csv_number(total) * (k % 2 ? 1.2 : 0.9));
+  }
+  EXPECT_TRUE(compare(results(), noisy).changed_times.empty());
+}
+
+TEST(Compare, TellsCountsAndWhatIsMissing) {
+  Results other = results();
+  other.tables["raw"].rows[0][8] = "2900";
+  other.tables.erase("constraint_counts");
+  std::erase_if(other.tables["raw"].rows, [](const auto& row) { return row[2] == "reps"; });
+  const Comparison c = compare(results(), other);
+  ASSERT_EQ(c.changed.size(), 1u);
+  EXPECT_EQ(c.changed[0].quantity, "newton_iterations");
+  EXPECT_EQ(c.changed[0].after, "2900");
+  EXPECT_THAT(c.only_a,
+              ::testing::ElementsAre("constraint_counts.csv", "raw.csv: dynamics, four_link, reps, simplified, auto"));
+}
+
+TEST(Compare, DividesNoTimesOfTwoProcessorsOrCompilers) {
+  for (const auto& [which, said] : {std::pair{std::size_t{0}, "another processor"}, {2, "another compiler or flags"}}) {
+    Results other = results(2);
+    other.tables["raw"].notes[which] += " of another make";
+    const Comparison c = compare(results(), other);
+    EXPECT_EQ(c.times, 0u);
+    EXPECT_TRUE(c.changed_times.empty());
+    ASSERT_EQ(c.not_compared.size(), 1u);
+    EXPECT_THAT(c.not_compared[0], HasSubstr(said));
+    EXPECT_EQ(c.origins.size(), 1u);
+  }
+  Results settings = results(2);
+  settings.tables["raw"].notes[4] += "2";
+  EXPECT_THAT(compare(results(), settings).not_compared[0], HasSubstr("other settings"));
+}
+
+}  // namespace
+}  // namespace poinsot::report
