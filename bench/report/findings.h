@@ -23,6 +23,11 @@ struct Findings {
 
 Findings findings(const Results& results);
 
+// All but rA, in the order of the registry.
+std::vector<std::string> other_formulations();
+// Where the paper's claims hold: of those there are tables for.
+Finding claims(const Results& results, const std::vector<Ratio>& all, Ledger& ledger);
+
 // How long other formulations take than rA at the same accuracy, by scene and integrator, from the curves of the
 // charts.
 study::Table matched_table(const std::vector<const study::CsvTable*>& charts);
