@@ -306,8 +306,7 @@ TEST(SingularPosition, IsToldWhereARunStops) {
   euler.integrator = "implicit_euler";
   euler.end = 10;
   const Outcome newton = simulate(scene, euler, {});
-  EXPECT_EQ(newton.status.failure, Failure::not_converged);
-  EXPECT_THAT(newton.status.message, HasSubstr("it stopped beside a singular position"));
+  EXPECT_TRUE(newton.status.ok()) << newton.status.message;  // its steps go over all of them
 }
 
 }  // namespace

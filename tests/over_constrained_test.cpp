@@ -178,6 +178,7 @@ TEST_P(Loops, StartInASingularPositionFollowsTheVelocities) {
         SCOPED_TRACE(fmt::format("{} {} {} {}", GetParam(), integrator, angle, redundant));
         Settings settings = dynamics(GetParam(), 1e-4, 0.2, 0.1);
         settings.integrator = integrator;
+        settings.stopping = Settings{}.stopping;
         settings.tolerance = 1e-6;
         settings.rtol = 1e-9;
         const Motion flat = move(posts(1, angle, -3, redundant), settings);

@@ -47,6 +47,7 @@ TEST_P(Passages, OfStepsOfFixedLength) {
         SCOPED_TRACE(::testing::Message() << integrator.name << ' ' << tolerance << ' ' << passage);
         Settings settings = dynamics(GetParam(), 1e-2, kEnd, kEnd);
         settings.integrator = integrator.name;
+        settings.stopping = Settings{}.stopping;
         settings.tolerance = tolerance;
         settings.max_iterations = Settings{}.max_iterations;
         const Recorded r = run(passage.scene(), settings);

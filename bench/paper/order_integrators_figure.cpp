@@ -50,6 +50,7 @@ Settings settings_of(const IntegratorEntry& method, std::string_view formulation
   settings.step = step;
   settings.end = end;
   settings.every = kEvery;
+  settings.stopping = "correction";
   settings.tolerance = kPosition / (step * step);
   settings.max_iterations = 50;
   return settings;

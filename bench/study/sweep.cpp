@@ -83,8 +83,7 @@ Case Sweep::make_case(const std::string& formulation, const IntegratorEntry& int
     settings.step = end_ / steps;
     // Newton stops where a correction is small beside the accelerations of the motion, by four digits or five: more
     // does not change the errors of any method. In kinematics it is the error.
-    const double small =
-        integrator.analysis == Analysis::kinematics ? 1e-6 * sizes_.length : 1e-4 * sizes_.acceleration;
+    const double small = integrator.analysis == Analysis::kinematics ? 1e-6 * sizes_.length : 1e-4;
     settings.tolerance = std::stod(fmt::format("1e{}", std::floor(std::log10(small))));
   }
   return {settings, 0};

@@ -83,6 +83,7 @@ inline Settings dynamics(std::string_view formulation, double step, double end, 
   s.step = step;
   s.end = end;
   s.every = every;
+  s.stopping = "correction";
   s.tolerance = 1e-11 / (step * step);
   s.max_iterations = 100;  // for the simplified matrix
   return s;
