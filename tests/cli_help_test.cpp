@@ -27,7 +27,7 @@ class Help : public CommandLine {
 TEST_F(Help, EveryCommandIsInTheHelpAndHasItsOwn) {
   const std::string help = said({"--help"});
   for (const char* command : {"run", "check", "view", "list", "tables", "make", "scale", "reference", "chart", "advise",
-                              "figures", "completion", "manual"}) {
+                              "figures", "study", "completion", "manual"}) {
     EXPECT_NE(help.find(fmt::format("\n  {} ", command)), std::string::npos) << help;
     EXPECT_NE(said({command, "--help"}).find(fmt::format("Usage: poinsot {} ", command)), std::string::npos);
   }
