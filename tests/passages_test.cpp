@@ -70,5 +70,25 @@ TEST_P(Passages, OfErrorControl) {
   }
 }
 
+// Steps that creep up to it can come to where rounding chooses the branch: such a run stops.
+TEST_P(Passages, NoneIsLeftToRounding) {
+  int ended = 0;
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (!integrator.controls_error || refusal_of(integrator, GetParam())) continue;
+    for (const double before : {0.1, 0.03}) {
+      for (const double rtol : {1e-4, 1e-6}) {
+        SCOPED_TRACE(::testing::Message() << integrator.name << ' ' << before << ' ' << rtol);
+        const Recorded r = run(folding_crank(before), controlled(integrator.name, GetParam(), rtol, kEnd, kEnd));
+        if (!r.outcome.status.ok()) continue;
+        ++ended;
+        const auto& bodies = r.samples.back().bodies;
+        EXPECT_LT(bodies[2].r.x(), -0.5);
+        EXPECT_NEAR(bodies[2].r.x(), 4 * bodies[0].r.x(), 1e-6);
+      }
+    }
+  }
+  EXPECT_GE(ended, 8);
+}
+
 }  // namespace
 }  // namespace poinsot::test

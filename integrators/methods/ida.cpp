@@ -242,6 +242,15 @@ class Session {
     std::ranges::copy(form_->q(y), next_.q.begin());
     std::ranges::copy(form_->v(y), next_.v.begin());
     if (Status status = consistent_.complete(next_); !status.ok()) return status;
+    if (consistent_.leaves_branch(next_)) {
+      return {
+          Failure::singular_position, t,
+          fmt::format("at t = {:.9g} s, beside a singular position of the constraints, the velocities jump: rounding "
+                      "would choose which way the mechanism goes on; dop853 or an implicit integrator with a fixed "
+                      "step may pass",
+                      t)};
+    }
+    consistent_.follow(next_);
     std::swap(at_, next_);
     return {};
   }

@@ -47,7 +47,9 @@ Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& stati
       zeros_(Eigen::VectorXd::Zero(problem.nv() + problem.nc())),
       rows_(problem.nc()),
       q_moved_(problem.nq()),
-      moved_by_(Eigen::VectorXd::Zero(2 * problem.nv())) {}
+      moved_by_(Eigen::VectorXd::Zero(2 * problem.nv())) {
+  calm_.v.setZero(problem.nv());
+}
 
 Status Consistent::prepare() {
   Status status = system_.prepare();
@@ -185,6 +187,34 @@ void Consistent::measure_steepness(double off, double moved) {
 
 bool Consistent::beside_singular() {
   return std::exchange(beside_singular_, false);
+}
+
+bool Consistent::leaves_branch(const State& at) {
+  constexpr double kUnusual = 1e4, kAccounted = 1e3, kOther = 0.01, kExplained = 10;
+  const double acceleration = largest(at.a());
+  if (calm_.usual == 0 || !(acceleration > kUnusual * calm_.usual)) return false;
+  double jump = 0, size = 0;
+  for (Eigen::Index k = 0; k < at.v.size(); ++k) {
+    jump = std::max(jump, std::abs(at.v[k] - calm_.v[k]));
+    size = std::max({size, std::abs(at.v[k]), std::abs(calm_.v[k])});
+  }
+  if (!(jump > kOther * size + kExplained * calm_.usual * std::abs(at.t - calm_.t))) return false;
+  const std::span<const double> none = span(zeros_);
+  problem_.equations_of_motion(none.first(nv_), none.subspan(nv_), moves());  // −Q
+  problem_.gamma(rows());
+  const double loads = largest(moves()), gamma = largest(rows());
+  problem_.momentum(at.a(), moves());
+  return acceleration > kAccounted * gamma && largest(moves()) > kAccounted * loads;
+}
+
+void Consistent::follow(const State& at) {
+  constexpr double kGrows = 10, kSlow = 0.1;
+  const double acceleration = largest(at.a());
+  if (calm_.usual == 0) calm_.usual = std::max(acceleration, problem_.model().gravity.norm());
+  if (acceleration > kGrows * calm_.usual) return;
+  calm_.usual += kSlow * (std::max(acceleration, problem_.model().gravity.norm()) - calm_.usual);
+  calm_.t = at.t;
+  calm_.v = at.v;
 }
 
 Status Consistent::along_constraints(const State& at, std::span<double> x) {

@@ -56,6 +56,12 @@ class Consistent {
   // ever since asked last.
   double amplification() const { return amplification_; }
   bool beside_singular();
+  // Whether a state the problem stands at has gone another way than the velocities led, next to a singular position:
+  // accelerations are far larger than they were, and than forces and γ account for, so that [M Gᵀ; G 0]⁻¹ does, and
+  // velocities differ by a hundredth from what they were before. Rounding has then chosen among branches.
+  bool leaves_branch(const State& at);
+  // A step ends there that leaves none.
+  void follow(const State& at);
   // x ← its part along the constraints, M-orthogonally, with the factorization at hand; nv numbers. The problem stands
   // at `at`, before and after.
   Status along_constraints(const State& at, std::span<double> x);
@@ -91,6 +97,10 @@ class Consistent {
   bool prepared_ = false;
   double usual_steepness_ = 0, amplification_ = 1;  // of |δq|/|Φ|
   bool beside_singular_ = false;
+  struct Calm {  // the last state whose accelerations were as usual
+    double t = 0, usual = 0;
+    Eigen::VectorXd v;
+  } calm_;
   double off_ = 0;  // largest |Φ| that the last position_correction() was for
   const std::size_t nv_, nc_;
   Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_;

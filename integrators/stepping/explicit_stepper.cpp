@@ -185,6 +185,8 @@ Status ExplicitStepper::complete(double& error, double most) {
     if (!(error <= most)) return {};
     if (Status status = consistent_.refine(next_); !status.ok()) return status;
   }
+  if (consistent_.leaves_branch(next_)) return {Failure::singular_position, next_.t, {}};
+  consistent_.follow(next_);
   test_stiffness();
   std::swap(state_, next_);
   elsewhere_ = false;

@@ -337,6 +337,8 @@ Status RadauStepper::complete(double& error, double most) {
   if (Status status = consistent_.complete(next_); !status.ok()) return status;
   error = std::max(error, error_norm(consistent_.moved_by(), span(scale_)) / consistent_.amplification());
   if (!(error <= most)) return {};
+  if (consistent_.leaves_branch(next_)) return {Failure::singular_position, next_.t, {}};
+  consistent_.follow(next_);
   before_ = state_;
   std::swap(state_, next_);
   Z_before_ = Z_;

@@ -81,7 +81,10 @@ double first_step(double h0, double f, double second, int order, double end) {
 Status step_too_small(double t, double h, const Status& cause) {
   std::string last;
   if (!cause.ok()) {
-    last = "; the last attempt: " + (cause.message.empty() ? "Newton's method did not converge" : cause.message);
+    const char* unsaid = cause.failure == Failure::singular_position
+                             ? "velocities jumped beside a singular position, to where rounding would lead"
+                             : "Newton's method did not converge";
+    last = "; the last attempt: " + (cause.message.empty() ? unsaid : cause.message);
   }
   return {Failure::step_size_too_small, t,
           fmt::format("at t = {:.9g} s the steps became too small to get on with ({:.3g} s): the motion jumps or grows "

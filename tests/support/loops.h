@@ -136,6 +136,41 @@ inline Scene posts(int N, double angle, double w, bool redundant) {
   return scene;
 }
 
+// A crank of length 1 that turns at 3 rad/s, a rod as long, a slider on the x axis, no row too many: `before` rad
+// before the slider passes the crank's hinge, where it could stay there as well, crank and rod turning on together.
+inline Scene folding_crank(double before) {
+  Scene scene;
+  scene.name = "folding crank";
+  scene.gravity = {0, -9.81, 0};
+  const double phi = std::numbers::pi / 2 - before, w = 3;
+  const Vector3 tip(std::cos(phi), std::sin(phi), 0), foot(2 * tip.x(), 0, 0), tip_rate(-w * tip.y(), w * tip.x(), 0);
+  const auto body = [&](const char* name, const Vector3& at, const Vector3& velocity, double turns) {
+    Body& b = scene.bodies.emplace_back();
+    b.name = name;
+    b.mass = 1;
+    b.inertia = Vector3(0.02, 0.1, 0.1).asDiagonal();
+    b.position = at;
+    b.velocity = velocity;
+    b.angular_velocity = {0, 0, turns};
+  };
+  body("crank", 0.5 * tip, 0.5 * tip_rate, w);
+  body("rod", 0.5 * (tip + foot), {1.5 * tip_rate.x(), 0.5 * tip_rate.y(), 0}, -w);
+  body("slider", foot, {2 * tip_rate.x(), 0, 0}, 0);
+  const auto joint = [&](JointType type, int i, int j, const Vector3& at, const Vector3& axis) {
+    Joint& x = scene.joints.emplace_back();
+    x.name = fmt::format("joint{}", scene.joints.size());
+    x.type = type;
+    x.i = i, x.j = j;
+    x.point = at;
+    x.axis = axis;
+  };
+  joint(JointType::revolute, kGround, 0, Vector3::Zero(), Vector3::UnitZ());
+  joint(JointType::cylindrical, 0, 1, tip, Vector3::UnitZ());
+  joint(JointType::spherical, 1, 2, foot, Vector3::UnitZ());
+  joint(JointType::translational, kGround, 2, foot, Vector3::UnitX());
+  return scene;
+}
+
 // All posts swing alike, as one pendulum of the posts' and the couplers' inertia: their angle after `time`.
 inline double swung(int N, double angle, double w, double time) {
   const double J = (N + 1) * (0.1 + 0.25) + N, m = (N + 1) * 0.5 + N;
