@@ -52,7 +52,7 @@ TEST_F(Help, RunNamesEverySettingItsValuesAndItsDefault) {
 
 TEST_F(Help, ListHasALineForEveryEntryOfEveryRegistry) {
   const std::vector<std::string> list = lines(said({"list"}));
-  std::size_t expected = 5;
+  std::size_t expected = 6;
   const auto listed = [&](const char* title, const auto& table) {
     EXPECT_NE(std::find(list.begin(), list.end(), title), list.end()) << title;
     for (const auto& entry : table) {

@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <set>
 
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
 #include "tests/scale.h"
 #include "tests/support/random_model.h"
+#include "tests/support/simulation.h"
 
 namespace poinsot {
 namespace {
@@ -40,10 +40,9 @@ void expect_ok(const Model& model, std::span<const BodyState> states) {
 
 TEST(DerivativeCheck, PassesOnEveryModel) {
   int models = 0;
-  for (const auto& file : std::filesystem::directory_iterator(POINSOT_SOURCE_DIR "/models")) {
-    if (file.path().extension() != ".json" || file.path().stem().string().find("schema") != std::string::npos) continue;
-    SCOPED_TRACE(file.path().filename());
-    const Model model = compile(read_scene(file.path()));
+  for (const std::string& name : test::model_names()) {
+    SCOPED_TRACE(name);
+    const Model model = compile(test::scene_of(name));
     expect_ok(model, start(model));
     ++models;
   }

@@ -3,23 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "core/input_error.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
 namespace {
-
-std::vector<std::filesystem::path> models() {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(POINSOT_SOURCE_DIR "/models")) {
-    const std::string name = entry.path().filename().string();
-    if (name.ends_with(".json") && !name.ends_with(".schema.json")) files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  return files;
-}
 
 struct Hopeless {
   const char* what;
@@ -37,8 +26,8 @@ class FailingRuns : public testing::TestWithParam<const char*> {};
 
 TEST_P(FailingRuns, end_with_a_status_that_says_why) {
   int failed = 0;
-  for (const std::filesystem::path& file : models()) {
-    const Scene scene = read_scene(file);
+  for (const std::string& model : model_names()) {
+    const Scene scene = scene_of(model);
     for (const IntegratorEntry& integrator : integrators()) {
       for (const Hopeless& hopeless : kHopeless) {
         Settings settings;

@@ -1,8 +1,6 @@
 // Which matrix is factored, by which linear solver, and that the record of a run says so.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "bench/study/scene_check.h"
 #include "core/index.h"
 #include "core/scene_reader.h"
@@ -10,21 +8,10 @@
 #include "integrators/simulate.h"
 #include "linsolve/registry.h"
 #include "tests/support/linear_solver_systems.h"
+#include "tests/support/simulation.h"
 
 namespace poinsot::test {
 namespace {
-
-std::vector<std::string> models() {
-  std::vector<std::string> names;
-  for (const auto& file : std::filesystem::directory_iterator(std::string(POINSOT_SOURCE_DIR) + "/models"))
-    if (const std::string name = file.path().stem(); name.find('.') == std::string::npos) names.push_back(name);
-  std::ranges::sort(names);
-  return names;
-}
-
-Scene model(const std::string& name) {
-  return read_scene(std::string(POINSOT_SOURCE_DIR) + "/models/" + name + ".json");
-}
 
 // As many independent constraints as velocities, none of them on velocities alone.
 bool has_square_jacobian(const study::SceneCheck& scene) {
@@ -45,11 +32,11 @@ Settings a_few_steps(std::string_view formulation, std::string_view linear_solve
 }
 
 class Models : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(All, Models, testing::ValuesIn(models()), [](const auto& name) { return name.param; });
+INSTANTIATE_TEST_SUITE_P(All, Models, testing::ValuesIn(model_names()), [](const auto& name) { return name.param; });
 
 // What the record names is who counted the factorizations; what it should be follows from the model and the choice.
 TEST_P(Models, TheRecordNamesWhoFactoredWhichSystem) {
-  const Scene scene = model(GetParam());
+  const Scene scene = scene_of(GetParam());
   const bool square = has_square_jacobian(study::check_scene(scene)),
              saddle_point = GetParam() != "knife_edge";  // whose entries have mirrors
   for (const LinearSolverEntry& entry : linear_solvers()) {
@@ -73,7 +60,7 @@ TEST_P(Models, TheRecordNamesWhoFactoredWhichSystem) {
 }
 
 TEST_P(Models, NothingIsHandedOverWhereTheMechanismIsRegular) {
-  const Scene scene = model(GetParam());
+  const Scene scene = scene_of(GetParam());
   if (!study::check_scene(scene).rank.dependent.empty()) return;  // over-constrained: kept rows come close to others
   for (const FormulationEntry& formulation : formulations()) {
     for (const char* jacobian : {"exact", "simplified", "kept"}) {
@@ -92,7 +79,7 @@ TEST_P(Models, NothingIsHandedOverWhereTheMechanismIsRegular) {
 TEST(LinearSystem, AHandOverIsCountedAndNamed) {
   Settings settings = a_few_steps("rA", "block");
   settings.analysis = Analysis::kinematics;
-  const Outcome outcome = simulate(model("four_link_joints"), settings, {});
+  const Outcome outcome = simulate(scene_of("four_link_joints"), settings, {});
   ASSERT_TRUE(outcome.status.ok()) << outcome.status.message;
   ASSERT_EQ(outcome.statistics.linear.size(), 1);
   const LinearWork& work = outcome.statistics.linear.front();

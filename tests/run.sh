@@ -3,7 +3,8 @@
 # undefined-behaviour sanitizers. Ends with ctest's summary, or at the first thing that fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-bash cmake/install_packages.sh chromium   # in which the pages of `poinsot view` and `report` are looked at
+# A browser to look at the pages of `poinsot view` and `report`, MPI for studies.
+bash cmake/install_packages.sh chromium libopenmpi-dev openmpi-bin
 
 # Layouts differ between versions of clang-format; the project's is that of Debian 12.
 format=clang-format

@@ -54,9 +54,7 @@ Distance apart(const Scene& scene, Settings settings) {
 
 TEST(SavedScene, RunningOnIsRunningThroughForEveryModel) {
   int models = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(POINSOT_SOURCE_DIR "/models")) {
-    const std::string name = entry.path().stem().string();
-    if (entry.path().extension() != ".json" || name == "scene.schema") continue;
+  for (const std::string& name : model_names()) {
     const Scene scene = scene_of(name);
     Settings settings = dynamics("rA", 1e-3, 0.04, 0.02);
     settings.integrator = "rattle";  // its state is q and v alone, and lies on the constraints

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <random>
 #include <vector>
@@ -11,20 +10,15 @@
 #include "core/model.h"
 #include "core/scene_reader.h"
 #include "tests/scale.h"
+#include "tests/support/simulation.h"
 
 namespace poinsot {
 namespace {
 
 std::vector<std::string> model_texts() {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(POINSOT_SOURCE_DIR "/models")) {
-    const std::string name = entry.path().filename().string();
-    if (name.ends_with(".json") && !name.ends_with(".schema.json")) files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
   std::vector<std::string> texts;
-  for (const auto& file : files) {
-    std::ifstream in(file, std::ios::binary);
+  for (const std::string& name : test::model_names()) {
+    std::ifstream in(fmt::format("{}/models/{}.json", POINSOT_SOURCE_DIR, name), std::ios::binary);
     texts.emplace_back(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
   }
   return texts;

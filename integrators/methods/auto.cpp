@@ -56,9 +56,11 @@ class Auto final : public Integrator {
         const double h = radau5->state().t - std::exchange(before, radau5->state().t);
         return ++steps == kTrial && !stays && h < enough;
       };
-      if (Status status = go_on(*radau5, "radau5", ControlledRadau::kRule, course, run, is_no_better);
-          !status.ok() || run.state.t == end)
-        return status;
+      const double since = run.state.t;
+      const Status status = go_on(*radau5, "radau5", ControlledRadau::kRule, course, run, is_no_better);
+      // Singular positions that stop radau5 dop853 can pass; where it cannot, it says why.
+      const bool other_way = status.failure == Failure::step_size_too_small && (!stays || run.state.t > since);
+      if ((!status.ok() && !other_way) || run.state.t == end) return status;
     }
   }
 

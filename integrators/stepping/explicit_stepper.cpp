@@ -44,6 +44,7 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
 Status ExplicitStepper::start(const State& state) {
   state_ = state;
   elsewhere_ = true;
+  stiffness_ = StiffnessTest(pair_.rule.safety * pair_.stability);
   return settle();
 }
 

@@ -65,17 +65,18 @@ bool NewtonLoop::is_rounding(double position, const Vector& q) const {
   return position * largest(delta_.head(problem_.nv())) <= rounding_of(problem_, q);
 }
 
+void NewtonLoop::measure_gradient() {
+  Vector sums = Vector::Zero(problem_.nv());
+  for (const Eigen::Triplet<double>& entry : gradient(problem_)) sums[entry.col()] += std::abs(entry.value());
+  gradient_ = largest(sums);
+}
+
 // The residual is in delta_.
 bool NewtonLoop::balanced(double position, const Vector& z, const Vector& q) {
   if (!(position * largest(delta_.tail(problem_.nc())) <= rounding_of(problem_, q))) return false;
-  if (!gradient_) {
-    Vector sums = Vector::Zero(problem_.nv());
-    for (const Eigen::Triplet<double>& entry : gradient(problem_)) sums[entry.col()] += std::abs(entry.value());
-    gradient_ = largest(sums);
-  }
   problem_.momentum(span(z).first(index(problem_.nv())), span(momentum_));
   return largest(delta_.head(problem_.nv())) <=
-         256 * kEpsilon * (largest(momentum_) + *gradient_ * largest(z.tail(problem_.nc())));
+         256 * kEpsilon * (largest(momentum_) + gradient_ * largest(z.tail(problem_.nc())));
 }
 
 Status NewtonLoop::not_converged(double t, double correction) const {

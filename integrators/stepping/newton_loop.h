@@ -19,7 +19,6 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <optional>
 #include <span>
 
 #include "integrators/integrator.h"
@@ -44,6 +43,7 @@ class NewtonLoop {
   template <class Residual, class Matrix, class Correct>
   Status solve(double t, double position, const Vector& z, const Vector& q, Residual&& residual, Matrix&& matrix,
                Correct&& correct) {
+    if (gradient_ < 0) measure_gradient();
     double correction = 0, before = INFINITY;
     bool stalled = false, of_this_step = false;
     for (int k = 0; k < settings_.max_iterations; ++k) {
@@ -91,6 +91,7 @@ class NewtonLoop {
 
   double relative(const Vector& z, bool of_this_step) const;
   bool is_rounding(double position, const Vector& q) const;
+  void measure_gradient();
   bool balanced(double position, const Vector& z, const Vector& q);
   Status not_converged(double t, double correction) const;
 
@@ -102,8 +103,8 @@ class NewtonLoop {
   Statistics& statistics_;
   double arm_;  // m, the longest of a body to a constraint
   Vector delta_, momentum_;
-  std::optional<double> gradient_;  // |Gᵀ|, found where it is asked for first: directions and arms stay what they are
-  bool slow_ = false;               // the last corrections did not shrink as they should
+  double gradient_ = -1;  // |Gᵀ|, of the first step: directions and arms stay what they are
+  bool slow_ = false;     // the last corrections did not shrink as they should
 };
 
 }  // namespace poinsot

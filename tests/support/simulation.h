@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -27,6 +28,17 @@ namespace poinsot::test {
 
 inline Scene scene_of(std::string_view model) {
   return read_scene(fmt::format("{}/models/{}.json", POINSOT_SOURCE_DIR, model));
+}
+
+// Of models/, in order of name.
+inline std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(POINSOT_SOURCE_DIR "/models")) {
+    const std::string file = entry.path().filename().string();
+    if (file.ends_with(".json") && !file.ends_with(".schema.json")) names.push_back(entry.path().stem().string());
+  }
+  std::ranges::sort(names);
+  return names;
 }
 
 // The motion at one instant; of a run also the multipliers, by row of the problem.
