@@ -13,6 +13,8 @@ namespace {
 constexpr std::int64_t kFirstTrial = 300, kTrialsApart = 4;  // steps of dop853; factor between them
 constexpr std::int64_t kTrial = 6;                           // steps of radau5, in which its length settles
 constexpr double kLonger = 4;
+constexpr double kOfRounding =
+    1e-12;  // rtol below which steps are as short for rounding's sake; then there is no trial
 
 class Auto final : public Integrator {
  public:
@@ -38,8 +40,11 @@ class Auto final : public Integrator {
       if (!std::exchange(begun, true)) course.give_out(dop853.state());
       std::int64_t steps = 0;
       const double from = run.state.t;
-      if (Status status =
-              go_on(dop853, pair.name, pair.rule, course, run, [&] { return dop853.stiff() || ++steps == trial; });
+      if (Status status = go_on(dop853, pair.name, pair.rule, course, run,
+                                [&] {
+                                  ++steps;
+                                  return dop853.stiff() || (rtol >= kOfRounding && steps == trial);
+                                });
           !status.ok() || run.state.t == end)
         return status;
 
