@@ -31,8 +31,8 @@ struct Settings {
   std::string linear_solver = "auto", linear_system = "auto";
   std::string jacobian = "exact";
   std::string stopping = "relative";  // of Newton's method in dynamics
-  double step = 1e-3;          // s
-  double end = 1;              // s; the last step lands on it exactly
+  double step = 1e-3;                 // s
+  double end = 1;                     // s; the last step lands on it exactly
   double tolerance = 1e-3;     // Newton: as `stopping` measures; in kinematics 2-norm of the correction of the position
   double rtol = 1e-8;          // integrators with error control
   std::optional<double> atol;  // rtol/100 where it is not given
