@@ -49,7 +49,7 @@ std::string packed(const std::vector<std::int64_t>& numbers) {
 
 std::vector<std::int64_t> unpack_numbers(std::string_view bytes) {
   std::vector<std::int64_t> numbers(bytes.size() / sizeof(std::int64_t));
-  std::memcpy(numbers.data(), bytes.data(), bytes.size());
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
   return numbers;
 }
 
