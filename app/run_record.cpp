@@ -72,6 +72,7 @@ std::string to_json(const RunRecord& record) {
                         {"methods", methods},
                         {"steps", s.steps},
                         {"rejected_steps", s.rejected_steps},
+                        {"divided_steps", s.divided_steps},
                         {"newton_iterations", s.newton_iterations},
                         {"convergence_rate", s.convergence.rate()},
                         {"jacobian_evaluations", s.jacobian_evaluations},

@@ -17,13 +17,13 @@ std::string help_text(const SettingEntry& entry) {
 void SettingsOptions::add_to(CLI::App& command) {
   command.add_option("--config", config_file_, "solver configuration, JSON with the keys below")->type_name("FILE");
   for (const SettingEntry& entry : setting_entries()) {
-    if (std::holds_alternative<Assembly Settings::*>(entry.member)) {
+    if (is_switch(entry)) {
       const std::string key(entry.key);
       const auto give = [this, &entry](const char* value) {
         return [this, &entry, value] { given_.emplace_back(&entry, value); };
       };
       CLI::Option* on = command.add_flag_callback("--" + key, give("true"), help_text(entry));
-      command.add_flag_callback("--no-" + key, give("false"), "refuse such a state")->excludes(on);
+      command.add_flag_callback("--no-" + key, give("false"), std::string(entry.otherwise))->excludes(on);
       continue;
     }
     const auto give = [this, &entry](const std::string& text) { given_.emplace_back(&entry, text); };

@@ -33,10 +33,6 @@ constexpr Constant kConstants[] = {{"pi", std::numbers::pi}, {"e", std::numbers:
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
 // Recursive descent; every rule appends its value's instructions to the tape.
 class Parser {
  public:

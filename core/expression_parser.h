@@ -14,6 +14,11 @@ class ExpressionNames;
 
 enum class Variables { none, time, law };  // t; x, v and t
 
+// Of names in expressions.
+inline bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
 struct ParsedTape {
   std::vector<TapeInstruction> tape;
   std::vector<std::shared_ptr<const Spline>> tables;  // those that the tape asks

@@ -8,19 +8,20 @@
 #include <numbers>
 
 #include "core/check.h"
+#include "core/expression_parser.h"
 #include "core/model.h"
 
 namespace poinsot {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Ordered = nlohmann::ordered_json;
 
-Json array(const Vector3& v) {
+Ordered array(const Vector3& v) {
   return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};  // no −0
 }
 
-void set_state(Json& body, const BodyState& state) {
-  Json rows = Json::array();
+void set_state(Ordered& body, const BodyState& state) {
+  Ordered rows = Ordered::array();
   for (Eigen::Index k = 0; k < 3; ++k) rows.push_back(array(state.A.row(k)));
   body["position"] = array(state.r);
   body["orientation"] = {{"matrix", rows}};
@@ -28,7 +29,7 @@ void set_state(Json& body, const BodyState& state) {
   body["angular_velocity"] = array(state.w);
 }
 
-void set_frames(Json& joint, JointType type, const JointFrames& f) {
+void set_frames(Ordered& joint, JointType type, const JointFrames& f) {
   const bool given = joint.contains("s_i");  // these stay as they are, and get what they left to the pose
   if (!given) {
     for (const char* global : {"point", "axis", "axis_i", "axis_j"}) joint.erase(global);
@@ -45,28 +46,25 @@ void set_frames(Json& joint, JointType type, const JointFrames& f) {
   joint["a_j"] = array(f.a_j);
 }
 
-void set_references(Json& item, const Vector3& a_i, const Vector3& a_j) {
+void set_references(Ordered& item, const Vector3& a_i, const Vector3& a_j) {
   if (item.contains("a_i")) return;
   item["a_i"] = array(a_i);
   item["a_j"] = array(a_j);
 }
 
-void shift(Json& value, double by) {
+void shift(Ordered& value, double by) {
   if (value.is_string()) value = later(value.get_ref<const std::string&>(), by);
 }
-void shift(Json& item, std::initializer_list<const char*> keys, double by) {
+void shift(Ordered& item, std::initializer_list<const char*> keys, double by) {
   for (const char* key : keys) {
     if (!item.contains(key)) continue;
     if (item[key].is_array())
-      for (Json& component : item[key]) shift(component, by);
+      for (Ordered& component : item[key]) shift(component, by);
     else
       shift(item[key], by);
   }
 }
 
-bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
 bool is_number(char c) {
   return (c >= '0' && c <= '9') || c == '.';
 }
@@ -117,10 +115,10 @@ std::string saved_scene(const Scene& scene, double time, std::span<const BodySta
   check(!scene.source.empty(), "a scene that is saved was read from text");
   const Model model = compile(scene);
   check(bodies.size() == model.bodies.size() && twists.size() == model.torsions.size(), "the state is the scene's");
-  Json json = Json::parse(scene.source, nullptr, true, true);
+  Ordered json = Ordered::parse(scene.source, nullptr, true, true);
   for (std::size_t b = 0; b < bodies.size(); ++b) set_state(json["bodies"][b], bodies[b]);
   for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
-    Json& constraint = json["constraints"][k];
+    Ordered& constraint = json["constraints"][k];
     shift(constraint, {"f"}, time);
     if (constraint.contains("alternate")) shift(constraint["alternate"], {"f"}, time);
   }
@@ -134,7 +132,7 @@ std::string saved_scene(const Scene& scene, double time, std::span<const BodySta
   }
   std::size_t torsion = 0;
   for (std::size_t k = 0; k < scene.forces.size(); ++k) {
-    Json& force = json["forces"][k];
+    Ordered& force = json["forces"][k];
     shift(force, {"force", "torque", "law"}, time);
     if (!std::holds_alternative<TorsionSpring>(scene.forces[k])) continue;
     const TorsionElement& element = model.torsions[torsion];

@@ -40,7 +40,7 @@ void tell_moments(const Model& model, std::vector<std::string>& sentences) {
 }
 
 // The smallest and the largest of positive sizes, and whose they are.
-struct Range {
+struct Extremes {
   std::pair<double, std::size_t> least{HUGE_VAL, 0}, most{0, 0};
 
   void add(double size, std::size_t body) {
@@ -51,7 +51,7 @@ struct Range {
 };
 
 void tell_masses(const Model& model, std::vector<std::string>& sentences) {
-  Range masses;
+  Extremes masses;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) masses.add(model.bodies[b].mass, b);
   if (masses.apart())
     sentences.push_back(fmt::format("masses are six orders of magnitude apart: {:g} kg of '{}', {:g} kg of '{}'",
@@ -73,7 +73,7 @@ void tell_lengths(const Model& model, std::vector<std::string>& sentences) {
   for (const Row& row : model.rows) hold(row.i, row.s_i), hold(row.j, row.s_j);
   for (const Spring& spring : model.springs) hold(spring.i, spring.s_i), hold(spring.j, spring.s_j);
   constexpr double kRounding = 1e-12;
-  Range lengths;
+  Extremes lengths;
   for (std::size_t b = 0; b < reach.size(); ++b)
     if (reach[b] > kRounding * size) lengths.add(reach[b], b);
   if (lengths.apart())

@@ -39,6 +39,7 @@ struct AccelerationError {
 // The contract's run statistics. Seconds: total is the time-stepping loop without reading and writing.
 struct Statistics {
   std::int64_t steps = 0, rejected_steps = 0;  // rejected: by error control, done again with a smaller step
+  std::int64_t divided_steps = 0;              // of fixed size: that failed as a whole and were done in parts
   std::int64_t newton_iterations = 0, jacobian_evaluations = 0, factorizations = 0, solves = 0;
   struct {
     double total = 0, assembly = 0, factor = 0, solve = 0, other = 0;

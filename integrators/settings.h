@@ -37,7 +37,8 @@ struct Settings {
   double rtol = 1e-8;          // integrators with error control
   std::optional<double> atol;  // rtol/100 where it is not given
   int max_iterations = 20;
-  double every = 0;  // s between outputs; 0: every step
+  bool retry = true;  // fixed steps: one that fails is done in halves of it, and halves of those
+  double every = 0;   // s between outputs; 0: every step
   Assembly assembly = Assembly::small;
   bool reactions = false;  // kinematics: find the multipliers, too (inverse dynamics)
   bool signals = false;    // follow the angles of joints with their turns (integrators/signals.h), and reactions

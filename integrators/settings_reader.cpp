@@ -59,9 +59,11 @@ const std::array kEntries{
                  kInfinity, For::error_control},
     SettingEntry{"max_iterations", "Newton: iterations allowed in a step", &Settings::max_iterations, nullptr, false, 0,
                  kInfinity, For::fixed_steps},
+    SettingEntry{"retry", "do a step of fixed size that fails in halves of it, and halves of those", &Settings::retry,
+                 nullptr, false, 0, kInfinity, For::fixed_steps, "end the run there"},
     SettingEntry{"every", "time between output rows, s; 0: every step", &Settings::every, nullptr, true},
     SettingEntry{"assemble", "project an initial state that violates the constraints", &Settings::assembly, nullptr,
-                 false},
+                 false, 0, kInfinity, For::all, "refuse such a state"},
 };
 
 // Names of the integrators that declare a parameter of this name.
@@ -107,6 +109,13 @@ std::string allowed_number(const SettingEntry& entry) {
   if (std::isfinite(entry.most)) return fmt::format("a number from {:g} to {:g}", entry.least, entry.most);
   if (entry.least > 0) return fmt::format("a number, at least {:.2g}", entry.least);
   return entry.zero_allowed ? "a number, at least 0" : "a number greater than 0";
+}
+
+void set_switch(const SettingEntry& entry, bool value, Settings& settings) {
+  if (const auto* flag = std::get_if<bool Settings::*>(&entry.member))
+    settings.*(*flag) = value;
+  else
+    settings.assembly = value ? Assembly::always : Assembly::never;
 }
 
 bool in_range(const SettingEntry& entry, double value) {
@@ -184,6 +193,11 @@ const SettingEntry* find_setting(std::string_view key) {
   return entry == setting_entries().end() ? nullptr : &*entry;
 }
 
+bool is_switch(const SettingEntry& entry) {
+  return std::holds_alternative<bool Settings::*>(entry.member) ||
+         std::holds_alternative<Assembly Settings::*>(entry.member);
+}
+
 std::string option_name(const SettingEntry& entry) {
   std::string name = "--" + std::string(entry.key);
   std::replace(name.begin(), name.end(), '_', '-');
@@ -197,6 +211,7 @@ std::string value_text(const SettingEntry& entry, const Settings& settings) {
   if (std::holds_alternative<std::optional<double> Settings::*>(entry.member))
     return settings.atol ? fmt::format("{}", *settings.atol) : "rtol/100";
   if (const auto* count = std::get_if<int Settings::*>(&entry.member)) return fmt::format("{}", settings.*(*count));
+  if (const auto* flag = std::get_if<bool Settings::*>(&entry.member)) return fmt::format("{}", settings.*(*flag));
   if (const auto* parameter = std::get_if<const MethodParameter*>(&entry.member))
     return fmt::format("{}", (*parameter)->of(settings));
   if (entry.names) return entry.names()[static_cast<std::size_t>(settings.analysis)];
@@ -246,10 +261,9 @@ void check_counts(const Settings& settings) {
 
 void set_setting(const SettingEntry& entry, std::string_view text, Settings& settings) {
   const Source source{nullptr, &entry, text};
-  if (std::holds_alternative<Assembly Settings::*>(entry.member)) {
+  if (is_switch(entry)) {
     if (text != "true" && text != "false") source.expected("true or false");
-    settings.assembly = text == "true" ? Assembly::always : Assembly::never;
-    return;
+    return set_switch(entry, text == "true", settings);
   }
   if (entry.names) return set_name(entry, text, source, settings);
   double value = 0;
@@ -281,8 +295,8 @@ void read_settings(const JsonValue& object, Settings& settings) {
 
 void read_setting(const SettingEntry& entry, const JsonValue& value, Settings& settings) {
   const Source source{&value, nullptr, {}};
-  if (std::holds_alternative<Assembly Settings::*>(entry.member))
-    settings.assembly = value.boolean() ? Assembly::always : Assembly::never;
+  if (is_switch(entry))
+    set_switch(entry, value.boolean(), settings);
   else if (entry.names)
     set_name(entry, value.string(one_of(entry)), source, settings);
   else
@@ -300,7 +314,9 @@ std::string to_json(const Settings& settings) {
       json[entry.key] = settings.*(*count);
     else if (const auto* parameter = std::get_if<const MethodParameter*>(&entry.member)) {
       if (is_parameter(entry.key, settings)) json[entry.key] = (*parameter)->of(settings);
-    } else if (entry.names)
+    } else if (const auto* flag = std::get_if<bool Settings::*>(&entry.member))
+      json[entry.key] = settings.*(*flag);
+    else if (entry.names)
       json[entry.key] = value_text(entry, settings);
     else if (settings.assembly != Assembly::small)  // the default is what is done where the key is left out
       json[entry.key] = settings.assembly == Assembly::always;

@@ -24,16 +24,19 @@ struct SettingEntry {
   std::string_view key;  // in the file; on the command line with dashes, "--linear-solver"
   std::string about;     // one line, with the unit
   std::variant<Analysis Settings::*, std::string Settings::*, double Settings::*, std::optional<double> Settings::*,
-               int Settings::*, Assembly Settings::*, const MethodParameter*>
+               int Settings::*, bool Settings::*, Assembly Settings::*, const MethodParameter*>
       member;
   std::vector<std::string> (*names)();  // what a key with a name may be; nullptr for numbers and switches
   bool zero_allowed;                    // numbers: at least 0 instead of greater than 0
   double least = 0;                     // numbers: at least this, where it is not 0
   double most = std::numeric_limits<double>::infinity();
   enum class For { all, fixed_steps, error_control } meant_for = For::all;
+  std::string_view otherwise = {};  // switches: what is done instead, one line
 };
 
 std::span<const SettingEntry> setting_entries();
+// Whether it is true or false: on the command line an option and its opposite, "--assemble", "--no-assemble".
+bool is_switch(const SettingEntry& entry);
 const SettingEntry* find_setting(std::string_view key);  // nullptr where no entry has the key
 std::string option_name(const SettingEntry& entry);      // "--linear-solver"
 // "rA", "0.001": a setting as it would be written in the file, without quotes.

@@ -12,9 +12,9 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr int kWide = 300;           // entries of a row that fronts do without
-constexpr double kNothing = 1e-9;    // of a coefficient beside the largest of its vector
-constexpr double kMentioned = 1e-6;  // of a coefficient beside that of the dependent column
+constexpr int kWide = 300;            // entries of a row that fronts do without
+constexpr double kNegligible = 1e-9;  // of a coefficient beside the largest of its vector
+constexpr double kMentioned = 1e-6;   // of a coefficient beside that of the dependent column
 
 double largest(const SparseEntries& z) {
   double size = 0;
@@ -23,7 +23,7 @@ double largest(const SparseEntries& z) {
 }
 
 void drop_nothing(SparseEntries& z) {
-  const double nothing = kNothing * largest(z);
+  const double nothing = kNegligible * largest(z);
   std::erase_if(z, [&](const auto& entry) { return std::abs(entry.second) <= nothing; });
 }
 
@@ -52,7 +52,7 @@ void append_wide_rows(const Sparse& A, const std::vector<int>& wide, SparseEntri
   for (const auto& [column, value] : z)
     for (Sparse::InnerIterator it(A, column); it; ++it)
       if (const int k = wide[static_cast<std::size_t>(it.row())]; k >= 0) sums[k] += it.value() * value;
-  const double nothing = kNothing * largest(z);
+  const double nothing = kNegligible * largest(z);
   for (const auto& [k, sum] : sums)
     if (std::abs(sum) > nothing) z.emplace_back(static_cast<int>(A.cols()) + k, sum);
 }

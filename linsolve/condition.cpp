@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace poinsot {
 
@@ -36,6 +37,25 @@ void Condition::collect(bool first) {
     const double size = std::abs(x_[i]);
     next_[i] = first || !(size <= next_[i]) ? size : next_[i];
   }
+}
+
+void Condition::find_residual(const CscLayout& layout, std::span<const double> values) {
+  std::vector<long double> r(b_.begin(), b_.end());
+  for (std::size_t j = 0; j < next_.size(); ++j)
+    for (auto k = static_cast<std::size_t>(layout.start[j]); k < static_cast<std::size_t>(layout.start[j + 1]); ++k)
+      r[static_cast<std::size_t>(layout.row[k])] -= static_cast<long double>(values[k]) * next_[j];
+  std::ranges::transform(r, x_.begin(), [](long double e) { return static_cast<double>(e); });
+}
+
+double Condition::size(const std::vector<double>& x) const {
+  double most = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, std::abs(x[i]) / d_[i]);
+  return most;
+}
+
+// A correction as large as a tenth of the solution says that nothing is known of it.
+double Condition::attained(double error) const {
+  return error < 0.1 ? std::min(growth_, error / std::numeric_limits<double>::epsilon()) : growth_;
 }
 
 void Condition::advance(int round) {

@@ -10,7 +10,7 @@
 namespace poinsot {
 namespace {
 
-constexpr double kPivotRange = 100;
+constexpr double kPivotChange = 100;
 
 }  // namespace
 
@@ -107,9 +107,9 @@ bool Klu::pivots_still_good() {
   bool good = true;
   for (std::size_t k = 0; k < fresh_pivots_.size(); ++k) {
     const double now = std::abs(pivots()[k]), then = std::abs(fresh_pivots_[k]);
-    good = good && now * kPivotRange >= then && now <= then * kPivotRange;
+    good = good && now * kPivotChange >= then && now <= then * kPivotChange;
   }
-  return good && reciprocal_growth() * kPivotRange >= fresh_growth_;
+  return good && reciprocal_growth() * kPivotChange >= fresh_growth_;
 }
 
 // min over columns of max|A| / max|U|.

@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 // A rod on a hinge, one metre to its centre, from the horizontal.
-Scene pendulum() {
+Scene swinging_body() {
   Scene scene;
   scene.name = "pendulum";
   scene.gravity = {0, 0, -9.81};
@@ -33,7 +33,7 @@ Scene pendulum() {
 
 // The same with a bob on a spring beyond its tip.
 Scene with_spring(double stiffness, double damping) {
-  Scene scene = pendulum();
+  Scene scene = swinging_body();
   Body bob;
   bob.name = "bob";
   bob.mass = 1;
@@ -63,7 +63,7 @@ TEST(AutoIntegrator, IsTheDefaultAndTakesAPendulumToItsTolerance) {
   settings.end = settings.every = 5;
   for (const FormulationEntry& formulation : formulations()) {
     settings.formulation = formulation.name;
-    const Recorded r = run(pendulum(), settings);
+    const Recorded r = run(swinging_body(), settings);
     ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
     // θ from +y: (m l² + I) θ̈ = −m g l cos θ
     const double theta = runge_kutta<2>({0, 0}, 5, 200000, [](const Eigen::Vector2d& x) {
@@ -133,12 +133,12 @@ TEST(AutoIntegrator, TriesTheImplicitMethodWhereAccuracyHoldsTheStepsForNothing)
 TEST(AutoIntegrator, GoesBackFromATrialThatDidNotPay) {
   Settings settings;
   settings.end = settings.every = 30;
-  const Recorded r = run(pendulum(), settings);
+  const Recorded r = run(swinging_body(), settings);
   ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
   ASSERT_THAT(picked(r.outcome), ::testing::ElementsAre("dop853", "radau5", "dop853"));
   EXPECT_EQ(r.outcome.statistics.methods[1].steps, 6);
   settings.integrator = "dop853";
-  EXPECT_LT(distance(r.samples, run(pendulum(), settings).samples).r, 1e-6);
+  EXPECT_LT(distance(r.samples, run(swinging_body(), settings).samples).r, 1e-6);
 }
 
 TEST(AutoIntegrator, ExplicitMethodsSayThatAMotionIsStiff) {
@@ -155,7 +155,7 @@ TEST(AutoIntegrator, ExplicitMethodsSayThatAMotionIsStiff) {
     EXPECT_EQ(told, outcome.notices);
     EXPECT_THAT(outcome.notices[0], HasSubstr("stiff"));
     EXPECT_THAT(outcome.notices[0], HasSubstr("radau5"));
-    EXPECT_THAT(simulate(pendulum(), settings, {}).notices, IsEmpty());
+    EXPECT_THAT(simulate(swinging_body(), settings, {}).notices, IsEmpty());
   }
 }
 

@@ -21,9 +21,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::pair<int, int> kPairs[] = {{kGround, 0}, {0, kGround}, {0, 1}, {1, 0}};
+constexpr std::pair<int, int> kBodyPairs[] = {{kGround, 0}, {0, kGround}, {0, 1}, {1, 0}};
 
-Scene two_bodies(Random& random) {
+Scene two_loose_bodies(Random& random) {
   Scene scene;
   scene.gravity = {0, 0, -9.81};
   for (const char* name : {"a", "b"}) {
@@ -74,7 +74,7 @@ InitialState start_of(const Scene& scene, Assembly assembly = Assembly::small) {
   return find_initial_state(std::make_shared<const Model>(compile(scene)), settings);
 }
 
-std::string refusal(const Scene& scene, Assembly assembly = Assembly::small) {
+std::string refused(const Scene& scene, Assembly assembly = Assembly::small) {
   try {
     (void)start_of(scene, assembly);
   } catch (const InputError& error) {
@@ -87,8 +87,8 @@ TEST(BodyFixedJoints, MoveAsGlobalOnesDo) {
   constexpr unsigned kSeed = 21;
   Random random(kSeed);
   for (const auto& [name, type] : kJointTypes) {
-    for (const auto& [i, j] : kPairs) {
-      Scene scene = two_bodies(random);
+    for (const auto& [i, j] : kBodyPairs) {
+      Scene scene = two_loose_bodies(random);
       scene.joints = {random_joint(type, i, j, random)};
       const Settings settings = controlled("dop853", "rA", 1e-6, 0.2, 0.1);
       const Distance d = distance(motion(body_fixed(scene), settings), motion(scene, settings));
@@ -99,7 +99,7 @@ TEST(BodyFixedJoints, MoveAsGlobalOnesDo) {
 
 TEST(BodyFixedJoints, AreWrittenAsTheyAreRead) {
   Random random(26);
-  Scene scene = two_bodies(random);
+  Scene scene = two_loose_bodies(random);
   for (const auto& [name, type] : kJointTypes) {
     scene.joints.push_back(random_joint(type, 0, 1, random));
     scene.joints.back().name = name;
@@ -117,7 +117,7 @@ TEST(BodyFixedJoints, AreWrittenAsTheyAreRead) {
 
 TEST(BodyFixedJoints, AngleDriversAndTorsionSpringsStartWhereTheirDirectionsSay) {
   Random random(22);
-  Scene scene = two_bodies(random);
+  Scene scene = two_loose_bodies(random);
   scene.joints = {random_joint(JointType::revolute, 0, 1, random)};
   const Vector3 axis = scene.bodies[0].orientation.transpose() * scene.joints[0].axis;
   TorsionSpring spring;
@@ -144,9 +144,9 @@ TEST(BodyFixedJoints, AngleDriversAndTorsionSpringsStartWhereTheirDirectionsSay)
 TEST(BodyFixedJoints, CloseTheRightWayRound) {
   Random random(23);
   for (const auto& [name, type] : kJointTypes) {
-    for (const auto& [i, j] : kPairs) {
+    for (const auto& [i, j] : kBodyPairs) {
       for (const double angle : {0.5, 1.8, 3.0}) {
-        Scene scene = two_bodies(random);
+        Scene scene = two_loose_bodies(random);
         scene.joints = {random_joint(type, i, j, random)};
         scene = body_fixed(scene);
         Body& body = scene.bodies[static_cast<std::size_t>(std::max(i, j))];
@@ -168,7 +168,7 @@ TEST(BodyFixedJoints, CloseTheRightWayRound) {
 TEST(BodyFixedJoints, OpenPartsVaryAsTheySay) {
   Random random(24);
   for (const auto& [name, type] : kJointTypes) {
-    Scene scene = two_bodies(random);
+    Scene scene = two_loose_bodies(random);
     scene.joints = {random_joint(type, 0, 1, random)};
     Driver angle;
     angle.i = 0, angle.j = 1, angle.axis = random.unit(), angle.value = Expression(0.4);
@@ -233,16 +233,16 @@ Scene driven_pendulum(const char* angle) {
 
 TEST(BodyFixedJoints, ADriverHalfATurnOffIsRefusedOrTurned) {
   const Scene scene = driven_pendulum("pi + t");
-  EXPECT_EQ(refusal(scene),
+  EXPECT_EQ(refused(scene),
             "driver 'motor' asks for an angle of 3.14159 rad at t = 0, where the initial pose has 0 rad; correct the "
             "scene, or have it turned there with --assemble");
-  EXPECT_THAT(refusal(scene, Assembly::never), HasSubstr("driver 'motor' asks for an angle of 3.14159 rad"));
+  EXPECT_THAT(refused(scene, Assembly::never), HasSubstr("driver 'motor' asks for an angle of 3.14159 rad"));
   const InitialState start = start_of(scene, Assembly::always);
   ASSERT_TRUE(start.status.ok()) << start.status.message;
   const Matrix3 turned = Eigen::AngleAxisd(M_PI, Vector3::UnitX()).toRotationMatrix() * scene.bodies[0].orientation;
   EXPECT_LT((start.bodies[0].A - turned).norm(), 1e-12);
   EXPECT_THAT(start.notices, ::testing::Contains(HasSubstr("had to turn by 3.14 rad")));
-  EXPECT_EQ(refusal(driven_pendulum("2*pi + t")), "accepted");
+  EXPECT_EQ(refused(driven_pendulum("2*pi + t")), "accepted");
 }
 
 TEST(BodyFixedJoints, WhatCannotCloseIsNamedWithWhatIsLeft) {
@@ -255,7 +255,7 @@ TEST(BodyFixedJoints, WhatCannotCloseIsNamedWithWhatIsLeft) {
   far.s_i = {0, 1, 0};
   far.f = Expression(25);
   scene.constraints = {far};
-  EXPECT_THAT(refusal(scene), ::testing::MatchesRegex("no position near the given pose closes the mechanism: .* stays "
+  EXPECT_THAT(refused(scene), ::testing::MatchesRegex("no position near the given pose closes the mechanism: .* stays "
                                                       "open by [0-9.]* m.*, at the given pose constraint 'far' is by "
                                                       ".* m; .*"));
 }

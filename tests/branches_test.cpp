@@ -11,7 +11,7 @@
 namespace poinsot::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr const char* kFormulations[] = {"rA", "rp", "reps"};
 
 // A four-bar in the plane z = 0: crank from the origin, rocker from (d, 0, 0), crank at `angle` at the start and the
@@ -85,9 +85,9 @@ TEST(Branches, a_crank_rocker_beside_its_change_point_keeps_its_assembly) {
     const FourBar close{1, 2 + gap, 2, 3};  // at crank angle pi the dyad is straight but for `gap`
     for (const char* formulation : kFormulations)
       for (double step : {0.005, 0.013, 0.1}) {
-        Settings settings = kinematics(formulation, step, 2 * kPi);
-        const auto samples = motion(four_bar(close, kPi / 2), settings);
-        EXPECT_LT(off_branch(close, kPi / 2, samples), 1e-6) << formulation << " step " << step << " gap " << gap;
+        Settings settings = kinematics(formulation, step, 2 * pi);
+        const auto samples = motion(four_bar(close, pi / 2), settings);
+        EXPECT_LT(off_branch(close, pi / 2, samples), 1e-6) << formulation << " step " << step << " gap " << gap;
       }
   }
 }
@@ -95,10 +95,10 @@ TEST(Branches, a_crank_rocker_beside_its_change_point_keeps_its_assembly) {
 TEST(Branches, keep_with_every_linear_solver_and_the_default_tolerance) {
   const FourBar close{1, 2 + 1e-4, 2, 3};
   for (const auto& solver : linear_solvers()) {
-    Settings settings = kinematics("rA", 0.02, 2 * kPi);
+    Settings settings = kinematics("rA", 0.02, 2 * pi);
     settings.linear_solver = solver.name;
     settings.tolerance = 1e-3;
-    EXPECT_LT(off_branch(close, kPi / 2, motion(four_bar(close, kPi / 2), settings)), 1e-3) << solver.name;
+    EXPECT_LT(off_branch(close, pi / 2, motion(four_bar(close, pi / 2), settings)), 1e-3) << solver.name;
   }
 }
 
@@ -106,8 +106,8 @@ TEST(Branches, steps_of_more_than_half_a_turn_are_followed) {
   const FourBar easy{1, 3, 3, 4};
   for (const char* formulation : kFormulations)
     for (double step : {0.7, 2.5, 4.0, 6.0}) {
-      const auto samples = motion(four_bar(easy, kPi / 2), kinematics(formulation, step, 24));
-      EXPECT_LT(off_branch(easy, kPi / 2, samples), 1e-8) << formulation << " step " << step;
+      const auto samples = motion(four_bar(easy, pi / 2), kinematics(formulation, step, 24));
+      EXPECT_LT(off_branch(easy, pi / 2, samples), 1e-8) << formulation << " step " << step;
     }
 }
 
@@ -116,20 +116,20 @@ TEST(Branches, a_change_point_stops_the_run_and_is_named) {
   for (const char* formulation : kFormulations)
     for (double step : {0.01, 0.1, 0.35}) {
       for (const FourBar& of : {change, parallelogram}) {
-        const Recorded r = run(four_bar(of, kPi / 2), kinematics(formulation, step, 2 * kPi));
+        const Recorded r = run(four_bar(of, pi / 2), kinematics(formulation, step, 2 * pi));
         ASSERT_FALSE(r.outcome.status.ok()) << formulation << " step " << step;
-        EXPECT_NEAR(r.outcome.status.time, kPi / 2, 1e-3) << r.outcome.status.message;
+        EXPECT_NEAR(r.outcome.status.time, pi / 2, 1e-3) << r.outcome.status.message;
         EXPECT_EQ(r.outcome.status.failure, Failure::singular_position) << r.outcome.status.message;
-        EXPECT_LT(off_branch(of, kPi / 2, r.samples), 1e-6);
+        EXPECT_LT(off_branch(of, pi / 2, r.samples), 1e-6);
       }
     }
 }
 
 TEST(Branches, two_change_points_at_once_are_seen_each) {
   const FourBar of{1, 2, 1, 2};
-  Scene scene = four_bar(of, kPi / 2);
-  add_dyad(scene, 0, of, kPi / 2, Vector3::Zero());
-  const Recorded r = run(scene, kinematics("rA", 0.01, kPi));
+  Scene scene = four_bar(of, pi / 2);
+  add_dyad(scene, 0, of, pi / 2, Vector3::Zero());
+  const Recorded r = run(scene, kinematics("rA", 0.01, pi));
   EXPECT_EQ(r.outcome.status.failure, Failure::singular_position) << r.outcome.status.message;
 }
 
@@ -148,11 +148,11 @@ TEST(Branches, a_direction_driven_past_its_turning_point) {
   helped.constraints[0].alternate = Constraint::Alternate{{1, 0, 0}, {1, 0, 0}, Expression::parse("cos(t)")};
   for (const char* formulation : kFormulations)
     for (double step : {0.0103, 0.37}) {
-      const Recorded stopped = run(bare, kinematics(formulation, step, 2 * kPi));
+      const Recorded stopped = run(bare, kinematics(formulation, step, 2 * pi));
       EXPECT_FALSE(stopped.outcome.status.ok()) << formulation << " step " << step;
-      EXPECT_NEAR(stopped.outcome.status.time, kPi / 2, 0.01)
+      EXPECT_NEAR(stopped.outcome.status.time, pi / 2, 0.01)
           << formulation << " step " << step << stopped.outcome.status.message;
-      for (const Snapshot& s : motion(helped, kinematics(formulation, step, 2 * kPi)))
+      for (const Snapshot& s : motion(helped, kinematics(formulation, step, 2 * pi)))
         EXPECT_LT((s.bodies[0].A.col(0) - Vector3(std::cos(s.t), std::sin(s.t), 0)).norm(), 1e-8)
             << formulation << " step " << step;
     }
@@ -166,7 +166,7 @@ TEST(Branches, a_platform_driven_through_its_flat_pose_stops) {
   platform.position = {0, 0, 1};
   scene.bodies.push_back(platform);
   for (int k = 0; k < 6; ++k) {
-    const double base = kPi / 3 * k + (k % 2 ? -0.2 : 0.2), top = kPi / 3 * k + (k % 2 ? 0.35 : -0.35);
+    const double base = pi / 3 * k + (k % 2 ? -0.2 : 0.2), top = pi / 3 * k + (k % 2 ? 0.35 : -0.35);
     Driver leg;
     leg.name = "leg" + std::to_string(k + 1), leg.type = DriverType::distance, leg.i = kGround, leg.j = 0;
     leg.s_i = {2 * std::cos(base), 2 * std::sin(base), 0}, leg.s_j = {std::cos(top), std::sin(top), 0};
@@ -175,9 +175,9 @@ TEST(Branches, a_platform_driven_through_its_flat_pose_stops) {
   }
   for (const char* formulation : kFormulations)
     for (double step : {0.01, 0.1, 0.3}) {
-      const Recorded r = run(scene, kinematics(formulation, step, kPi));
+      const Recorded r = run(scene, kinematics(formulation, step, pi));
       ASSERT_FALSE(r.outcome.status.ok()) << formulation << " step " << step;
-      EXPECT_NEAR(r.outcome.status.time, kPi / 2, 0.01) << r.outcome.status.message;
+      EXPECT_NEAR(r.outcome.status.time, pi / 2, 0.01) << r.outcome.status.message;
       for (const Snapshot& s : r.samples) EXPECT_NEAR(s.bodies[0].r.z(), std::cos(s.t), 1e-6);
     }
 }

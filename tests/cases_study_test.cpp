@@ -23,13 +23,13 @@ Study study_of(const Json& document) {
       Json{{"file", "study.json"}, {"study", document.dump()}, {"scenes", {{"pendulum.json", kPendulum}}}}.dump());
 }
 
-Json table() {
+Json case_table() {
   std::ifstream in(POINSOT_SOURCE_DIR "/tests/study_schema_test.json");
   return Json::parse(in);
 }
 
 TEST(CasesStudy, AnswersEveryCaseOfTheTable) {
-  const Json cases = table();
+  const Json cases = case_table();
   for (const Json& c : cases["cases"]) {
     Json document = cases["base"];
     if (c.contains("set"))
@@ -53,7 +53,7 @@ TEST(CasesStudy, AnswersEveryCaseOfTheTable) {
 }
 
 TEST(CasesStudy, TheLastDimensionVariesFastestAndKeysAreOfWhatIsComputed) {
-  Json document = table()["base"];
+  Json document = case_table()["base"];
   Study study = study_of(document);
   ASSERT_EQ(study.size(), 4);
   EXPECT_EQ(case_of(study, 0).parameters, std::vector{1.0});
@@ -75,7 +75,7 @@ TEST(CasesStudy, TheLastDimensionVariesFastestAndKeysAreOfWhatIsComputed) {
 }
 
 TEST(CasesStudy, ShardsAndATenthAreDisjointAndComplete) {
-  Json document = table()["base"];
+  Json document = case_table()["base"];
   document.erase("pictures");
   document["vary"][0] = {{"parameter", "l"}, {"from", 1}, {"to", 2}, {"count", 37}};
   const Study study = study_of(document);

@@ -51,8 +51,8 @@ class Interrupted : public CommandLine {
   }
 };
 
-const std::vector<std::string> kLong{"run", "pendulum.json", "--end", "1e6",         "--every",
-                                     "0.1", "--out",         "a.csv", "--reactions", "r.csv"};
+const std::vector<std::string> kLongRun{"run", "pendulum.json", "--end", "1e6",         "--every",
+                                        "0.1", "--out",         "a.csv", "--reactions", "r.csv"};
 
 TEST_F(Interrupted, ARunKeepsWhatWasComputed) {
   for (const auto& [signal, name] : {std::pair{SIGINT, "SIGINT"},
@@ -63,7 +63,7 @@ TEST_F(Interrupted, ARunKeepsWhatWasComputed) {
                                      {SIGUSR1, "SIGUSR1"}}) {
     SCOPED_TRACE(name);
     for (const char* file : {"a.csv", "r.csv", "a.run.json"}) fs::remove(folder() / file);
-    const pid_t child = start(kLong);
+    const pid_t child = start(kLongRun);
     ASSERT_TRUE(wait_for([&] { return exists("a.run.json") && exists("r.csv") && size("a.csv") > 0; }));
     kill(child, signal);
     const Result result = finish(child);
@@ -84,7 +84,7 @@ TEST_F(Interrupted, ARunKeepsWhatWasComputed) {
 }
 
 TEST_F(Interrupted, TheFileGrowsWhileTheRunGoesOnAndTheRecordSaysSo) {
-  const pid_t child = start(kLong);
+  const pid_t child = start(kLongRun);
   ASSERT_TRUE(wait_for([&] { return size("a.csv") > 0 && exists("a.run.json"); }));
   EXPECT_EQ(read_json("a.run.json")["status"], "running");
   EXPECT_EQ(read_json("a.run.json")["incomplete"], true);

@@ -8,9 +8,9 @@
 namespace poinsot::test {
 namespace {
 
-class Json : public CommandLine {
+class JsonOutput : public CommandLine {
  protected:
-  Json() { write("pendulum.json", kPendulum); }
+  JsonOutput() { write("pendulum.json", kPendulum); }
 
   int shell(const std::string& commands) const {
     const int status = std::system(fmt::format("cd '{}' && {}", folder().string(), commands).c_str());
@@ -32,7 +32,7 @@ class Json : public CommandLine {
   }
 };
 
-TEST_F(Json, List) {
+TEST_F(JsonOutput, List) {
   const nlohmann::json list = said({"list"}, R"({
     "type": "object", "additionalProperties": false,
     "required": ["formulations", "integrators", "linear_solvers", "linear_systems", "jacobians", "stopping_tests"],
@@ -70,7 +70,7 @@ const char* const kCheck = R"({
     "sound": {"type": "boolean"}, "message": {"type": "string"}},
   "$defs": {"rows": {"type": "array", "items": {"type": "object", "required": ["row", "follows_from"]}}}})";
 
-TEST_F(Json, Check) {
+TEST_F(JsonOutput, Check) {
   const nlohmann::json sound = said({"check", "pendulum.json"}, kCheck);
   EXPECT_EQ(sound["degrees_of_freedom"], 1);
   EXPECT_EQ(sound["sound"], true);
@@ -83,7 +83,7 @@ TEST_F(Json, Check) {
   EXPECT_EQ(poinsot({"check", "pendulum.json", "--quiet"}).out, "");
 }
 
-TEST_F(Json, ReferenceAndAdvise) {
+TEST_F(JsonOutput, ReferenceAndAdvise) {
   const nlohmann::json reference =
       said({"reference", "pendulum.json", "--end", "0.5", "--digits", "6", "--cache", "cache"}, R"({
         "type": "object", "required": ["end", "every", "given", "confirmed_by_another_method", "agreement", "methods",
@@ -107,7 +107,7 @@ TEST_F(Json, ReferenceAndAdvise) {
   EXPECT_LE(advice["reaching"][0]["error"]["position"], 1e-4);
 }
 
-using Shell = Json;
+using Shell = JsonOutput;
 
 TEST_F(Shell, CompletionsNameWhatTheCommandLineTakes) {
   for (const char* shell_name : {"bash", "zsh", "fish"}) {

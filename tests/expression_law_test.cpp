@@ -39,7 +39,7 @@ Names names() {
 }
 
 template <class Parse>
-std::string error_of(Parse parse) {
+std::string error_in(Parse parse) {
   try {
     (void)parse();
   } catch (const ExpressionError& error) {
@@ -88,16 +88,16 @@ TEST(ExpressionLaw, uses_the_names_of_the_scene) {
   EXPECT_EQ(Expression::parse("l*t + rate", &with).at(2.0).f, 1);
   EXPECT_EQ(Expression::parse_constant("road(l - 0.5)", &with).at(0.0).f, 1);
   EXPECT_EQ(Expression::parse("road(2*t)", &with).at(0.5).f, 1);
-  EXPECT_THAT(error_of([&] { return Expression::parse("2*m", &with); }),
+  EXPECT_THAT(error_in([&] { return Expression::parse("2*m", &with); }),
               testing::StartsWith("unknown name 'm' at character 3; known are t, pi, e, the parameter l and the table "
                                   "road and the functions sin, "));
-  EXPECT_THAT(error_of([&] { return Expression::parse("x", &with); }), testing::StartsWith("unknown name 'x'"));
-  EXPECT_EQ(error_of([&] { return Expression::parse_constant("road(5)", &with); }),
+  EXPECT_THAT(error_in([&] { return Expression::parse("x", &with); }), testing::StartsWith("unknown name 'x'"));
+  EXPECT_EQ(error_in([&] { return Expression::parse_constant("road(5)", &with); }),
             "table 'road' has no value at 5: its points go from 0 to 4");
-  EXPECT_EQ(error_of([&] { return Expression::parse("road", &with); }), "expected '(' at character 5, found the end");
+  EXPECT_EQ(error_in([&] { return Expression::parse("road", &with); }), "expected '(' at character 5, found the end");
   with.parameters["v"] = 3;
   EXPECT_EQ(Expression::parse("v*t", &with).at(2.0).f, 6);
-  EXPECT_EQ(error_of([&] { return Expression::parse_law("x + v", &with); }),
+  EXPECT_EQ(error_in([&] { return Expression::parse_law("x + v", &with); }),
             "'v' at character 5 is a parameter, and in a law the rate; give the parameter another name");
   for (const char* free : {"l", "x", "v", "l_1", "_", "Pi", "stiffness"}) EXPECT_EQ(Expression::why_no_name(free), "");
   for (const char* no : {"", "2l", "l-1", "é"})

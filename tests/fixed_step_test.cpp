@@ -72,12 +72,45 @@ TEST_P(FixedStep, FailureNamesTimeAndPlaceAndKeepsWhatWasComputed) {
   for (const std::string integrator : {"generalized_alpha", "generalized_alpha_i2", "rattle", "half_implicit"}) {
     Settings settings = settings_of(integrator, GetParam(), 0.01, 1, 0);
     settings.max_iterations = 1;
+    settings.retry = false;
     const Recorded r = run(scene, settings);
     EXPECT_EQ(r.outcome.status.failure, Failure::not_converged) << integrator;
     EXPECT_THAT(r.outcome.status.message, HasSubstr("at t = 0.01 s Newton's method did not converge"));
     EXPECT_THAT(r.outcome.status.message, HasSubstr("the largest correction is that of "));
     EXPECT_EQ(static_cast<std::int64_t>(r.samples.size()), r.outcome.statistics.steps + 1) << integrator;
   }
+}
+
+// Steps for which the iterations allowed do not suffice: their halves need fewer.
+TEST_P(FixedStep, DoesAStepThatFailsInParts) {
+  const Scene scene = turning("double_pendulum", {0, 0, 1});
+  const double h = 0.04, end = 2;
+  const std::vector<Snapshot> exact = reference(scene, h, end, end);
+  int divided = 0;
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;
+    SCOPED_TRACE(integrator.name);
+    Settings settings = settings_of(integrator.name, GetParam(), h, end, end);
+    settings.tolerance = 1e-7;
+    const Recorded whole = run(scene, settings);
+    ASSERT_TRUE(whole.outcome.status.ok()) << whole.outcome.status.message;
+    EXPECT_EQ(whole.outcome.statistics.divided_steps, 0);
+
+    for (settings.max_iterations = 2; settings.max_iterations < 20; ++settings.max_iterations) {
+      settings.retry = false;
+      if (run(scene, settings).outcome.status.ok()) break;
+      settings.retry = true;
+      const Recorded parts = run(scene, settings);
+      const Statistics& statistics = parts.outcome.statistics;
+      if (!parts.outcome.status.ok()) continue;  // with so few iterations no step succeeds
+      ++divided;
+      EXPECT_GT(statistics.divided_steps, 0);
+      EXPECT_GT(statistics.steps, 50 + statistics.divided_steps - 1);
+      EXPECT_THAT(parts.outcome.notices, ::testing::Contains(HasSubstr("were done in parts")));
+      EXPECT_LT(errors(parts.samples, exact)[0], 1.2 * errors(whole.samples, exact)[0]);
+    }
+  }
+  EXPECT_GE(divided, 3);
 }
 
 // What stabilized index 2 is for: rounding of Φ over h² reaches the multipliers of index 3, not its own.

@@ -26,18 +26,18 @@ Scene pendulum(double far) {
   return scene;
 }
 
-struct Method {
+struct Index3Method {
   std::string integrator, formulation;
 };
-std::vector<Method> methods() {
-  std::vector<Method> all;
+std::vector<Index3Method> index3_methods() {
+  std::vector<Index3Method> all;
   for (const char* integrator : {"implicit_euler", "half_implicit", "generalized_alpha", "generalized_alpha_i2"})
     for (const FormulationEntry& formulation : formulations())
       all.push_back({integrator, std::string(formulation.name)});
   return all;
 }
 
-class Index1Output : public ::testing::TestWithParam<Method> {
+class Index1Output : public ::testing::TestWithParam<Index3Method> {
  protected:
   Recorded run_far(double far, double step, int steps) const {
     Settings s = dynamics(GetParam().formulation, step, steps * step, steps * step);
@@ -46,7 +46,7 @@ class Index1Output : public ::testing::TestWithParam<Method> {
     return run(pendulum(far), s);
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, Index1Output, ::testing::ValuesIn(methods()),
+INSTANTIATE_TEST_SUITE_P(All, Index1Output, ::testing::ValuesIn(index3_methods()),
                          [](const auto& test) { return test.param.integrator + "_" + test.param.formulation; });
 
 // From the horizontal: the first moments of the fall, a = −m g l²/(m l² + I) along z, 3 g/... at the hinge.

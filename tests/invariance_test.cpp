@@ -137,9 +137,9 @@ std::string name_of(const ::testing::TestParamInfo<std::tuple<std::string, std::
   return std::get<0>(test.param) + "_" + std::get<1>(test.param);
 }
 
-const auto kDriven =
+const auto kDrivenModels =
     ::testing::Values("single_pendulum", "four_link", "four_link_joints", "slider_crank", "slider_crank_joints");
-INSTANTIATE_TEST_SUITE_P(All, Kinematics, ::testing::Combine(kDriven, ::testing::ValuesIn(formulation_names())),
+INSTANTIATE_TEST_SUITE_P(All, Kinematics, ::testing::Combine(kDrivenModels, ::testing::ValuesIn(formulation_names())),
                          name_of);
 
 Settings precise_dynamics(const std::string& formulation, double step, double end) {
@@ -162,8 +162,8 @@ TEST_P(DrivenDynamics, IsInvariant) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DrivenDynamics, ::testing::Combine(kDriven, ::testing::ValuesIn(formulation_names())),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(All, DrivenDynamics,
+                         ::testing::Combine(kDrivenModels, ::testing::ValuesIn(formulation_names())), name_of);
 
 // Slow enough for steps of 1e-2 s.
 Scene slow_top() {

@@ -9,7 +9,7 @@
 namespace poinsot::test {
 namespace {
 
-constexpr const char* kFormulations[] = {"rA", "rp", "reps"};
+constexpr const char* kAllFormulations[] = {"rA", "rp", "reps"};
 
 Scene spinning(double rate) {
   Scene scene;
@@ -85,7 +85,7 @@ TEST(LargeRotations, what_is_lost_at_the_default_step_is_said) {
 TEST(LargeRotations, beyond_what_makes_sense_stop_the_run) {
   for (const IntegratorEntry& integrator : integrators()) {
     if (integrator.controls_error || integrator.analysis != Analysis::dynamics) continue;
-    for (const char* formulation : kFormulations) {
+    for (const char* formulation : kAllFormulations) {
       const Recorded r = run(spinning(1), with(integrator.name, formulation, 3.3, 33));
       EXPECT_EQ(r.outcome.status.failure, Failure::rotation_too_large) << integrator.name << ' ' << formulation;
       EXPECT_THAT(r.outcome.status.message, testing::HasSubstr("body 'body'"));
@@ -96,7 +96,7 @@ TEST(LargeRotations, beyond_what_makes_sense_stop_the_run) {
 TEST(TorsionSprings, are_counted_right_by_error_control_whatever_its_steps) {
   const double rate = 1000;
   for (const char* integrator : {"dopri5", "dop853", "radau5", "ida"})
-    for (const char* formulation : kFormulations) {
+    for (const char* formulation : kAllFormulations) {
       if (refusal_of(integrators().require(integrator), formulation)) continue;
       Settings s = controlled(integrator, formulation, 1e-6, 0.5, 0.1);
       for (const Snapshot& at : motion(torsional(rate), s))
@@ -127,7 +127,7 @@ TEST(LargeRotations, a_step_onto_another_branch_stops_the_run) {
   hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
   scene.joints.push_back(hinge);
   for (const char* integrator : {"implicit_euler", "half_implicit", "rattle", "generalized_alpha"})
-    for (const char* formulation : kFormulations) {
+    for (const char* formulation : kAllFormulations) {
       const Recorded r = run(scene, with(integrator, formulation, 0.5, 10));
       EXPECT_FALSE(r.outcome.status.ok()) << integrator << ' ' << formulation;
     }

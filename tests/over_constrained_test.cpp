@@ -10,14 +10,14 @@
 namespace poinsot::test {
 namespace {
 
-struct Motion {
+struct Course {
   Outcome outcome;
   std::vector<BodyState> end;
   int exchanges = 0;
 };
 
-Motion move(const Scene& scene, const Settings& settings) {
-  Motion m;
+Course move(const Scene& scene, const Settings& settings) {
+  Course m;
   m.outcome = simulate(scene, settings, [&](const Sample& sample) {
     m.end.resize(static_cast<std::size_t>(sample.problem.bodies()));
     sample.problem.to_bodies(sample.a, m.end);
@@ -26,7 +26,7 @@ Motion move(const Scene& scene, const Settings& settings) {
   return m;
 }
 
-double apart(const Motion& a, const Motion& b) {
+double apart(const Course& a, const Course& b) {
   double largest = 0;
   for (std::size_t k = 0; k < a.end.size(); ++k) {
     largest = std::max(largest, (a.end[k].r - b.end[k].r).norm());
@@ -61,8 +61,8 @@ TEST_P(Loops, MoveAsWithoutRedundancy) {
       for (const bool carried : {false, true}) {
         SCOPED_TRACE(fmt::format("{} {}, frames {}{}", integrator.name, GetParam(), static_cast<int>(frames),
                                  carried ? ", carried" : ""));
-        const Motion with = move(loop({4, frames, carried, true}), settings);
-        const Motion without = move(loop({4, frames, carried, false}), settings);
+        const Course with = move(loop({4, frames, carried, true}), settings);
+        const Course without = move(loop({4, frames, carried, false}), settings);
         ASSERT_TRUE(with.outcome.status.ok()) << with.outcome.status.message;
         ASSERT_TRUE(without.outcome.status.ok()) << without.outcome.status.message;
         // Fixed steps: the same solution of the same equations, but for generalized-alpha's restarts. Error control:
@@ -84,8 +84,8 @@ TEST_P(Loops, OfManyLinks) {
       Settings settings = dynamics(GetParam(), 1e-3, 1, 1);
       settings.integrator = "dop853";
       settings.rtol = 1e-9;
-      const Motion with = move(loop({links, Frames::quarter_turns, carried, true}), settings);
-      const Motion without = move(loop({links, Frames::quarter_turns, carried, false}), settings);
+      const Course with = move(loop({links, Frames::quarter_turns, carried, true}), settings);
+      const Course without = move(loop({links, Frames::quarter_turns, carried, false}), settings);
       ASSERT_TRUE(with.outcome.status.ok()) << links << ' ' << with.outcome.status.message;
       EXPECT_LT(apart(with, without), 2e-5) << links << carried;
       EXPECT_LE(with.outcome.statistics.rejected_steps, without.outcome.statistics.rejected_steps + 1) << links;
@@ -150,7 +150,7 @@ TEST(OverConstrained, ARowThatDoesNotFollowAnyMoreStopsTheRun) {
     driver.axis = scene.joints[0].axis;
     driver.value = Expression::parse(angle);
   }
-  const Motion m = move(scene, dynamics("rA", 1e-3, 1));
+  const Course m = move(scene, dynamics("rA", 1e-3, 1));
   EXPECT_EQ(m.outcome.status.failure, Failure::constraint_lost);
   EXPECT_THAT(m.outcome.status.message, ::testing::HasSubstr("driver 't"));
   EXPECT_GT(m.outcome.status.time, 0.01);
@@ -159,7 +159,7 @@ TEST(OverConstrained, ARowThatDoesNotFollowAnyMoreStopsTheRun) {
 
 TEST(OverConstrained, StartsThatLeadNowhereAreRefusedByName) {
   for (const bool redundant : {true, false}) {
-    const Motion m = move(posts(1, 0, 0, redundant), dynamics("rA", 1e-3, 1));
+    const Course m = move(posts(1, 0, 0, redundant), dynamics("rA", 1e-3, 1));
     EXPECT_EQ(m.outcome.status.failure, Failure::singular_position) << redundant;
     EXPECT_THAT(m.outcome.status.message, ::testing::HasSubstr("singular here: joint 'joint4'")) << redundant;
     EXPECT_TRUE(m.end.empty());
@@ -181,7 +181,7 @@ TEST_P(Loops, StartInASingularPositionFollowsTheVelocities) {
         settings.stopping = Settings{}.stopping;
         settings.tolerance = 1e-6;
         settings.rtol = 1e-9;
-        const Motion flat = move(posts(1, angle, -3, redundant), settings);
+        const Course flat = move(posts(1, angle, -3, redundant), settings);
         EXPECT_THAT(flat.outcome.notices, ::testing::Contains(::testing::HasSubstr("singular position")));
         EXPECT_TRUE(flat.outcome.status.ok() || settings.integrator == "radau5") << flat.outcome.status.message;
         if (!flat.outcome.status.ok()) continue;

@@ -10,7 +10,7 @@
 namespace poinsot::test {
 namespace {
 
-constexpr double kEnd = 0.2, kSpin = -3;
+constexpr double kPassed = 0.2, kSpin = -3;
 
 struct Passage {
   int loops;
@@ -19,7 +19,7 @@ struct Passage {
 
   Scene scene() const { return posts(loops, angle, kSpin, redundant); }
   double off(const BodyState& post) const {
-    const double phi = swung(loops, angle, kSpin, kEnd);
+    const double phi = swung(loops, angle, kSpin, kPassed);
     return (post.r - Vector3(0.5 * std::cos(phi), 0.5 * std::sin(phi), 0)).norm();
   }
   friend std::ostream& operator<<(std::ostream& out, const Passage& p) {
@@ -45,7 +45,7 @@ TEST_P(Passages, OfStepsOfFixedLength) {
     for (const Passage& passage : passages()) {
       for (const double tolerance : {1e-3, 1e-8}) {
         SCOPED_TRACE(::testing::Message() << integrator.name << ' ' << tolerance << ' ' << passage);
-        Settings settings = dynamics(GetParam(), 1e-2, kEnd, kEnd);
+        Settings settings = dynamics(GetParam(), 1e-2, kPassed, kPassed);
         settings.integrator = integrator.name;
         settings.stopping = Settings{}.stopping;
         settings.tolerance = tolerance;
@@ -62,7 +62,7 @@ TEST_P(Passages, OfErrorControl) {
   for (const Passage& passage : passages()) {
     SCOPED_TRACE(passage);
     for (const double rtol : {1e-6, 1e-8}) {
-      const Recorded r = run(passage.scene(), controlled("dop853", GetParam(), rtol, kEnd, kEnd));
+      const Recorded r = run(passage.scene(), controlled("dop853", GetParam(), rtol, kPassed, kPassed));
       ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
       EXPECT_LT(passage.off(r.samples.back().bodies[0]), 10 * rtol);
       EXPECT_LT(r.outcome.statistics.rejected_steps, 100);
@@ -78,7 +78,7 @@ TEST_P(Passages, NoneIsLeftToRounding) {
     for (const double before : {0.1, 0.03}) {
       for (const double rtol : {1e-4, 1e-6}) {
         SCOPED_TRACE(::testing::Message() << integrator.name << ' ' << before << ' ' << rtol);
-        const Recorded r = run(folding_crank(before), controlled(integrator.name, GetParam(), rtol, kEnd, kEnd));
+        const Recorded r = run(folding_crank(before), controlled(integrator.name, GetParam(), rtol, kPassed, kPassed));
         if (!r.outcome.status.ok()) continue;
         ++ended;
         const auto& bodies = r.samples.back().bodies;

@@ -22,16 +22,16 @@ EqualSteps<RadauStepper> bench(const Scene& scene, Settings settings) {
           }};
 }
 
-struct OrderCase {
+struct RadauOrder {
   std::string model;
   double end;
   std::vector<int> counts;  // of steps
 };
 
 TEST_P(Radau, OrderIsTheTheoreticalOneInEveryQuantity) {
-  for (const OrderCase& c :
-       {OrderCase{"forced", 1, {76, 88, 108, 128, 156}}, OrderCase{"rows", 0.4, {36, 40, 44, 52, 60}},
-        OrderCase{"heavy_top", 1, {76, 92, 112, 132, 160}}}) {
+  for (const RadauOrder& c :
+       {RadauOrder{"forced", 1, {76, 88, 108, 128, 156}}, RadauOrder{"rows", 0.4, {36, 40, 44, 52, 60}},
+        RadauOrder{"heavy_top", 1, {76, 92, 112, 132, 160}}}) {
     Scene scene = c.model == "forced" ? forced() : c.model == "rows" ? rows_of_every_kind() : scene_of(c.model);
     if (c.model == "heavy_top") scene.bodies[0].angular_velocity = {2.6, -4.2, 1.4};  // slow
     const Settings exactly = controlled("dop853", GetParam(), 1e-14, c.end, c.end / 4);

@@ -11,9 +11,9 @@
 namespace poinsot::test {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using std::numbers::pi;
 
 Matrix3d about_z(double angle) {
   return Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
@@ -34,8 +34,8 @@ struct Leg {
 };
 
 Leg leg(int n) {
-  const double side = n % 2 == 0 ? -1 : 1, third = 2 * kPi / 3 * (n / 2);
-  return {about_z(third + side * kPi / 12) * Vector3d::UnitX(), about_z(third + side * kPi / 4) * Vector3d(0.5, 0, 0)};
+  const double side = n % 2 == 0 ? -1 : 1, third = 2 * pi / 3 * (n / 2);
+  return {about_z(third + side * pi / 12) * Vector3d::UnitX(), about_z(third + side * pi / 4) * Vector3d(0.5, 0, 0)};
 }
 
 TEST(StewartPlatform, MovesAsItsLegsWereComputedFor) {
@@ -100,19 +100,19 @@ TEST(StewartPlatform, LegsGiveTheEnergyThatTheMotionTakes) {
 constexpr double kBase = 0.2, kArm = 0.3, kRod = 0.8, kPlate = 0.06, kMass = 0.5, kArmMass = 0.8, kG = 9.81;
 
 double angle(int k, double t) {
-  return 0.3 + 0.25 * std::sin(2 * t + k * 2 * kPi / 3);
+  return 0.3 + 0.25 * std::sin(2 * t + k * 2 * pi / 3);
 }
 
 Vector3d elbow(int k, double t) {
   const double a = angle(k, t);
-  return about_z(k * 2 * kPi / 3) * Vector3d(kBase + kArm * std::cos(a), 0, -kArm * std::sin(a));
+  return about_z(k * 2 * pi / 3) * Vector3d(kBase + kArm * std::cos(a), 0, -kArm * std::sin(a));
 }
 
 // The lower one of the two points at the rods' length from the elbows, moved inwards by the plate.
 Vector3d platform(double t) {
   std::array<Vector3d, 3> c;
   for (int k = 0; k < 3; ++k)
-    c[static_cast<std::size_t>(k)] = elbow(k, t) - about_z(k * 2 * kPi / 3) * Vector3d(kPlate, 0, 0);
+    c[static_cast<std::size_t>(k)] = elbow(k, t) - about_z(k * 2 * pi / 3) * Vector3d(kPlate, 0, 0);
   const Vector3d x = (c[1] - c[0]).normalized();
   const Vector3d z = x.cross(c[2] - c[0]).normalized(), y = z.cross(x);
   const double d = (c[1] - c[0]).norm(), i = x.dot(c[2] - c[0]), j = y.dot(c[2] - c[0]);
@@ -142,14 +142,14 @@ TEST(DeltaRobot, MotorsTurnAgainstTheirArmAndTheirShareOfThePlatform) {
     const double t = c.at("t")[n];
     Matrix3d along;  // from elbow to platform, side by side
     for (int k = 0; k < 3; ++k) {
-      const Vector3d inwards = about_z(k * 2 * kPi / 3) * Vector3d(kPlate, 0, 0);
+      const Vector3d inwards = about_z(k * 2 * pi / 3) * Vector3d(kPlate, 0, 0);
       along.col(k) = (platform(t) + inwards - elbow(k, t)) / kRod;
     }
     const Vector3d pull = along.partialPivLu().solve(kMass * (time_rate(velocity, t) + kG * Vector3d::UnitZ()));
     for (int k = 0; k < 3; ++k) {
       const auto turn = [&](double s) { return angle(k, s); };
       const auto turn_rate = [&](double s) { return time_rate(turn, s); };
-      const Vector3d lever = about_z(k * 2 * kPi / 3) *
+      const Vector3d lever = about_z(k * 2 * pi / 3) *
                              Vector3d(-kArm * std::sin(angle(k, t)), 0, -kArm * std::cos(angle(k, t)));  // ∂elbow/∂θ
       const double moment = kArmMass * kArm * kArm / 3 * time_rate(turn_rate, t) -
                             kArmMass * kG * kArm / 2 * std::cos(angle(k, t)) + pull[k] * along.col(k).dot(lever);

@@ -15,7 +15,7 @@
 namespace poinsot {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 using Vector3 = Vec3<double>;
 using Matrix3 = Mat3<double>;
 using Vector4 = Vec4<double>;
@@ -31,8 +31,8 @@ class So3 : public ::testing::Test {
   // θ = 1/2 is where the series end.
   std::vector<Vector3> rotation_vectors() {
     std::vector<Vector3> all{Vector3::Zero()};
-    for (double angle : {1e-300, 1e-160, 1e-16, 1e-8, 1e-4, 0.1, 0.5 - 1e-9, 0.5 + 1e-9, 1.0, 2.0, 3.0, kPi - 1e-8, kPi,
-                         kPi + 1e-8, 5.0, 6.2}) {
+    for (double angle : {1e-300, 1e-160, 1e-16, 1e-8, 1e-4, 0.1, 0.5 - 1e-9, 0.5 + 1e-9, 1.0, 2.0, 3.0, pi - 1e-8, pi,
+                         pi + 1e-8, 5.0, 6.2}) {
       for (int axis = 0; axis < 3; ++axis) all.push_back(angle * Vector3::Unit(axis));
       for (int k = 0; k < scaled(10); ++k) all.push_back(angle * vector().normalized());
     }

@@ -23,7 +23,7 @@ using study::front;
 using study::Measured;
 using testing::ElementsAre;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Front, holds_what_nothing_beats) {
   EXPECT_THAT(front({1e-3, 1e-4, 1e-5}, {1, 2, 3}, 1e-12), ElementsAre(true, true, true));
@@ -41,17 +41,17 @@ TEST(Front, errors_the_reference_cannot_tell_apart_are_equal) {
 }
 
 TEST(Front, what_is_useless_or_no_number_is_on_none) {
-  EXPECT_THAT(front({0.011, 0.01, kNan}, {1, 2, 3}, 1e-12), ElementsAre(false, true, false));
-  EXPECT_THAT(front({kNan, 1e-3}, {kNan, 2}, 1e-12), ElementsAre(false, true));
+  EXPECT_THAT(front({0.011, 0.01, kNone}, {1, 2, 3}, 1e-12), ElementsAre(false, true, false));
+  EXPECT_THAT(front({kNone, 1e-3}, {kNone, 2}, 1e-12), ElementsAre(false, true));
 }
 
 TEST(Front, of_measured_cases_leaves_failures_out) {
   study::Reference reference;
-  reference.agreement = {1e-12, 1e-12, 1e-5, kNan};
+  reference.agreement = {1e-12, 1e-12, 1e-5, kNone};
   std::vector<Measured> measured(3);
-  measured[0].error = {1e-4, 1e-3, 8e-5, kNan};
+  measured[0].error = {1e-4, 1e-3, 8e-5, kNone};
   measured[0].seconds = 2;
-  measured[1].error = {1e-3, 1e-4, 1e-6, kNan};
+  measured[1].error = {1e-3, 1e-4, 1e-6, kNone};
   measured[1].seconds = 3;
   measured[2].error = {1e-9, 1e-9, 1e-9, 1e-9};
   measured[2].seconds = 1e-3;
@@ -219,7 +219,7 @@ TEST_F(Search, what_cannot_be_told_is_no_success) {
   EXPECT_EQ(error(measured, *reference_, asked), reference_->agreement[0]);
   measured.error[0] = 0.25;
   EXPECT_EQ(error(measured, blurred, asked), 0.25);
-  measured.error[0] = kNan;
+  measured.error[0] = kNone;
   EXPECT_EQ(error(measured, *reference_, asked), std::numeric_limits<double>::infinity());
   measured.error[0] = 0;
   measured.status = "failed";

@@ -59,11 +59,11 @@ TEST(SwitchTimes, AreNotWhereNothingChanges) {
     EXPECT_THAT(switches(smooth, 1), IsEmpty()) << smooth;
 }
 
-struct Method {
+struct SwitchMethod {
   std::string integrator, formulation;
 };
-std::vector<Method> methods() {
-  std::vector<Method> all;
+std::vector<SwitchMethod> switch_methods() {
+  std::vector<SwitchMethod> all;
   for (const IntegratorEntry& entry : integrators())
     for (const FormulationEntry& formulation : formulations())
       if (entry.controls_error && !refusal_of(entry, formulation.name))
@@ -71,13 +71,13 @@ std::vector<Method> methods() {
   return all;
 }
 
-class Switches : public ::testing::TestWithParam<Method> {
+class Switches : public ::testing::TestWithParam<SwitchMethod> {
  protected:
   Settings settings(double rtol, double end, double every) const {
     return controlled(GetParam().integrator, GetParam().formulation, rtol, end, every);
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, Switches, ::testing::ValuesIn(methods()),
+INSTANTIATE_TEST_SUITE_P(All, Switches, ::testing::ValuesIn(switch_methods()),
                          [](const auto& test) { return test.param.integrator + "_" + test.param.formulation; });
 
 // The velocity after an impulse is its integral, however short it is.

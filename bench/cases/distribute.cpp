@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 enum : char { kWants = 'W', kRows = 'R', kError = 'E', kInterrupted = 'I', kBye = 'B' };
 constexpr std::chrono::microseconds kPoll{1000};
 constexpr std::chrono::milliseconds kChunk{50}, kSend{20};
-constexpr std::size_t kMostCases = 4096;  // in a message
+constexpr std::size_t kMostInMessage = 4096;  // in a message
 
 std::string packed(const CaseRow& row) {
   return fmt::format("{} {} {}", row.number, int{row.failed}, row.line);
@@ -163,7 +163,7 @@ bool follow(Ranks& ranks, const Study& study, References& references, int thread
     const auto rate = static_cast<double>(desk.done()) / std::max(passed.count(), 1e-3);
     const std::size_t chunk =
         std::clamp<std::size_t>(static_cast<std::size_t>(rate * std::chrono::duration<double>(kChunk).count()),
-                                static_cast<std::size_t>(threads), kMostCases);
+                                static_cast<std::size_t>(threads), kMostInMessage);
     if (!closed && !asked && !interruption_requested && desk.waiting() <= chunk / 2) {
       asked = true;
       say(kWants, {reinterpret_cast<const char*>(&chunk), sizeof chunk});

@@ -17,7 +17,7 @@ namespace poinsot::paper {
 using namespace study;
 namespace {
 
-constexpr double kStep = 0.01;  // s
+constexpr double kEnergyStep = 0.01;  // s
 
 struct Interval {
   double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
@@ -73,7 +73,7 @@ FigureResult energy(const FigureRequest& request) {
   const Scene scene = request.scene("double_pendulum");
   const double end = request.quick ? 100 : 1000, interval = end / 200;
   FigureResult result;
-  PanelPlot plot{"energy", fmt::format("Double pendulum, h = {:g} s: energy over {:g} s", kStep, end), "t, s",
+  PanelPlot plot{"energy", fmt::format("Double pendulum, h = {:g} s: energy over {:g} s", kEnergyStep, end), "t, s",
                  "E − E(0), J"};
   plot.log_x = plot.log_y = false;
   plot.bands = true;
@@ -97,7 +97,7 @@ FigureResult energy(const FigureRequest& request) {
     Settings settings;
     settings.integrator = integrator->name;
     settings.formulation = formulation->name;
-    settings.step = kStep;
+    settings.step = kEnergyStep;
     settings.end = end;
     settings.tolerance = 1e-8;  // of accelerations: the integrator is seen, not Newton's method
     const EnergyCourse course = energy_course(scene, settings, interval);
@@ -136,7 +136,7 @@ FigureResult energy(const FigureRequest& request) {
       "to "
       "the means over {:g} s. The motion is chaotic: a few per cent of trend either way come from where it happens to "
       "be.",
-      kStep, end, start, interval);
+      kEnergyStep, end, start, interval);
   result.plots.push_back(std::move(plot));
   result.tables.push_back(std::move(table));
   return result;

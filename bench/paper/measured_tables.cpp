@@ -38,6 +38,7 @@ std::vector<Cell> make_cells(std::span<const Scene> scenes, Analysis analysis, c
           settings.analysis = analysis;
           settings.formulation = formulation.name;
           settings.integrator = kIntegrator;
+          settings.retry = false;  // the method as it is
           settings.jacobian = policy.name;
           settings.stopping = "correction";
           settings.linear_solver = choice.solver;

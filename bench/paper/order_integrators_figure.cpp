@@ -16,22 +16,22 @@ namespace poinsot::paper {
 using namespace study;
 namespace {
 
-struct Case {
+struct DrivenOrFree {
   const char* model;
   const char* title;
   bool driven;
   double end;  // s; free motion is compared while neighbouring motions stay neighbours
 };
-constexpr Case kMechanisms[] = {{"single_pendulum", "single pendulum", true, 3},
-                                {"slider_crank", "slider crank", true, 3},
-                                {"four_link", "four link", true, 3},
-                                {"double_pendulum", "double pendulum, set off", false, 1}};
+constexpr DrivenOrFree kMechanisms[] = {{"single_pendulum", "single pendulum", true, 3},
+                                        {"slider_crank", "slider crank", true, 3},
+                                        {"four_link", "four link", true, 3},
+                                        {"double_pendulum", "double pendulum, set off", false, 1}};
 // The double pendulum is set off with this, projected onto its constraints: from rest the velocity errors of
 // half-implicit Euler cancel to second order.
 constexpr double kSpin = 1;  // rad/s about the body's z axis, the hinges'
 
-constexpr double kEvery = 0.1;       // s between the instants compared; a multiple of every step
-constexpr double kPosition = 1e-12;  // m: Θ h² of Newton's method; below it the accelerations are rounding
+constexpr double kBetweenInstants = 0.1;   // s between the instants compared; a multiple of every step
+constexpr double kNewtonPosition = 1e-12;  // m: Θ h² of Newton's method; below it the accelerations are rounding
 
 // First order shows at small steps, second order before Φ/h² magnifies rounding into the accelerations.
 Window window_of(int order, bool quick) {
@@ -43,20 +43,20 @@ std::vector<double> steps_of(bool quick) {
   return {2e-2, 1e-2, 5e-3, 4e-3, 2.5e-3, 2e-3, 1e-3, 5e-4, 4e-4, 2e-4, 1e-4};
 }
 
-Settings settings_of(const IntegratorEntry& method, std::string_view formulation, double step, double end) {
+Settings settings_for(const IntegratorEntry& method, std::string_view formulation, double step, double end) {
   Settings settings;
   settings.integrator = method.name;
   settings.formulation = formulation;
   settings.step = step;
   settings.end = end;
-  settings.every = kEvery;
+  settings.every = kBetweenInstants;
   settings.stopping = "correction";
-  settings.tolerance = kPosition / (step * step);
+  settings.tolerance = kNewtonPosition / (step * step);
   settings.max_iterations = 50;
   return settings;
 }
 
-Scene scene_of(const Case& mechanism, const FigureRequest& request) {
+Scene scene_of(const DrivenOrFree& mechanism, const FigureRequest& request) {
   Scene scene = request.scene(mechanism.model);
   if (!mechanism.driven)
     for (Body& body : scene.bodies) body.angular_velocity = {0, 0, kSpin};
@@ -75,14 +75,14 @@ Table empty_table() {
           "velocities on the constraints, too, and RATTLE's accelerations and multipliers follow from both. The "
           "reference of driven mechanisms is their kinematics solved to 1e-12, with the multipliers of inverse "
           "dynamics; of free motion dop853 at rtol 1e-13. Newton's tolerance Θ with Θ h² = {:g}.",
-          kEvery, kRounding, kPosition),
+          kBetweenInstants, kRounding, kNewtonPosition),
       {"mechanism", "integrator", "formulation", "order", "positions", "velocities", "accelerations", "multipliers",
        "neighbours", "from h, s", "to h, s"},
       {}};
 }
 
 // Fits the curves of one method, quantity by quantity; a row of the table.
-std::vector<std::string> fit_row(std::span<Curve> curves, const Case& mechanism, const IntegratorEntry& method,
+std::vector<std::string> fit_row(std::span<Curve> curves, const DrivenOrFree& mechanism, const IntegratorEntry& method,
                                  bool quick, Range& exponents) {
   const Window window = window_of(method.order, quick);
   std::vector<std::string> row{mechanism.title, curves[0].series, curves[0].variant, std::to_string(method.order)};
@@ -134,11 +134,11 @@ FigureResult order_integrators(const FigureRequest& request) {
   std::map<int, std::vector<Curve>> fitted;  // by order
   RunCounter counter(std::size(kMechanisms) * methods.size() * formulations().size() * steps.size(), request.progress);
   std::map<const IntegratorEntry*, Range> exponents;
-  for (const Case& mechanism : kMechanisms) {
+  for (const DrivenOrFree& mechanism : kMechanisms) {
     const Scene scene = scene_of(mechanism, request);
     const Model model = compile(scene);
     const double end = request.quick ? 1 : mechanism.end;
-    const std::optional<Motion> exact = exact_motion(scene, mechanism.driven, end, kEvery, result);
+    const std::optional<Motion> exact = exact_motion(scene, mechanism.driven, end, kBetweenInstants, result);
     if (!exact) continue;
     const Sizes size = sizes(*exact, model);
     for (const IntegratorEntry* method : methods) {
@@ -151,7 +151,7 @@ FigureResult order_integrators(const FigureRequest& request) {
                        {}};
         for (const double step : steps) {
           counter.next();
-          const auto found = motion_of(scene, settings_of(*method, formulation.name, step, end), result);
+          const auto found = motion_of(scene, settings_for(*method, formulation.name, step, end), result);
           if (!found) continue;
           const PerQuantity errors = difference(*found, *exact, size, model);
           for (std::size_t k = 0; k < errors.size(); ++k) curves[k].points.push_back({step, errors[k]});

@@ -24,8 +24,8 @@ constexpr Coordinate kCoordinates[] = {{"single_pendulum", "single pendulum, z",
                                        {"slider_crank", "slider crank, x of the slider", 2, 0},
                                        {"four_link", "four link, z of link 3", 2, 2}};
 
-constexpr double kEnd = 3;           // s
-constexpr double kPosition = 1e-11;  // m: the paper's Θ h²
+constexpr double kPaperEnd = 3;           // s
+constexpr double kPaperPosition = 1e-11;  // m: the paper's Θ h²
 
 }  // namespace
 
@@ -35,7 +35,7 @@ FigureResult order_paper(const FigureRequest& request) {
   const Window window{steps.back(), 1e-2};
 
   FigureResult result;
-  PanelPlot plot{"order_paper", fmt::format("Order of implicit Euler: one coordinate at t = {:g} s", kEnd),
+  PanelPlot plot{"order_paper", fmt::format("Order of implicit Euler: one coordinate at t = {:g} s", kPaperEnd),
                  "step size h, s", "|difference| from kinematics"};
   Table table{
       "order_paper_table",
@@ -43,14 +43,14 @@ FigureResult order_paper(const FigureRequest& request) {
       fmt::format("|difference| from the kinematics at t = {:g} s; tolerance Θ with Θ h² = {:g}. Exponents of h "
                   "fitted from h to h as given, and the least and largest between neighbouring steps. Positions "
                   "are prescribed: the last column, their largest difference, is rounding.",
-                  kEnd, kPosition),
+                  kPaperEnd, kPaperPosition),
       {"coordinate", "formulation", "quantity", "exponent", "least", "largest", "from h, s", "to h, s", "position, m"},
       {}};
   RunCounter counter(std::size(kCoordinates) * formulations().size() * steps.size(), request.progress);
   Range exponents;
   for (const Coordinate& coordinate : kCoordinates) {
     const Scene scene = request.scene(coordinate.model);
-    const std::optional<Motion> exact = exact_motion(scene, true, kEnd, kEnd, result);
+    const std::optional<Motion> exact = exact_motion(scene, true, kPaperEnd, kPaperEnd, result);
     if (!exact) continue;
     const BodyState& truth = exact->bodies.back()[coordinate.body];
     for (const FormulationEntry& formulation : formulations()) {
@@ -63,10 +63,11 @@ FigureResult order_paper(const FigureRequest& request) {
         Settings settings;
         settings.formulation = name;
         settings.integrator = "implicit_euler";
+        settings.retry = false;
         settings.stopping = "correction";
         settings.step = step;
-        settings.end = settings.every = kEnd;
-        settings.tolerance = kPosition / (step * step);
+        settings.end = settings.every = kPaperEnd;
+        settings.tolerance = kPaperPosition / (step * step);
         const std::optional<Motion> found = motion_of(scene, settings, result);
         if (!found) continue;
         const BodyState& state = found->bodies.back()[coordinate.body];

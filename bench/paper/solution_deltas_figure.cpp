@@ -15,7 +15,7 @@ namespace poinsot::paper {
 using namespace study;
 namespace {
 
-constexpr double kEvery = 0.01;                  // s between points
+constexpr double kBetweenPoints = 0.01;          // s between points
 constexpr std::size_t kSecond = 101;             // points of the first second
 constexpr std::size_t kBody = 1;                 // body 2 of the paper
 constexpr double kSteps[] = {1e-2, 1e-3, 1e-4};  // the paper's
@@ -37,7 +37,7 @@ std::vector<double> heights(const Scene& scene, const Settings& settings, Figure
 std::vector<Point> difference(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<Point> points;
   for (std::size_t n = 0; n < std::min(x.size(), y.size()); ++n)
-    points.push_back({static_cast<double>(n) * kEvery, x[n] - y[n]});
+    points.push_back({static_cast<double>(n) * kBetweenPoints, x[n] - y[n]});
   return points;
 }
 
@@ -54,7 +54,7 @@ FigureResult solution_deltas(const FigureRequest& request) {
   FigureResult result;
   Settings settings;
   settings.end = request.quick ? 1 : 5;
-  settings.every = kEvery;
+  settings.every = kBetweenPoints;
   settings.rtol = 1e-13;
   settings.atol = 1e-14;
   settings.integrator = "dop853";
@@ -79,6 +79,7 @@ FigureResult solution_deltas(const FigureRequest& request) {
   std::vector<std::vector<double>> first;  // by step, of the first formulation: rA
   std::vector<Curve> between;              // of the others from it
   settings.integrator = "implicit_euler";
+  settings.retry = false;
   settings.stopping = "correction";
   for (const FormulationEntry& formulation : formulations()) {
     settings.formulation = formulation.name;

@@ -13,17 +13,17 @@
 namespace poinsot::study {
 namespace {
 
-constexpr double kNone = 1e-6;       // of the other kind of motion
-constexpr double kRest = 1e-10;      // of what takes its place then: rounding
-constexpr double kNoLength = 1e-12;  // m: rounding
+constexpr double kNegligible = 1e-6;  // of the other kind of motion
+constexpr double kRest = 1e-10;       // of what takes its place then: rounding
+constexpr double kNoLength = 1e-12;   // m: rounding
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Sizes of linear and angular motion; where one is rounding, the other stands in, and where both are, `usual`, a linear
 // one.
 void settle(double& linear, double& angular, double length, double usual) {
   if (std::max(linear, length * angular) < kRest * usual) linear = usual;
-  if (linear < kNone * length * angular) linear = length * angular;
-  if (angular * length < kNone * linear) angular = linear / length;
+  if (linear < kNegligible * length * angular) linear = length * angular;
+  if (angular * length < kNegligible * linear) angular = linear / length;
 }
 
 // A multiplier as a force, N.

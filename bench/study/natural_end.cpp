@@ -13,9 +13,9 @@
 namespace poinsot::study {
 namespace {
 
-constexpr double kTravel = 15;  // rad, or sizes of the mechanism
-constexpr double kLast = 1000;  // s
-constexpr double kLongest = 2;  // s of computing
+constexpr double kTravel = 15;        // rad, or sizes of the mechanism
+constexpr double kLast = 1000;        // s
+constexpr double kLongestSearch = 2;  // s of computing
 
 // The nearest of 1, 2, 3, 5 times a power of ten, by ratio.
 double rounded(double t) {
@@ -54,7 +54,8 @@ double natural_end(const Scene& scene) {
     before = bodies;
     t = sample.t;
     reached = *std::max_element(travel.begin(), travel.end()) >= kTravel;
-    if (reached || std::chrono::steady_clock::now() - began > std::chrono::duration<double>(kLongest)) throw Enough{};
+    if (reached || std::chrono::steady_clock::now() - began > std::chrono::duration<double>(kLongestSearch))
+      throw Enough{};
   };
   try {
     const Outcome outcome = simulate(scene, settings, watch);

@@ -23,7 +23,7 @@ struct MethodEntry {
 };
 constexpr MethodEntry kMethods[] = {
     {"dop853", "rA", 1e-13}, {"dop853", "rp", 1e-13}, {"ida", "rp", 1e-12}, {"radau5", "rA", 1e-13}};
-constexpr double kLongest = 30;      // s, of a run: an explicit method on a stiff scene is given up
+constexpr double kLongestRun = 30;   // s, of a run: an explicit method on a stiff scene is given up
 constexpr double kApart = 100;       // ratio of a method's two tolerances
 constexpr double kCreeping = 5;      // a tight run this many times as long as the loose one is lost in rounding
 constexpr double kLeastLongest = 1;  // s, that a tight run is always given
@@ -141,9 +141,9 @@ Pair tightest_pair(const Scene& scene, const MethodEntry& entry, const Reference
   method.tight = std::max(std::pow(10.0, -asked.digits - 1), entry.smallest);
   for (int retreat = 0;; ++retreat, method.tight *= kRetreat) {
     method.loose = kApart * method.tight;
-    Timed run = timed(scene, settings_of(method, method.loose, asked), kLongest);
-    const bool hopeless = run.seconds >= kLongest;
-    const double longest = std::clamp(kCreeping * run.seconds, kLeastLongest, kLongest);
+    Timed run = timed(scene, settings_of(method, method.loose, asked), kLongestRun);
+    const bool hopeless = run.seconds >= kLongestRun;
+    const double longest = std::clamp(kCreeping * run.seconds, kLeastLongest, kLongestRun);
     method.failure = run.failure;
     pair.loose = std::move(run.motion);
     if (method.failure.empty()) {

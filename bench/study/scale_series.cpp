@@ -19,7 +19,7 @@ struct Quantity {
   int from = 100;  // bodies from which a power is fitted; below, what a run costs at any size weighs in
 };
 constexpr const char* kIntegrator = "implicit_euler";
-constexpr Quantity kQuantities[] = {
+constexpr Quantity kMeasured[] = {
     {"us/body", "step, µs per body and iteration", &IsolatedRun::us_per_body, true},
     {"assembly", "assembly, µs per body and iteration", &IsolatedRun::assembly, true},
     {"factor", "factorization, µs per body and iteration", &IsolatedRun::factor, true},
@@ -64,10 +64,10 @@ std::vector<std::string> names(const Series& series) {
 }
 
 // A series ends where ten times the bodies would take longer than this at the same cost per body.
-constexpr double kLongestRun = 60;  // s
+constexpr double kLongestOfSize = 60;  // s
 
-bool too_long(const std::vector<IsolatedRun>& runs) {
-  return good(runs) && 10 * runs.front().seconds > kLongestRun;
+bool take_too_long(const std::vector<IsolatedRun>& runs) {
+  return good(runs) && 10 * runs.front().seconds > kLongestOfSize;
 }
 
 std::vector<int> sizes(int most) {
@@ -97,13 +97,13 @@ Table cost_table(const std::vector<Series>& all) {
               "step, in which the linear solver chooses its pivots.",
               {"structure", "formulation", "linear solver", "bodies"},
               {}};
-  for (const Quantity& quantity : kQuantities) table.header.emplace_back(quantity.column);
+  for (const Quantity& quantity : kMeasured) table.header.emplace_back(quantity.column);
   for (const Series& series : all) {
     for (const auto& runs : series.runs) {
       if (!good(runs)) continue;
       std::vector<std::string> row = names(series);
       row.push_back(std::to_string(runs.front().bodies));
-      for (const Quantity& quantity : kQuantities) row.push_back(fmt::format("{:.3f}", median(runs, quantity.figure)));
+      for (const Quantity& quantity : kMeasured) row.push_back(fmt::format("{:.3f}", median(runs, quantity.figure)));
       table.rows.push_back(row);
     }
   }
@@ -121,13 +121,13 @@ Table growth_table(const std::vector<Series>& all) {
        "from bodies", "to bodies", "largest / smallest"},
       {}};
   for (const Series& series : all) {
-    if (!exponent(series, kQuantities[0])) continue;
+    if (!exponent(series, kMeasured[0])) continue;
     std::vector<std::string> row = names(series);
-    for (const Quantity& quantity : kQuantities) {
+    for (const Quantity& quantity : kMeasured) {
       const std::optional<double> fitted = exponent(series, quantity);
       row.push_back(fitted ? fmt::format("{:.3f}", *fitted) : "-");
     }
-    std::vector<Point> fitted = points(series, kQuantities[0]);
+    std::vector<Point> fitted = points(series, kMeasured[0]);
     std::erase_if(fitted, [](const Point& point) { return !point.in_fit; });
     row.push_back(fmt::format("{:g}", fitted.front().x));
     row.push_back(fmt::format("{:g}", fitted.back().x));
@@ -141,7 +141,7 @@ PanelPlot scaling_plot(const std::vector<Series>& all) {
   PanelPlot plot{"scaling_plot", "Cost over the number of bodies: implicit Euler, exact Newton matrix", "bodies", ""};
   plot.columns = 4;
   plot.shared = false;  // their units differ
-  for (const Quantity& quantity : kQuantities) {
+  for (const Quantity& quantity : kMeasured) {
     for (const Series& series : all)
       plot.curves.push_back({quantity.panel, std::string(series.structure->name),
                              fmt::format("{}, {}", series.settings.formulation, series.settings.linear_solver),
@@ -169,7 +169,7 @@ std::vector<Series> measure_scale(const ScaleRequest& request, const ProgressCal
         counter.next();
         auto& runs = series.runs[n];
         if (repetition > 0 && !good(runs)) continue;
-        if (n > 0 && too_long(series.runs[n - 1])) {
+        if (n > 0 && take_too_long(series.runs[n - 1])) {
           const IsolatedRun& before = series.runs[n - 1].front();
           runs.push_back({fmt::format("{}, {} bodies took {:.0f} s", kLeftOut, before.bodies, before.seconds)});
           continue;

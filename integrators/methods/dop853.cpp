@@ -4,6 +4,7 @@
 
 namespace poinsot {
 namespace {
+namespace dop853_tableau {
 
 constexpr Term a2[] = {{0, 0.0526001519587677318785587544488}};
 constexpr Term a3[] = {{0, 0.0197250569845378994544595329183}, {1, 0.0591751709536136983633785987549}};
@@ -110,14 +111,15 @@ constexpr RungeKuttaPair kPair{"dop853",
                                {0.8, 1.0 / 8 - 0.75 * kBeta, kBeta, 1.0 / 3, 6},
                                6.1};
 
+}  // namespace dop853_tableau
 }  // namespace
 
 const RungeKuttaPair& dop853_pair() {
-  return kPair;
+  return dop853_tableau::kPair;
 }
 
 std::unique_ptr<Integrator> make_dop853() {
-  return make_explicit_runge_kutta(kPair);
+  return make_explicit_runge_kutta(dop853_tableau::kPair);
 }
 
 }  // namespace poinsot

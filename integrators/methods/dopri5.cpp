@@ -4,6 +4,7 @@
 
 namespace poinsot {
 namespace {
+namespace dopri5_tableau {
 
 constexpr Term a2[] = {{0, 1.0 / 5}};
 constexpr Term a3[] = {{0, 3.0 / 40}, {1, 9.0 / 40}};
@@ -24,14 +25,15 @@ constexpr double kBeta = 0.04;
 constexpr RungeKuttaPair kPair{
     "dopri5", 5, stages, b, error, {}, {}, dense, {0.9, 1.0 / 5 - 0.75 * kBeta, kBeta, 0.2, 10}, 3.25};
 
+}  // namespace dopri5_tableau
 }  // namespace
 
 const RungeKuttaPair& dopri5_pair() {
-  return kPair;
+  return dopri5_tableau::kPair;
 }
 
 std::unique_ptr<Integrator> make_dopri5() {
-  return make_explicit_runge_kutta(kPair);
+  return make_explicit_runge_kutta(dopri5_tableau::kPair);
 }
 
 }  // namespace poinsot

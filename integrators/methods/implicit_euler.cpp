@@ -11,12 +11,17 @@ class ImplicitEuler final : public FixedSteps {
   explicit ImplicitEuler(const Run& run)
       : FixedSteps(run),
         policy_(jacobians().require(settings_.jacobian)),
-        scale_{1, h_, h_ * h_},
         system_(problem_, run.systems.add(policy_.workload()), policy_.matrix, run.statistics, clock_),
         newton_(problem_, system_, settings_, policy_.refresh, run.statistics),
-        dq_(nv_) {}
+        dq_(nv_) {
+    resize(h_);
+  }
 
   double index3_scale() const override { return scale_.position; }
+  void resize(double) override {
+    scale_ = {1, h_, h_ * h_};
+    newton_.renew();
+  }
   Status prepare() override { return system_.prepare(); }
 
   // The unknowns are a = (r̈, ω̄̇) and λ at t_{n+1}, in x_.z. Numbers are those of the paper's equations for rA; rp has
@@ -59,7 +64,7 @@ class ImplicitEuler final : public FixedSteps {
   }
 
   const JacobianEntry& policy_;
-  const StepScale scale_;
+  StepScale scale_;
   StepSystem system_;
   NewtonLoop newton_;
   Vector dq_;  // the variation that leads from q_n to q

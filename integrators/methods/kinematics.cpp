@@ -19,7 +19,7 @@ namespace {
 // A step is certain up to this ratio of the first two corrections (by Newton and Kantorovich the solution is the only
 // one about the prediction then), and up to this turn of a driven angle.
 constexpr double kContraction = 0.25;
-constexpr double kTurn = 1;
+constexpr double kFullTurn = 1;
 // Where so small a part of a step is not certain the position is examined, and is singular where a row is independent
 // of the others by no more than kSingular of its length: beside a singular position others are known to rounding's
 // root.
@@ -76,7 +76,8 @@ class Kinematics final : public FixedSteps {
     return {};
   }
 
-  Problem& stand() override { return problem_; }  // it does after every step
+  bool divides() const override { return false; }  // it does so itself, where it is not certain
+  Problem& stand() override { return problem_; }   // it does after every step
   // What turns far is followed in shorter steps, but for the torque of springs.
   Status check_turns(Problem& problem, double t) override {
     const bool counts = inverse_dynamics_ && !problem.model().torsions.empty();
@@ -109,7 +110,7 @@ class Kinematics final : public FixedSteps {
   bool certain(double h, double t) {
     if (contraction_ > kContraction) return false;
     const CountedTurn turn = problem_.counted_turn();
-    if (turn.driver >= 0 && h * turn.rate > kTurn) return false;
+    if (turn.driver >= 0 && h * turn.rate > kFullTurn) return false;
     const std::uint64_t here = system_.orientation();
     if (here != orientation_ && !(rows_change_ && here == orientation_before(t))) return false;
     orientation_ = here;

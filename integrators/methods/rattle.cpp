@@ -27,6 +27,10 @@ class Rattle final : public FixedSteps {
         zeros_(Vector::Zero(nv_ + nc_)) {}
 
   Status prepare() override { return ends_.prepare(); }
+  void forget() override {
+    stand();
+    if (complete().ok()) z_ = x_.z;
+  }
 
   Status begin() override {
     if (Status status = FixedSteps::begin(); !status.ok()) return status;

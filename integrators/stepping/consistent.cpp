@@ -19,12 +19,6 @@ constexpr double kRounding = 1e-15;    // product of two corrections that leaves
 constexpr double kJump = 1e-9;         // relative to the largest coordinate: more than rounding of a time leads to
 constexpr double kNegligible = 1e-14;  // a correction of this size is the rounding of the coordinates
 
-double largest(std::span<const double> x) {
-  double m = 0;
-  for (double e : x) m = std::isfinite(e) ? std::max(m, std::abs(e)) : HUGE_VAL;
-  return m;
-}
-
 }  // namespace
 
 Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock)

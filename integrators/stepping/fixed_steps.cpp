@@ -1,5 +1,7 @@
 #include "integrators/stepping/fixed_steps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -8,6 +10,31 @@
 #include "integrators/stepping/turning.h"
 
 namespace poinsot {
+namespace {
+
+constexpr int kHalvings = 10;  // of a step that fails
+
+// What the size of a step has a part in.
+bool may_be_too_long(Failure failure) {
+  return failure == Failure::not_converged || failure == Failure::not_finite || failure == Failure::singular_matrix;
+}
+
+// Parts of a step creep up to a singular position, where a whole step goes over it: there rounding may choose the
+// branch, and velocities jump. Those of a step worth its name change by a fraction, as accelerations beside such a
+// position do not.
+bool jumps(std::span<const BodyState> before, std::span<const BodyState> after) {
+  constexpr double kFraction = 0.5;
+  double way = 0, turn = 0, speed = 0, rate = 0;
+  for (std::size_t b = 0; b < before.size(); ++b) {
+    way = std::max(way, (after[b].rd - before[b].rd).norm());
+    turn = std::max(turn, (after[b].w - before[b].w).norm());
+    speed = std::max(speed, before[b].rd.norm());
+    rate = std::max(rate, before[b].w.norm());
+  }
+  return way > kFraction * speed || turn > kFraction * rate;
+}
+
+}  // namespace
 
 FixedSteps::FixedSteps(const Run& run)
     : run_(run),
@@ -20,42 +47,89 @@ FixedSteps::FixedSteps(const Run& run)
       x_(run.state),
       q_n_(run.state.q),
       v_n_(run.state.v),
+      discrete_(run.problem.has_discrete_state()),
       output_(run.settings) {}
 
 Status FixedSteps::march() {
   if (Status status = prepare(); !status.ok()) return status;
-  const bool discrete = problem_.has_discrete_state();
   Status status = begin();
   if (status.ok()) status = measure_rotation(problem_, 0);
+  const int halvings = settings_.retry && divides() ? kHalvings : 0;
   for (std::int64_t n = 1; n <= grid_.steps && status.ok(); ++n) {
     if (interruption_requested) {
       status = interrupted(x_.t);
       break;
     }
-    if (rewritten_) {
-      rewritten_ = false;
-      if (status = resume(); !status.ok()) break;
-    }
-    q_n_.swap(x_.q);
-    v_n_.swap(x_.v);
-    status = step(grid_.time(n));
-    if (status.ok()) status = measure_rotation(last_seen(), grid_.time(n));
-    if (!status.ok()) {
-      x_.q.swap(q_n_);
-      x_.v.swap(v_n_);
-      break;
-    }
-    x_.t = grid_.time(n);
-    ++run_.statistics.steps;
-    if (!discrete && !grid_.sampled(n)) continue;
-    Problem& problem = stand();
-    if (discrete) status = accept(problem);
-    if (status.ok() && grid_.sampled(n)) status = give_out(problem);
+    const bool sampled = grid_.sampled(n);
+    const std::int64_t before = run_.statistics.steps;
+    status = reach_in_halves(grid_.time(n), sampled, halvings);
+    if (run_.statistics.steps > before + 1) ++run_.statistics.divided_steps;
+    if (status.ok() && sampled) status = give_out(*standing_);
   }
   finish(clock_, run_.statistics);
   if (!status.ok()) x_.z = run_.state.z;  // not what Newton's method left
   run_.state = x_;
+  if (const std::int64_t divided = run_.statistics.divided_steps; divided > 0)
+    run_.tell(fmt::format("steps that failed as a whole and were done in parts: {} of {}, parts of {:.2g} s and more",
+                          divided, grid_.steps, shortest_));
   return status;
+}
+
+// The step from x_ to t, brought up to date where coordinates have to be, or a sample is taken there.
+Status FixedSteps::reach(double t, bool sampled) {
+  if (rewritten_) {
+    rewritten_ = false;
+    if (Status status = resume(); !status.ok()) return status;
+  }
+  q_n_.swap(x_.q);
+  v_n_.swap(x_.v);
+  Status status = step(t);
+  if (status.ok()) status = measure_rotation(last_seen(), t);
+  if (!status.ok()) {
+    x_.q.swap(q_n_);
+    x_.v.swap(v_n_);
+    return status;
+  }
+  x_.t = t;
+  ++run_.statistics.steps;
+  if (!discrete_ && !sampled) return {};
+  standing_ = &stand();
+  return discrete_ ? accept(*standing_) : Status{};
+}
+
+Status FixedSteps::reach_in_halves(double t, bool sampled, int halvings) {
+  if (halvings > 0) z_began_ = x_.z;
+  const double began = x_.t;
+  const Status as_one = reach(t, sampled);
+  if (as_one.ok() || halvings == 0 || !may_be_too_long(as_one.failure) || x_.t > began) return as_one;
+  const double h = h_, half = began + 0.5 * (t - began);
+  if (!(began < half && half < t)) return as_one;
+  x_.z = z_began_;
+  forget();
+  const bool outermost = halvings == kHalvings;
+  const std::vector<BodyState> before = outermost ? bodies() : std::vector<BodyState>{};
+  const State state = x_;
+  set_step(0.5 * h);
+  Status status = reach_in_halves(half, false, halvings - 1);
+  if (status.ok()) status = reach_in_halves(t, sampled, halvings - 1);
+  shortest_ = shortest_ > 0 ? std::min(shortest_, 0.5 * h) : 0.5 * h;
+  set_step(h);
+  if (status.ok() && outermost && jumps(before, bodies())) {
+    x_ = state;
+    return as_one;
+  }
+  return status;
+}
+
+std::vector<BodyState> FixedSteps::bodies() {
+  std::vector<BodyState> states(index(problem_.bodies()));
+  stand().to_bodies(x_.a(), states);
+  return states;
+}
+
+void FixedSteps::set_step(double h) {
+  const double before = std::exchange(h_, h);
+  resize(before);
 }
 
 Status FixedSteps::measure_rotation(Problem& problem, double t) {

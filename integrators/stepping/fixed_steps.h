@@ -3,9 +3,12 @@
 //
 // A method derives from FixedSteps, says what its step is, and overrides what else it does differently. March calls
 //   prepare, begin,   then for every t_n:   [resume] step [stand [accept] [complete, sample]]
+// A step that fails numerically is done in two halves, and those that fail again in halves of them, down to h/2^10:
+// then resize and, after a failure, forget are called besides.
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "integrators/stepping/index1_output.h"
 #include "integrators/stepping/observe.h"
@@ -47,6 +50,12 @@ class FixedSteps {
   // δq/δa of a step whose (a, λ) are solved from Φ = 0, by which rounding is magnified and better may be given out;
   // else 0.
   virtual double index3_scale() const { return 0; }
+  // Whether a step that fails may be done in parts, of other lengths than the rest.
+  virtual bool divides() const { return true; }
+  // The next step is one of h_, which has been `before`.
+  virtual void resize(double /*before*/) {}
+  // The step failed: x_ is what it was before, and so is to be all else.
+  virtual void forget() {}
 
   void place(Problem& problem) const {
     problem.set_position(x_.t, span(x_.q));
@@ -63,16 +72,24 @@ class FixedSteps {
   const Settings& settings_;
   PhaseClock clock_;
   const TimeGrid grid_;
-  const double h_;
+  double h_;  // of the step under way
   const Eigen::Index nv_, nc_;
   State x_;
   Vector q_n_, v_n_;  // where the step began
 
  private:
+  Status reach(double t, bool sampled);
+  Status reach_in_halves(double t, bool sampled, int halvings);
+  void set_step(double h);
+  std::vector<BodyState> bodies();  // where x_ is
   Status measure_rotation(Problem& problem, double t);
 
+  const bool discrete_;
   bool rewritten_ = false;
-  double rotation_ = 0;  // of the last step, the largest of a body
+  Problem* standing_ = nullptr;  // the problem that stands at x_
+  Vector z_began_;               // of a step that may be divided, where it began
+  double shortest_ = 0;          // of the steps done
+  double rotation_ = 0;          // of the last step, the largest of a body
   Vector change_;
   Index1Output output_;
 };

@@ -10,12 +10,6 @@ namespace {
 constexpr double kOfNoAccount = 1e-7;
 constexpr double kExplained = 100;  // so many times its estimate rounding may be: the steps add it up
 
-double largest(std::span<const double> x) {
-  double m = 0;
-  for (double e : x) m = std::max(m, std::abs(e));
-  return m;
-}
-
 double apart(std::span<const double> x, std::span<const double> y) {
   double m = 0;
   for (std::size_t k = 0; k < x.size(); ++k) m = std::max(m, std::abs(x[k] - y[k]));

@@ -25,7 +25,7 @@ double rounding_of(const Problem& problem, const Eigen::VectorXd& q) {
   return 16 * kEpsilon * std::sqrt(problem.bodies()) * std::max(1.0, q.cwiseAbs().maxCoeff());
 }
 
-double largest(const auto& x) {
+double max_norm(const auto& x) {
   return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0;
 }
 
@@ -57,41 +57,44 @@ double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
   const double size = std::max(std::sqrt(sum / problem_.bodies()), problem_.model().gravity.norm());
   const double accelerations = most == 0 ? 0 : std::sqrt(most) / size;
   if (of_this_step) return accelerations;
-  const double multipliers = largest(delta_.tail(problem_.nc()));
-  return multipliers == 0 ? accelerations : std::max(accelerations, multipliers / largest(z.tail(problem_.nc())));
+  const double multipliers = max_norm(delta_.tail(problem_.nc()));
+  return multipliers == 0 ? accelerations : std::max(accelerations, multipliers / max_norm(z.tail(problem_.nc())));
 }
 
 bool NewtonLoop::is_rounding(double position, const Vector& q) const {
-  return position * largest(delta_.head(problem_.nv())) <= rounding_of(problem_, q);
+  return position * max_norm(delta_.head(problem_.nv())) <= rounding_of(problem_, q);
 }
 
 void NewtonLoop::measure_gradient() {
   Vector sums = Vector::Zero(problem_.nv());
   for (const Eigen::Triplet<double>& entry : gradient(problem_)) sums[entry.col()] += std::abs(entry.value());
-  gradient_ = largest(sums);
+  gradient_ = max_norm(sums);
 }
 
 // The residual is in delta_.
 bool NewtonLoop::balanced(double position, const Vector& z, const Vector& q) {
-  if (!(position * largest(delta_.tail(problem_.nc())) <= rounding_of(problem_, q))) return false;
+  if (!(position * max_norm(delta_.tail(problem_.nc())) <= rounding_of(problem_, q))) return false;
   problem_.momentum(span(z).first(index(problem_.nv())), span(momentum_));
-  return largest(delta_.head(problem_.nv())) <=
-         256 * kEpsilon * (largest(momentum_) + gradient_ * largest(z.tail(problem_.nc())));
+  return max_norm(delta_.head(problem_.nv())) <=
+         256 * kEpsilon * (max_norm(momentum_) + gradient_ * max_norm(z.tail(problem_.nc())));
 }
 
 Status NewtonLoop::not_converged(double t, double correction) const {
+  const bool divided = settings_.retry;  // to where it does not help
   if (!std::isfinite(correction)) {
     return {Failure::not_finite, t,
-            fmt::format("at t = {:.9g} s Newton's correction is not finite; try a smaller step", t)};
+            fmt::format("at t = {:.9g} s Newton's correction is not finite; try {}", t,
+                        divided ? "an integrator with error control" : "a smaller step")};
   }
   Eigen::Index largest = 0;
   delta_.cwiseAbs().maxCoeff(&largest);
   return {Failure::not_converged, t,
           fmt::format("at t = {:.9g} s Newton's method did not converge: after {} iterations the correction is {:.3g}, "
-                      "the tolerance {:.3g}; the largest correction is that of {}; try a smaller step, the exact "
-                      "jacobian or a larger tolerance",
+                      "the tolerance {:.3g}; the largest correction is that of {}; try {}, the exact jacobian or a "
+                      "larger tolerance",
                       t, settings_.max_iterations, correction, settings_.tolerance,
-                      problem_.describe_unknown(static_cast<int>(largest)))};
+                      problem_.describe_unknown(static_cast<int>(largest)),
+                      divided ? "an integrator with error control" : "a smaller step")};
 }
 
 }  // namespace poinsot

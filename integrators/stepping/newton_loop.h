@@ -72,6 +72,9 @@ class NewtonLoop {
     return not_converged(t, correction);
   }
 
+  // The step's size has changed: a kept matrix is that of another.
+  void renew() { slow_ = true; }
+
  private:
   // A kept matrix is made anew where corrections shrink by less than this: four more iterations would cost more.
   static constexpr double kSlow = 0.25;

@@ -21,7 +21,7 @@ constexpr int kSweeps = 3;         // of δq in a Newton iteration
 constexpr int kFirstSweeps = 8;    // from the predicted stages
 constexpr double kFast = 0.03;     // rate of convergence up to which a matrix is kept
 constexpr double kTrusted = 0.05;  // θ/(1 − θ) of the last step below which this step's is not trusted to be
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kRoundoff = std::numeric_limits<double>::epsilon();
 
 struct Tableau {
   Matrix A;
@@ -256,7 +256,7 @@ Status RadauStepper::newton(const State& from, double to, Linearized& linear) {
   if (Status status = refresh(from, to, linear); !status.ok()) return status;
   end_of_step(from, to, stage_);
   set_scale(from, stage_.q, stage_.v);
-  const double enough = std::max(10 * kEpsilon / rtol_, std::min(0.03, std::sqrt(rtol_)));
+  const double enough = std::max(10 * kRoundoff / rtol_, std::min(0.03, std::sqrt(rtol_)));
   convergence_ = std::max(std::pow(convergence_, 0.8), kTrusted);
   const bool patient = &linear == &within_;
   double before = 0, rate_before = 0;
@@ -294,7 +294,7 @@ Status RadauStepper::newton(const State& from, double to, Linearized& linear) {
       fast_ = fast_ || k == 0;
       return {};
     }
-    before = std::max(change, kEpsilon);
+    before = std::max(change, kRoundoff);
   }
   return {Failure::not_converged, from.t, {}};  // no words: the step is tried again, and words are allocated
 }
