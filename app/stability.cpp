@@ -11,6 +11,7 @@
 #include "app/signals.h"
 #include "app/terminal.h"
 #include "bench/cases/executor.h"
+#include "bench/stability/amplification.h"
 #include "bench/stability/maps.h"
 #include "bench/stability/suite.h"
 #include "bench/study/report.h"
@@ -82,13 +83,17 @@ int map(const Options& options) {
   }
   std::vector<std::string> foot = origin_lines(-1);
   foot.push_back(options.quick ? "settings: --quick, fewer places along each axis" : "settings: full");
-  const std::string why = write_maps(maps, options.out, foot);
+  std::string why = write_maps(maps, options.out, foot);
+  if (options.families.empty())
+    if (const std::string none = write_plots({amplification_plot(options.quick)}, options.out, foot); why.empty())
+      why = none;
   if (!why.empty()) print_notice(why);
   Report report{"Where methods fail", "", tables(maps), foot};
   std::string pictures;
   for (const Mapped& one : maps)
     pictures += fmt::format("**{}**: {}.\n\n{}", one.family->title, one.family->about,
                             why.empty() ? fmt::format("![{}]({}.svg)\n\n", one.family->title, one.family->name) : "");
+  if (options.families.empty() && why.empty()) pictures += "![Spectral radius](amplification.svg)\n\n";
   report.tables.front().text = pictures + report.tables.front().text;
   const std::vector<fs::path> written = write_report(report, options.out, "stability");
   if (options.quiet) return kDone;

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "bench/stability/edges.h"
@@ -45,15 +47,15 @@ std::string posts(std::string_view parameters, std::string_view joints) {
 
 Family flat(std::string_view joints) {
   Family f;
-  f.scenes = {posts(R"json("x": 1.5)json", joints)};
+  f.scenes = {posts(R"json("x": 1)json", joints)};
   f.x = {Axis::parameter,
          "angle before the flat position at the start, rad",
          "x",
-         {0, 1e-15, 1e-13, 1e-10, 1e-7, 1e-4, 1e-2, 0.1, 1.5},
-         {0, 1e-13, 1e-7, 0.1, 1.5},
+         {0, 1e-15, 1e-13, 1e-10, 1e-7, 1e-4, 1e-2, 0.1, 1},
+         {0, 1e-13, 1e-7, 0.1, 1},
          {},
          {},
-         1.5};
+         1};
   f.y = {Axis::accuracy, "step, s | rtol", "", {20, 80, 320, 1280}, {20, 320}, {1e-4, 1e-6, 1e-8, 1e-10}, {1e-4, 1e-8}};
   f.end = 0.2;
   f.columns = {"post.x", "post.y", "coupler.x", "coupler.y"};
@@ -110,6 +112,10 @@ Family dp1_driver() {
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     const double angle = at.x + 4 * (t - 0.5) * (t - 0.5);
     return {{std::cos(angle), std::sin(angle)}};
+  };
+  f.floor = [](const Place& at) {  // what rounding of the cosine leaves open of the angle
+    const double epsilon = std::numeric_limits<double>::epsilon();
+    return at.y < 2 ? epsilon / std::max(at.x, std::sqrt(epsilon)) : 0;
   };
   return f;
 }

@@ -9,6 +9,7 @@ namespace poinsot::stability {
 namespace {
 
 constexpr double kGravity = 9.81;
+constexpr double kIndex3 = 1e-7;  // of rounding up to which accelerations of index 3 are given out (index1_output.cpp)
 
 // Two rods of 1 m in a row, masses 1 and m, angles from the horizontal y axis: 0 and 1 rad at rest.
 std::vector<double> double_pendulum(double m, double g, double t) {
@@ -172,6 +173,7 @@ Family rounding_accelerations() {
     return {{r.ay, r.az}};
   };
   f.size = [](const Place&) { return kGravity; };
+  f.floor = [](const Place&) { return kIndex3; };
   return f;
 }
 
@@ -185,6 +187,7 @@ Family rounding_reactions() {
     return {{r.fy, r.fz}};
   };
   f.size = [](const Place&) { return kGravity; };
+  f.floor = [](const Place&) { return kIndex3; };
   return f;
 }
 

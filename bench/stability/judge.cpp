@@ -12,13 +12,15 @@ namespace poinsot::stability {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kCoarse = 0.01;  // relative to the motion
-constexpr double kSlack = 10;     // a digit
-constexpr double kNewton = 1e-9;  // integrators/README.md
-constexpr double kNudge = 1e-6;   // relative
-constexpr double kAtol = 0.01;    // over rtol: the default
-constexpr double kPerBody = 12;   // numbers of a state
-constexpr double kHuge = 1e300;   // an error without a number
+constexpr double kCoarse = 0.01;                  // relative to the motion
+constexpr double kSlack = 10;                     // a digit
+constexpr double kRounding = 1e-7, kShows = 0.1;  // between them an error shows its order
+constexpr double kNewton = 1e-9;                  // integrators/README.md
+constexpr double kLeastSensitivity = 0.1;         // of driven motions, which have none
+constexpr double kNudge = 1e-6;                   // relative
+constexpr double kAtol = 0.01;                    // over rtol: the default
+constexpr double kPerBody = 12;                   // numbers of a state
+constexpr double kHuge = 1e300;                   // an error without a number
 
 bool fixed(const Axis& axis) {
   return axis.along == Axis::parameter || axis.along == Axis::variant;
@@ -38,7 +40,7 @@ class Truths {
 
   struct Motion {
     std::vector<std::vector<double>> values;  // of each that may be, by column and time as those of a cell
-    double sensitivity = 1;
+    double sensitivity = 0;
   };
   const Motion& at(const Place& place, std::size_t times) {
     const auto [found, fresh] = known_.try_emplace(std::tuple(place.x, place.y, place.end));
@@ -61,7 +63,7 @@ class Truths {
     return all;
   }
   Motion compute(Place place, std::size_t times) const {
-    Motion motion{motions(place, times), 1};
+    Motion motion{motions(place, times), 0};
     const double scale = size(place);
     place.nudge = kNudge;
     const std::vector<double> nudged = motions(place, times).front();
@@ -96,9 +98,9 @@ std::string without_numbers(std::string message) {
 
 // What the benign cells of a method show of it.
 struct Method {
-  const Cell* coarsest = nullptr;  // with an error that shows its order
-  double constant = kNone;         // C
-  std::set<std::string> said;      // without numbers
+  double constant = 0;           // C
+  const Cell* finest = nullptr;  // of those that do not show it
+  std::set<std::string> said;    // without numbers
 };
 
 }  // namespace
@@ -114,8 +116,11 @@ void judge(const Family& family, std::vector<Cell>& cells) {
   const auto truth_of = [&](const Cell& cell) -> const Truths::Motion& {
     return truths.at(place_of(family, cell), cell.values.size() / columns);
   };
-  const auto relative_step = [&](const Cell& cell) {
-    return cell.step * (family.rate ? family.rate(place_of(family, cell)) : 1);
+  // S r T (h r)^p
+  const auto order_bound = [&](const Cell& cell) {
+    const double rate = family.rate ? family.rate(place_of(family, cell)) : 1;
+    return std::max(truth_of(cell).sensitivity, kLeastSensitivity) * rate * cell.end *
+           std::pow(cell.step * rate, integrators().require(cell.integrator).order);
   };
   for (Cell& cell : cells)
     cell.error = cell.ended() ? error(cell.values, truth_of(cell), truths.size(place_of(family, cell))) : kNone;
@@ -125,31 +130,29 @@ void judge(const Family& family, std::vector<Cell>& cells) {
     Method& method = methods[cell.method()];
     if (!cell.ended() || !benign(family, cell)) continue;
     method.said.insert(without_numbers(cell.message));
-    const auto key = [](const Cell& c) { return std::tuple(-c.step, c.end); };
-    if (cell.error < kCoarse && (!method.coarsest || key(cell) < key(*method.coarsest))) method.coarsest = &cell;
+    if (cell.error > kRounding && cell.error < kShows) {
+      method.constant = std::max(method.constant, cell.error / order_bound(cell));
+    } else if (!method.finest || cell.step < method.finest->step) {
+      method.finest = &cell;
+    }
   }
-  for (auto& [_, method] : methods) {
-    if (!method.coarsest) continue;
-    const Cell& cell = *method.coarsest;
-    const int order = integrators().require(cell.integrator).order;
-    method.constant = cell.error / (truth_of(cell).sensitivity * std::pow(relative_step(cell), order));
-  }
+  for (auto& [_, method] : methods)
+    if (method.constant == 0 && method.finest) method.constant = method.finest->error / order_bound(*method.finest);
 
   for (Cell& cell : cells) {
     cell.promised = kNone;
     if (!cell.ended()) continue;  // a stop
     const IntegratorEntry& integrator = integrators().require(cell.integrator);
     const Method& method = methods[cell.method()];
-    const double sensitivity = truth_of(cell).sensitivity;
+    const double sensitivity = std::max(truth_of(cell).sensitivity, 1.0);
     const Place place = place_of(family, cell);
     const double reach = family.reach ? std::max(1.0, family.reach(place)) : 1;
     const double tolerance = cell.rtol * (reach + kAtol / truths.size(place));
-    cell.promised =
-        integrator.controls_error
-            ? std::sqrt(kPerBody * static_cast<double>(cell.bodies)) * cell.steps * tolerance * sensitivity
-        : std::isnan(method.constant)
-            ? kCoarse
-            : kSlack * sensitivity * (method.constant * std::pow(relative_step(cell), integrator.order) + kNewton);
+    cell.promised = integrator.controls_error
+                        ? std::sqrt(kPerBody * static_cast<double>(cell.bodies)) * cell.steps * tolerance * sensitivity
+                    : method.constant == 0 && !method.finest
+                        ? kCoarse
+                        : kSlack * (method.constant * order_bound(cell) + sensitivity * kNewton);
     const double open = family.floor ? family.floor(place) : 0;
     cell.promised += kSlack * sensitivity * (std::numeric_limits<double>::epsilon() * reach + open);
     const bool warned = !family.warning.empty() && cell.message.find(family.warning) != std::string::npos;

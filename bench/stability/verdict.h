@@ -1,15 +1,14 @@
 // What a result is worth that came out of a run, by what was promised.
 //
-// E is the largest error of the family's columns at four times, relative to the size of the motion; S the motion's own
-// sensitivity: by what factor a small relative change of its initial velocity comes out changed, 1 at least. Promised
-// is
+// E is the largest error of the family's columns at four times, relative to the size L of the motion; S the motion's
+// own sensitivity: by what factor a small relative change of its initial velocity comes out changed. Promised is
 //
 //   error control   √n N S (rtol l + atol/L): each of N steps is held to rtol and atol in a norm over n numbers of the
-//                   state, and what it leaves is carried on by the motion; positions are l sizes L of it from the
-//                   origin
-//   fixed steps     10 S (C (h r)^p + 1e-9): C is that of the family's benign cells, by the coarsest of them with E <
-//   0.01,
-//                   r the rate of the motion relative to theirs; 1e-9 is what Newton's test leaves
+//                   state, and what it leaves is carried on by the motion; positions are l L from the origin; S >= 1
+//   fixed steps     10 (C S r T (h r)^p + 1e-9 S): each of the steps of a run of length T leaves so much of order p +
+//   1,
+//                   r being the rate of the motion, and C the largest so measured at the family's benign cells with
+//                   1e-7 < E < 0.1 (where there is none: at the finest); 1e-9 is what Newton's test leaves
 //                   (integrators/README.md)
 //
 // each with 10 S (ε l + what the family's data leave open) beside. Then a result is
