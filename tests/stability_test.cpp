@@ -80,9 +80,10 @@ TEST(StabilityVerdicts, OfAWrongResultAreWrong) {
     return right;
   };
   const std::vector<Cell> all = cells(family, {true, {"rA"}, {"dop853"}}, 1);
-  for (const Cell& cell : all)
-    if (cell.x <= 1e4 && cell.y >= 1)
-      EXPECT_EQ(cell.verdict, cell.x == 1e4 ? Verdict::wrong : Verdict::accurate) << text(cell);
+  for (const Cell& cell : all) {
+    if (cell.x > 1e4 || cell.y < 1) continue;
+    EXPECT_EQ(cell.verdict, cell.x == 1e4 ? Verdict::wrong : Verdict::accurate) << text(cell);
+  }
 }
 
 TEST(StabilitySuite, GivesTheSameCellsByOneAndTwoThreads) {
@@ -119,7 +120,7 @@ TEST(Amplification, IsThatOfTheKnownCurves) {
       for (const double damping : {0.0, 0.5}) {
         const Oscillator oscillator{rotation, constrained, damping};
         for (const std::string& formulation : test::formulation_names()) {
-          for (const double hw : {0.1, 1.0, 10.0, 100.0}) {
+          for (const double hw : {0.1, 1.0, 10.0, 40.0}) {
             SCOPED_TRACE(::testing::Message() << oscillator.name() << ' ' << formulation << ' ' << hw);
             const auto near = [&](const char* integrator, double known) {
               const auto measured = spectral_radius(oscillator, integrator, formulation, hw);

@@ -23,8 +23,8 @@ using Eigen::Matrix2d, Eigen::Matrix3d, Eigen::Vector2d;
 using Complex = std::complex<double>;
 
 const Vector3 kAxis(0.48, 0.6, 0.64);
-constexpr double kAngle = 1e-6, kWay = 1e-3;  // rad, m: the unit
-constexpr int kSteps = 4;
+constexpr double kAngle = 1e-6, kWay = 1e-6;  // rad, m: the unit
+constexpr int kSteps = 5;
 constexpr double kMost = 1.5;  // a radius that is drawn
 
 // Stiffness and inertia 1; starts at the unit state.
@@ -126,13 +126,14 @@ double radius(const Matrix& M) {
   return M.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-// Of y_{n+3} + c₂ y_{n+2} + c₁ y_{n+1} + c₀ y_n = 0 in both components of both sequences.
+// Of y_{n+3} + c₂ y_{n+2} + c₁ y_{n+1} + c₀ y_n = 0 in both components of both sequences, from the end of the first
+// step on: what a start makes of the accelerations is its own.
 double radius_of_recurrence(const Sequence& a, const Sequence& b) {
   Eigen::Matrix<double, 8, 3> known;
   Eigen::Matrix<double, 8, 1> next;
   Eigen::Index row = 0;
   for (const Sequence* y : {&a, &b})
-    for (std::size_t n = 0; n + 3 <= kSteps; ++n)
+    for (std::size_t n = 1; n + 3 <= kSteps; ++n)
       for (Eigen::Index k = 0; k < 2; ++k, ++row) {
         known.row(row) << (*y)[n][k], (*y)[n + 1][k], (*y)[n + 2][k];
         next[row] = -(*y)[n + 3][k];

@@ -107,7 +107,7 @@ Family dp1_driver() {
          {},
          {},
          0.5};
-  f.y = {Axis::variant, "driver", "", {0, 1, 2}, {0, 1, 2}, {}, {}, 2};
+  f.y = {Axis::variant, "driver (0: DP1, 1: DP1 with alternate, 2: angle)", "", {0, 1, 2}, {0, 1, 2}, {}, {}, 2};
   f.columns = {"rotor.x", "rotor.y"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     const double angle = at.x + 4 * (t - 0.5) * (t - 0.5);

@@ -9,10 +9,13 @@ LOOKS = {
     "accurate": ("#0072B2", "", "accurate: as order and tolerance promise"),
     "coarse": ("#9CCBE8", "", "coarse: the order promises no better"),
     "told": ("#F0E442", "!", "wrong, but the run says so"),
-    "stop": ("#BBBBBB", "–", "stopped, with a status"),
+    "stop": ("#C8C8C8", "", "stopped, with a status:"),
     "wrong": ("#D55E00", "×", "silently wrong"),
 }
-INK = {"told": "#000000", "stop": "#555555", "wrong": "#000000"}
+STATUS = {"not_converged": "n", "singular_matrix": "m", "orientation_singularity": "o", "not_finite": "f",
+          "inconsistent_state": "c", "constraint_lost": "l", "singular_position": "p", "rotation_too_large": "r",
+          "step_size_too_small": "s", "refused": "d", "input_error": "i"}
+INK = {"told": "#000000", "stop": "#333333", "wrong": "#000000"}
 
 
 def names(rows, column):
@@ -38,6 +41,8 @@ def draw_panel(axes, rows):
         colour, sign, _ = LOOKS[row["verdict"]]
         axes.add_patch(matplotlib.patches.Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor=colour, edgecolor="white",
                                                     linewidth=0.4))
+        if row["verdict"] == "stop":
+            sign = STATUS.get(row["status"], "?")
         if sign:
             axes.text(x, y, sign, ha="center", va="center", fontsize=7, color=INK[row["verdict"]])
     axes.set_xlim(-0.5, len(xs) - 0.5)
@@ -71,8 +76,10 @@ def draw(rows, notes):
                 axis.grid(False)
                 axis.text(0.5, 0.5, "refused", ha="center", va="center", fontsize=8, color="#777777",
                           transform=axis.transAxes)
+    stops = [f"{STATUS.get(status, '?')} {status}" for status in names(rows, "status") if status != "ok"]
     patches = [matplotlib.patches.Patch(facecolor=colour, edgecolor="#777777",
-                                        label=f"{text} {sign}".strip()) for colour, sign, text in LOOKS.values()]
+                                        label=f"{text} {', '.join(stops) or 'none'}" if text.endswith(":")
+                                        else f"{text} {sign}".strip()) for colour, sign, text in LOOKS.values()]
     figure.suptitle(note(notes, "title"), fontsize=12)
     figure.tight_layout(rect=(0.02, 0.95 / height, 1, 1 - 0.15 / height))
     figure.text(0.5, 0.75 / height, f"across: {note(notes, 'x')}; upwards: {note(notes, 'y')}", ha="center", fontsize=9.5)
