@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -121,28 +122,43 @@ Sequence sequence(const Oscillator& oscillator, bool moving, const IntegratorEnt
   return {};
 }
 
-template <class Matrix>
-double radius(const Matrix& M) {
-  return M.eigenvalues().cwiseAbs().maxCoeff();
+// The largest root, by its absolute value, of z² − trace z + determinant and of z³ + c₂ z² + c₁ z + c₀ (by the method
+// of Weierstrass: all at once, from places on a spiral).
+double radius(const Matrix2d& M) {
+  const double half = M.trace() / 2, square = half * half - M.determinant();
+  return square < 0 ? std::sqrt(M.determinant()) : std::abs(half) + std::sqrt(square);
+}
+double radius(const Eigen::Vector3d& c) {
+  constexpr int kMostRounds = 500;
+  const Complex seed(0.4, 0.9);
+  std::array<Complex, 3> z{1.0, seed, seed * seed};
+  for (int round = 0; round < kMostRounds; ++round) {
+    double moved = 0;
+    for (std::size_t k = 0; k < z.size(); ++k) {
+      const Complex others = (z[k] - z[(k + 1) % 3]) * (z[k] - z[(k + 2) % 3]);
+      const Complex step = (((z[k] + c[2]) * z[k] + c[1]) * z[k] + c[0]) / others;
+      z[k] -= step;
+      moved = std::max(moved, std::abs(step));
+    }
+    if (moved < 1e-15) break;
+  }
+  return std::max({std::abs(z[0]), std::abs(z[1]), std::abs(z[2])});
 }
 
 // Of y_{n+3} + c₂ y_{n+2} + c₁ y_{n+1} + c₀ y_n = 0 in both components of both sequences, from the end of the first
 // step on: what a start makes of the accelerations is its own.
 double radius_of_recurrence(const Sequence& a, const Sequence& b) {
-  Eigen::Matrix<double, 8, 3> known;
-  Eigen::Matrix<double, 8, 1> next;
-  Eigen::Index row = 0;
+  // Least squares, by the normal equations.
+  Matrix3d square = Matrix3d::Zero();
+  Eigen::Vector3d side = Eigen::Vector3d::Zero();
   for (const Sequence* y : {&a, &b})
     for (std::size_t n = 1; n + 3 <= kSteps; ++n)
-      for (Eigen::Index k = 0; k < 2; ++k, ++row) {
-        known.row(row) << (*y)[n][k], (*y)[n + 1][k], (*y)[n + 2][k];
-        next[row] = -(*y)[n + 3][k];
+      for (Eigen::Index k = 0; k < 2; ++k) {
+        const Eigen::Vector3d known((*y)[n][k], (*y)[n + 1][k], (*y)[n + 2][k]);
+        square += known * known.transpose();
+        side -= (*y)[n + 3][k] * known;
       }
-  const Eigen::Vector3d c = known.colPivHouseholderQr().solve(next);
-  Matrix3d companion = Matrix3d::Zero();
-  companion(0, 1) = companion(1, 2) = 1;
-  companion.row(2) = -c.transpose();
-  return radius(companion);
+  return radius(Eigen::Vector3d(square.inverse() * side));
 }
 
 Complex eigenvalue(double hw, double zeta) {  // h λ of one of the pair, |ζ| < 1
@@ -185,7 +201,10 @@ double generalized_alpha_radius(double hw, double zeta, double rho) {
   const double c = 2 * zeta * hw, k = hw * hw;
   left << 1, 0, -beta, 0, 1, -gamma, (1 - f) * k, (1 - f) * c, 1 - m;
   right << 1, 1, 0.5 - beta, 0, 1, 1 - gamma, -f * k, -f * c, -m;
-  return radius(Matrix3d(left.partialPivLu().solve(right)));
+  const Matrix3d M = left.inverse() * right;
+  // Characteristic polynomial: z³ − tr M z² + ½ (tr² M − tr M²) z − det M.
+  const double trace = M.trace();
+  return radius(Eigen::Vector3d(-M.determinant(), (trace * trace - (M * M).trace()) / 2, -trace));
 }
 
 double radau5_radius(double hw, double zeta) {

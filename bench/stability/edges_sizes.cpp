@@ -103,7 +103,7 @@ Family mass_ratio() {
   f.x = {Axis::parameter,
          "mass of the outer rod over that of the inner one",
          "m",
-         {1e-12, 1e-8, 1e-4, 1e-2, 1, 1e2, 1e4, 1e8, 1e12},
+         {1e-8, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6, 1e8},
          {1e-8, 1e-4, 1, 1e4, 1e8},
          {},
          {},
@@ -132,14 +132,8 @@ Family stiffness() {
       {"type": "spring", "bodies": ["ground", "mass"], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "stiffness": "k", "length": 1},
       {"type": "force", "body": "mass", "point": [0, 0, 0],
        "force": ["0.048*k*cos(t)", "0.06*k*cos(t)", "0.064*k*cos(t)"]}]})json"};
-  f.x = {Axis::parameter,
-         "stiffness, N/m",
-         "k",
-         {1e2, 1e3, 1e4, 1e5, 1e6, 1e8, 1e10, 1e12},
-         {1e2, 1e4, 1e6, 1e8},
-         {},
-         {},
-         1e2};
+  f.x = {
+      Axis::parameter, "stiffness, N/m", "k", {1e2, 1e3, 1e4, 1e5, 1e6, 1e8, 1e10}, {1e2, 1e4, 1e6, 1e8}, {}, {}, 1e2};
   f.y = accuracy();
   f.columns = {"mass.x", "mass.y", "mass.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
