@@ -226,7 +226,7 @@ study::PanelPlot amplification_plot(bool quick) {
   plot.log_y = false;
   std::vector<double> at;
   const int per_decade = quick ? 3 : 10;
-  for (int k = -2 * per_decade; k <= 2 * per_decade; ++k)
+  for (int k = -2 * per_decade; k <= 3 * per_decade / 2; ++k)  // beyond, the roots of α are too near one another
     at.push_back(std::pow(10, static_cast<double>(k) / per_decade));
   for (const double damping : {0.0, 0.5}) {
     for (const bool rotation : {false, true}) {
