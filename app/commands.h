@@ -20,6 +20,7 @@ void add_reference(CLI::App& app, int& status);
 void add_chart(CLI::App& app, int& status);
 void add_advise(CLI::App& app, int& status);
 void add_study(CLI::App& app, int& status);
+void add_stability(CLI::App& app, int& status);
 void add_figures(CLI::App& app, int& status);
 void add_completion(CLI::App& app, int& status);
 void add_manual(CLI::App& app, int& status);

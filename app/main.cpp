@@ -159,6 +159,7 @@ int main(int argc, char** argv) {
   add_chart(app, status);
   add_advise(app, status);
   add_study(app, status);
+  add_stability(app, status);
   add_figures(app, status);
   add_completion(app, status);
   add_manual(app, status);

@@ -1,6 +1,7 @@
 #include "bench/cases/case_run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,6 +95,7 @@ Result CaseRunner::computed(const Case& one, const Scene& scene) {
   const Outcome outcome = simulate(scene, settings, [&](const Sample& sample) { watch.observe(sample); });
   if (!outcome.status.ok()) return {std::string(name(outcome.status.failure)), outcome.status.message, {}};
   Result result;
+  if (study_.kept.notices) result.message = fmt::format("{}", fmt::join(outcome.notices, "; "));
   std::shared_ptr<const study::Reference> reference;
   if (study_.kept.errors) {
     reference = references_.find(scene, {settings.end, settings.every, study_.kept.digits});

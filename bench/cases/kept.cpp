@@ -21,8 +21,8 @@ struct Whole {
   bool Kept::*member;
 };
 constexpr std::array kWhole{Whole{"violation", &Kept::violation}, Whole{"energy_drift", &Kept::energy_drift},
-                            Whole{"counts", &Kept::counts}, Whole{"errors", &Kept::errors},
-                            Whole{"seconds", &Kept::seconds}};
+                            Whole{"counts", &Kept::counts},       Whole{"errors", &Kept::errors},
+                            Whole{"notices", &Kept::notices},     Whole{"seconds", &Kept::seconds}};
 
 struct Taken {
   std::string_view name;
@@ -104,7 +104,7 @@ std::vector<std::string> Kept::columns() const {
 }
 
 std::string Kept::text() const {
-  std::string text = fmt::format("{}", errors ? digits : 0);
+  std::string text = fmt::format("{}{}", errors ? digits : 0, notices ? " notices" : "");
   for (const Quantity& quantity : quantities) text += fmt::format(" {}={}", quantity.name, quantity.column);
   return text;
 }

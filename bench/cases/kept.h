@@ -1,6 +1,6 @@
 // What a study keeps of each case: numbers of any column of a run, errors, violations, energy drift, counts, times.
 //
-//   "keep": ["violation", "energy_drift", "counts", "errors", "seconds",
+//   "keep": ["violation", "energy_drift", "counts", "errors", "notices", "seconds",
 //            {"column": "slider.x", "name": "x", "take": ["final", "min", "max", "range"], "at": [0.1, 0.2]}]
 //
 // gives the columns violation_position, violation_velocity; energy_drift (largest |E − E(0)| over the largest kinetic
@@ -31,7 +31,8 @@ struct Quantity {
 struct Kept {
   std::vector<Quantity> quantities;
   bool violation = false, energy_drift = false, counts = false, errors = false, seconds = false;
-  int digits = 10;  // of the reference that errors are against
+  bool notices = false;  // what a run that ended well said, in the column of messages
+  int digits = 10;       // of the reference that errors are against
 
   std::vector<std::string> columns() const;
   static std::string at_name(const std::string& quantity, double t);  // "x@0.1"

@@ -102,13 +102,22 @@ constexpr std::array kGrowth{Item{"",
 constexpr std::array kEnergy{Item{
     "", "Energy over long runs", "energy", {"energy_table"}, "figures energy", "Bounded is what stays in its band."}};
 
+constexpr std::array kStability{Item{"",
+                                     "Where methods fail",
+                                     "amplification",
+                                     {"stability_use", "stability_verdicts", "stability_doubtful"},
+                                     "stability",
+                                     "Verdicts over families of scenes that lead to an edge; the spectral radius of a "
+                                     "step of an oscillator, measured on the code."}};
+
 constexpr std::array kContents{Section{"paper", "The paper's tables and figures", kPaper},
                                Section{"cost", "Phases of a step", kCost},
                                Section{"solvers", "Linear solvers", kSolvers},
                                Section{"precision", "Work and precision", kFronts},
                                Section{"orders", "Orders", kOrders},
                                Section{"growth", "Growth", kGrowth},
-                               Section{"energy", "Energy", kEnergy}};
+                               Section{"energy", "Energy", kEnergy},
+                               Section{"stability", "Stability", kStability}};
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 
 #include "integrators/stepping/broyden.h"
 #include "integrators/stepping/fixed_steps.h"
+#include "integrators/stepping/growth.h"
 #include "integrators/stepping/newton_loop.h"
 #include "integrators/stepping/step_ends.h"
 #include "integrators/stepping/velocity_rows.h"
@@ -18,7 +19,8 @@ class HalfImplicit final : public FixedSteps {
         broyden_(problem_.nv() + problem_.nc(), problem_.nv()),
         velocity_rows_(velocity_rows(problem_)),
         dq_(nv_),
-        rows_(nc_) {}
+        rows_(nc_),
+        growth_(nv_) {}
 
   double index3_scale() const override { return h_ * h_; }
   Status prepare() override { return ends_.prepare(); }
@@ -63,6 +65,7 @@ class HalfImplicit final : public FixedSteps {
     advance();
     end.problem.set_velocity(span(x_.v));
     ends_.take_turns();
+    growth_.watch(run_, x_.v, v_n_, t, h_);
     return {};
   }
 
@@ -72,6 +75,7 @@ class HalfImplicit final : public FixedSteps {
   Broyden broyden_;
   std::vector<int> velocity_rows_;
   Vector dq_, rows_;
+  Growth growth_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "integrators/stepping/broyden.h"
 #include "integrators/stepping/fixed_steps.h"
+#include "integrators/stepping/growth.h"
 #include "integrators/stepping/newton_loop.h"
 #include "integrators/stepping/step_ends.h"
 #include "integrators/stepping/velocity_rows.h"
@@ -24,7 +25,8 @@ class Rattle final : public FixedSteps {
         momentum_(nv_),
         rows_(nc_),
         rhs_(nv_ + nc_),
-        zeros_(Vector::Zero(nv_ + nc_)) {}
+        zeros_(Vector::Zero(nv_ + nc_)),
+        growth_(nv_) {}
 
   Status prepare() override { return ends_.prepare(); }
   void forget() override {
@@ -42,6 +44,7 @@ class Rattle final : public FixedSteps {
     if (Status status = first_half(t); !status.ok()) return status;
     if (Status status = second_half(t); !status.ok()) return status;
     ends_.take_turns();
+    growth_.watch(run_, x_.v, v_n_, t, h_);
     return {};
   }
 
@@ -151,6 +154,7 @@ class Rattle final : public FixedSteps {
   std::vector<int> velocity_rows_;
   Vector z_;  // unknowns of the first half; x_.z is the (a, λ) given out
   Vector u_, dq_, e_, momentum_, rows_, rhs_, zeros_;
+  Growth growth_;
 };
 
 }  // namespace

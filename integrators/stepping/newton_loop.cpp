@@ -54,11 +54,13 @@ double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
     sum += z.segment<3>(b).squaredNorm() + turn * z.segment(b + 3, turns).squaredNorm();
   }
   if (!std::isfinite(all)) return all;
-  const double size = std::max(std::sqrt(sum / problem_.bodies()), problem_.model().gravity.norm());
+  constexpr double kLeast = std::numeric_limits<double>::min();  // at rest without any load there is no size
+  const double size = std::max({std::sqrt(sum / problem_.bodies()), problem_.model().gravity.norm(), kLeast});
   const double accelerations = most == 0 ? 0 : std::sqrt(most) / size;
   if (of_this_step) return accelerations;
   const double multipliers = max_norm(delta_.tail(problem_.nc()));
-  return multipliers == 0 ? accelerations : std::max(accelerations, multipliers / max_norm(z.tail(problem_.nc())));
+  return multipliers == 0 ? accelerations
+                          : std::max(accelerations, multipliers / std::max(max_norm(z.tail(problem_.nc())), kLeast));
 }
 
 bool NewtonLoop::is_rounding(double position, const Vector& q) const {

@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/options.h"
+#include "app/progress_line.h"
+#include "app/signals.h"
+#include "app/terminal.h"
+#include "bench/cases/executor.h"
+#include "bench/stability/amplification.h"
+#include "bench/stability/maps.h"
+#include "bench/stability/suite.h"
+#include "bench/study/report.h"
+#include "core/input_error.h"
+#include "core/interruption.h"
+
+namespace poinsot::app {
+using namespace study;
+using namespace stability;
+namespace {
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string out = "results", formulations = all_names("formulation"), integrators = all_names("integrator");
+  std::vector<std::string> families;
+  int threads = 0;
+  bool quick = false, full = false, fresh = false, quiet = false;
+};
+
+std::vector<const Family*> chosen(const Options& options) {
+  std::vector<const Family*> all;
+  if (options.families.empty())
+    for (const Family& family : families()) all.push_back(&family);
+  for (const std::string& name : options.families) all.push_back(&require_family(name));
+  return all;
+}
+
+// The cells of a family: those that the folder holds, and the rest.
+std::vector<Cell> cells_of(const Family& family, const Extent& extent, const Options& options, ProgressLine& progress,
+                           double& done, double all) {
+  const FamilyStudy study(family, extent);
+  cases::CaseTable table(study.study());
+  const fs::path part = fs::path(options.out) / fmt::format("{}.part", family.name);
+  if (options.fresh) fs::remove(part);
+  table.open(part);
+  table.read(part, false);
+  const auto there = [&] {
+    double count = 0;
+    for (std::int64_t k = 0; k < study.study().size(); ++k) count += table.has(k);
+    return count;
+  };
+  compute(study, table, options.threads > 0 ? options.threads : cases::processors(), [&] {
+    progress.at({done + there(), all, 0}, fmt::format(", {}", family.name));
+  });
+  done += static_cast<double>(study.study().size());
+  return interruption_requested ? std::vector<Cell>{} : study.cells(table);
+}
+
+int map(const Options& options) {
+  if (options.threads < 0) require_positive("--threads", options.threads);
+  if (options.quick && options.full) throw InputError("--quick, --full: expected one of the two");
+  const std::vector<const Family*> all = chosen(options);
+  const Extent extent{options.quick, names_given("formulation", options.formulations),
+                      names_given("integrator", options.integrators)};
+  make_folder(options.out);
+  double cells = 0, done = 0;
+  for (const Family* family : all) cells += static_cast<double>(FamilyStudy(*family, extent).study().size());
+  std::vector<Mapped> maps;
+  {
+    const Deferred deferred;
+    ProgressLine progress("cells", !options.quiet);
+    for (const Family* family : all) {
+      maps.push_back({family, cells_of(*family, extent, options, progress, done, cells)});
+      if (!interruption_requested) continue;
+      progress.clear();
+      print_error(fmt::format("{}; the same command goes on with what is there", signal_text()));
+      return signal_status();
+    }
+  }
+  std::vector<std::string> foot = origin_lines(-1);
+  foot.push_back(options.quick ? "settings: --quick, fewer places along each axis" : "settings: full");
+  std::string why = write_maps(maps, options.out, foot);
+  if (options.families.empty())
+    if (const std::string none = write_plots({amplification_plot(options.quick)}, options.out, foot); why.empty())
+      why = none;
+  if (!why.empty()) print_notice(why);
+  Report report{"Where methods fail", "", tables(maps), foot};
+  std::string pictures;
+  for (const Mapped& one : maps)
+    pictures += fmt::format("**{}**: {}.\n\n{}", one.family->title, one.family->about,
+                            why.empty() ? fmt::format("![{}]({}.svg)\n\n", one.family->title, one.family->name) : "");
+  if (options.families.empty() && why.empty()) pictures += "![Spectral radius](amplification.svg)\n\n";
+  report.tables.front().text = pictures + report.tables.front().text;
+  const std::vector<fs::path> written = write_report(report, options.out, "stability");
+  if (options.quiet) return kDone;
+  for (const Mapped& one : maps)
+    fmt::print("{:<24} {:>5} cells: {} accurate, {} coarse, {} told, {} stopped, {} wrong\n", one.family->name,
+               one.cells.size(), count(one.cells, Verdict::accurate), count(one.cells, Verdict::coarse),
+               count(one.cells, Verdict::told), count(one.cells, Verdict::stop), count(one.cells, Verdict::wrong));
+  fmt::print("{}\n", written.front().string());
+  return kDone;
+}
+
+std::string footer() {
+  std::string text = "Families:\n";
+  for (const Family& family : families()) text += fmt::format("  {:<24} {}\n", family.name, family.title);
+  return text + "A suite that was interrupted goes on where it stopped.";
+}
+
+}  // namespace
+
+void add_stability(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("stability", "map where each method fails: verdicts over families of scenes");
+  const auto options = std::make_shared<Options>();
+  command->add_option("--family", options->families, "one of those below; may come several times (default: all)")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_flag("--quick", options->quick, "fewer places along each axis");
+  command->add_flag("--full", options->full, "all places (default)");
+  add_names(*command, "formulation", options->formulations);
+  add_names(*command, "integrator", options->integrators);
+  command->add_option("--threads", options->threads, "that compute (default: one for each processor)")->type_name("N");
+  add_out_folder(*command, options->out, "cells, maps and stability.md");
+  command->add_flag("--fresh", options->fresh, "compute everything, also what the folder holds already");
+  add_quiet(*command, options->quiet);
+  command->footer(footer());
+  command->callback([options, &status] { status = map(*options); });
+}
+
+}  // namespace poinsot::app

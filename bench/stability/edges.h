@@ -1,0 +1,28 @@
+// The families, by what they are about. Adding one: a function here, and its line in families.cpp.
+#pragma once
+
+#include "bench/stability/family.h"
+
+namespace poinsot::stability {
+
+// Rotation.
+Family euler_angles();
+Family spin();
+// Drivers and loops.
+Family dp1_driver();
+Family flat_redundant();
+Family flat_planar();
+Family misalignment();
+// Numbers of very different size.
+Family far_away();
+Family mass_ratio();
+Family stiffness();
+Family rounding_positions();
+Family rounding_accelerations();
+Family rounding_reactions();
+// Starts, forces, long runs.
+Family inconsistent();
+Family pulse();
+Family drift();
+
+}  // namespace poinsot::stability
