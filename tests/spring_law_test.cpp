@@ -77,8 +77,8 @@ TEST_P(SpringLaws, of_no_length_stiffen_the_newton_matrix) {
     ASSERT_TRUE(problem->from_bodies(at, view(q), view(v)).ok());
     problem->set_position(0, view(q));
     problem->set_velocity(view(v));
-    const VectorX none = VectorX::Zero(problem->nv());
-    const MatrixX matrix = assemble(*problem, MatrixKind::exact, {1, 0, 0.5}, none, none, VectorX());
+    const VectorX none = VectorX::Zero(problem->nv()), lambda = VectorX::Zero(problem->nc());
+    const MatrixX matrix = assemble(*problem, MatrixKind::exact, {1, 0, 0.5}, none, none, lambda);
     EXPECT_LT((matrix.topLeftCorner(3, 3) - 32 * MatrixX::Identity(3, 3)).norm(), 1e-12) << matrix;
   }
 }

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace poinsot;
   static const fuzz::InputFile file("cases.part");
   static const cases::Study study =
-      cases::read_study(std::filesystem::canonical(POINSOT_SOURCE_DIR) / "bench/studies/tolerances.json");
+      cases::read_study(std::filesystem::canonical(POINSOT_SOURCE_DIR) / "tests/fuzz/rows.json");
   std::string text;
   for (std::string_view rest = fuzz::text_of(data, size); !rest.empty();) {
     const std::size_t end = std::min(rest.find('\n'), rest.size() - 1) + 1;

@@ -11,11 +11,13 @@ takes more than 10 s or 1 GB is one, too.
 """
 import argparse
 import json
+import os
 import re
 import shutil
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -53,8 +55,8 @@ def results(folder):
     common = ["--cache", str(folder / "cache"), "--quiet"]
     chart = subprocess.run([program, "chart", ROOT / "models" / "single_pendulum.json", "--quick", "--end", "0.1",
                             "--integrators", "implicit_euler,dop853", "--out", folder, *common], check=False)
-    study = subprocess.run([program, "study", ROOT / "bench" / "studies" / "tolerances.json", "--quick", "--threads", "1",
-                            "--out", folder, *common], check=False)
+    study = subprocess.run([program, "study", ROOT / "tests" / "fuzz" / "rows.json", "--threads", "1", "--out", folder,
+                            *common], check=False)
     if 2 in (chart.returncode, study.returncode):
         sys.exit("no chart or no study to begin with")
     return (folder / "single_pendulum.csv").read_text(), (folder / "cases.part").read_text()
@@ -118,8 +120,11 @@ def main():
             parser.error(f'found "{entry}", expected some of {", ".join(ENTRIES)}')
     build()
     make_corpora()
-    limits = [f"-runs={options.runs}"] if options.runs else [f"-max_total_time={max(1, options.seconds // len(entries))}"]
-    return 0 if all([fuzz(entry, limits) for entry in entries]) else 1
+    cores = min(os.cpu_count(), len(entries))
+    seconds = max(1, options.seconds * cores // len(entries))
+    limits = [f"-runs={options.runs}"] if options.runs else [f"-max_total_time={seconds}"]
+    with ThreadPoolExecutor(cores) as pool:
+        return 0 if all(list(pool.map(lambda entry: fuzz(entry, limits), entries))) else 1
 
 
 if __name__ == "__main__":
