@@ -90,5 +90,24 @@ TEST(CasesStudy, ShardsAndATenthAreDisjointAndComplete) {
   for (std::int64_t k = 0; k < quick.size(); ++k) EXPECT_EQ(quick.at(k), k / 2 * 22 + k % 2);
 }
 
+// A row is one byte for byte, of the case that it says; everything else is computed again.
+TEST(CasesStudy, ADamagedRowIsNone) {
+  const Study study = study_of(table()["base"]);
+  std::string folder = (std::filesystem::temp_directory_path() / "poinsot-rows-XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const std::filesystem::path part = std::filesystem::path(folder) / "cases.part";
+  CaseTable(study).open(part);
+  std::string damaged = make_row(study, case_of(study, 1), "pendulum,1,ok", false).line;
+  damaged[damaged.size() - 4] ^= 1;
+  std::ofstream(part, std::ios::app) << make_row(study, case_of(study, 0), "pendulum,1,ok", false).line << damaged
+                                     << "no row\n";
+  CaseTable rows(study);
+  EXPECT_EQ(rows.read(part, false), 1);
+  EXPECT_TRUE(rows.has(0));
+  EXPECT_FALSE(rows.has(1));
+  EXPECT_EQ(rows.damaged(), 2);
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace poinsot::cases
