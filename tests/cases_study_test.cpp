@@ -69,6 +69,10 @@ TEST(CasesStudy, TheLastDimensionVariesFastestAndKeysAreOfWhatIsComputed) {
   document["vary"][0]["values"] = {0.5, 1, 1.5};
   study = study_of(document);
   for (std::int64_t k = 2; k < 6; ++k) EXPECT_TRUE(keys.contains(key_of(study, case_of(study, k)))) << k;
+  Json kept = document;
+  kept["keep"].push_back("counts");
+  study = study_of(kept);
+  for (std::int64_t k = 0; k < 6; ++k) EXPECT_FALSE(keys.contains(key_of(study, case_of(study, k)))) << k;
   document["settings"]["step"] = 0.0005;
   study = study_of(document);
   for (std::int64_t k = 0; k < 6; ++k) EXPECT_FALSE(keys.contains(key_of(study, case_of(study, k)))) << k;
