@@ -101,15 +101,17 @@ TEST(CasesStudy, ADamagedRowIsNone) {
   ASSERT_NE(mkdtemp(folder.data()), nullptr);
   const std::filesystem::path part = std::filesystem::path(folder) / "cases.part";
   CaseTable(study).open(part);
-  std::string damaged = make_row(study, case_of(study, 1), "pendulum,1,ok", false).line;
+  const std::string whole = "pendulum,1,1,rA,ok,1,2,3,4,5,";
+  std::string damaged = make_row(study, case_of(study, 1), whole, false).line;
   damaged[damaged.size() - 4] ^= 1;
-  std::ofstream(part, std::ios::app) << make_row(study, case_of(study, 0), "pendulum,1,ok", false).line << damaged
-                                     << "no row\n";
+  std::ofstream(part, std::ios::app) << make_row(study, case_of(study, 0), whole, false).line << damaged
+                                     << make_row(study, case_of(study, 2), "pendulum,1,1", false).line << "no row\n";
   CaseTable rows(study);
   EXPECT_EQ(rows.read(part, false), 1);
   EXPECT_TRUE(rows.has(0));
   EXPECT_FALSE(rows.has(1));
-  EXPECT_EQ(rows.damaged(), 2);
+  EXPECT_FALSE(rows.has(2)) << "its checksum is right, but fields are missing";
+  EXPECT_EQ(rows.damaged(), 3);
   std::filesystem::remove_all(folder);
 }
 
