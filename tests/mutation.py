@@ -7,8 +7,9 @@
 
 A mutation is a text that stands exactly once in a file, what takes its place, and the tests that should fail on it:
 "TARGET" or "TARGET:GTEST_FILTER". They are applied to a copy of the sources (build/mutation), in which only the targets
-named are built. Printed is which were caught, by which test, and which escaped; a mutation that escapes, does not
-compile or does not apply any more is a failure: a test is missing, or the list has to follow the source.
+named are built, with the project's warnings: what a mutation leaves unused is an error. Printed is which were caught, by
+which test, and which escaped; a mutation that escapes, does not compile or does not apply any more is a failure: a test
+is missing, or the list has to follow the source.
 """
 import argparse
 import json
@@ -92,7 +93,7 @@ class Scratch:
         """'caught by TEST', 'escaped' or 'does not compile: ...'."""
         made = self.make(mutation["tests"])
         if made.returncode != 0:
-            errors = [line for line in made.stdout.splitlines() if "error" in line]
+            errors = [line for line in made.stdout.splitlines() if ": error:" in line]
             return f"does not compile: {errors[0] if errors else made.stdout[-300:]}"
         for test in mutation["tests"]:
             if not self.passes(test):
