@@ -103,7 +103,7 @@ TEST(CasesStudy, ADamagedRowIsNone) {
   CaseTable(study).open(part);
   const std::string whole = "pendulum,1,1,rA,ok,1,2,3,4,5,";
   std::string damaged = make_row(study, case_of(study, 1), whole, false).line;
-  damaged[damaged.size() - 4] ^= 1;
+  damaged[damaged.size() - 3] ^= 1;  // a digit
   std::ofstream(part, std::ios::app) << make_row(study, case_of(study, 0), whole, false).line << damaged
                                      << make_row(study, case_of(study, 2), "pendulum,1,1", false).line << "no row\n";
   CaseTable rows(study);
