@@ -14,6 +14,7 @@
 #include "app/signals.h"
 #include "app/terminal.h"
 #include "app/verification_text.h"
+#include "bench/study/startable_scene.h"
 #include "bench/study/verification.h"
 #include "core/input_error.h"
 #include "core/json_document.h"
@@ -96,16 +97,6 @@ void tell_interruption(const RunFiles& files, double end, Status& status) {
   status.message += (status.message.empty() ? "" : ": ") + files.lost();
 }
 
-// Messages of what comes after reading name the scene, too.
-Outcome simulate_file(const Options& options, const Scene& scene, const Settings& settings, const Observer& observe,
-                      const Tell& tell) {
-  try {
-    return simulate(scene, settings, observe, tell);
-  } catch (const InputError& refused) {
-    throw InputError(fmt::format("{}: {}", shown_input(options.scene), refused.what()));
-  }
-}
-
 int run(const Options& options) {
   std::vector<std::string> notices;
   Settings settings = options.settings.resolve(notices);
@@ -159,7 +150,7 @@ int run(const Options& options) {
       }
       progress.at({sample.t, settings.end});
     };
-    outcome = simulate_file(options, scene, settings, observe, tell);
+    outcome = naming(options.scene, [&] { return simulate(scene, settings, observe, tell); });
   }
   outcome.notices.insert(outcome.notices.begin(), notices.begin(), notices.end());
   if (!options.save_state.empty() && !outcome.status.ok()) {

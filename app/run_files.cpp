@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "core/interruption.h"
 
 namespace poinsot::app {
@@ -9,6 +12,7 @@ using namespace study;
 namespace {
 
 constexpr std::chrono::milliseconds kBetween{500};
+constexpr std::size_t kRecordGrows = 4096;  // bytes, at most, from its first to its last state
 
 }  // namespace
 
@@ -34,17 +38,44 @@ void RunFiles::guarded(OutputFile& file, const std::function<void()>& act) {
     act();
   } catch (const OutputError& error) {
     interruption_requested = true;
-    if (!lost_.empty()) return;
-    lost_ = error.what();
-    if (!is_device(file.target()))
-      lost_ += file.lines() < 2 ? "; nothing of it is kept"
-                                : fmt::format("; what is kept of it ends with row {}", file.lines() - 1);
+    if (lost_.empty()) lost_ = error.what();
+    torn_ = torn_ || file.is_file();
   }
 }
 
-void RunFiles::with_files(void (OutputFile::*act)()) {
+void RunFiles::open_record() {
+  try {
+    if (!record_ && !record_name_.empty()) record_.emplace(record_name_);
+  } catch (const std::exception&) {  // it is tried again at the end
+  }
+}
+
+void RunFiles::end_together() {
+  std::vector<OutputFile*> files;
+  with_files([&](OutputFile& file) {
+    if (file.is_file()) files.push_back(&file);
+  });
+  std::int64_t lines = std::numeric_limits<std::int64_t>::max();
+  for (const OutputFile* file : files) lines = std::min(lines, file->lines_given());
+  open_record();
+  const std::size_t record = record_ ? running_().size() + kRecordGrows : 0;
+  std::int64_t alone = 0;  // as many have room without the record; half of them are not given up for it
+  for (std::int64_t fewer = 1;; fewer = std::min(2 * fewer, 1 + lines / 8)) {
+    bool room = true;
+    for (OutputFile* file : files) room = file->end_at(lines) && room;
+    if (room && alone == 0) alone = lines;
+    if (room && (!record_ || 2 * lines <= alone || record_->reserve(record))) break;
+    if (lines == 0) break;
+    lines = std::max<std::int64_t>(0, lines - fewer);
+  }
+  const char* const of = files.size() == 1 ? "it" : "all files";
+  lost_ += lines < 2 ? fmt::format("; nothing of {} is kept", of)
+                     : fmt::format("; what is kept of {} ends with row {}", of, lines - 1);
+}
+
+void RunFiles::with_files(const std::function<void(OutputFile&)>& act) {
   const auto with = [&](auto& writer) {
-    if (writer) guarded(writer->file(), [&] { (writer->file().*act)(); });
+    if (writer) guarded(writer->file(), [&] { act(writer->file()); });
   };
   with(trajectory_);
   with(reactions_);
@@ -55,7 +86,7 @@ void RunFiles::write(const Sample& sample) {
   if (state_) state_->keep(sample);
   if (!any() || !lost_.empty()) return;
   const auto add = [&](auto& writer) {
-    if (writer) guarded(writer->file(), [&] { writer->write(sample); });
+    if (writer && lost_.empty()) guarded(writer->file(), [&] { writer->write(sample); });
   };
   add(trajectory_);
   add(reactions_);
@@ -65,7 +96,7 @@ void RunFiles::write(const Sample& sample) {
 
 void RunFiles::flush() {
   with_files(&OutputFile::flush);
-  if (running_ && record_) {
+  if (!under_way_ && record_) {
     try {
       record_->write(running_());
       record_->commit();
@@ -73,25 +104,24 @@ void RunFiles::flush() {
     }
     record_.reset();
   }
-  running_ = {};
+  under_way_ = true;
   next_ = Clock::now() + kBetween;
 }
 
 void RunFiles::complete(bool ended) {
+  with_files(&OutputFile::drain);
+  if (torn_) end_together();
   with_files(&OutputFile::complete);
-  if (!state_) return;
-  if (!ended || !lost_.empty()) {
-    state_.reset();
-    return;
-  }
-  guarded(state_->file(), [&] {
-    state_->write();
-    state_->file().complete();
-  });
+  if (state_ && ended && lost_.empty())
+    guarded(state_->file(), [&] {
+      state_->write();
+      state_->file().complete();
+    });
+  if (!ended || !lost_.empty()) state_.reset();
 }
 
 void RunFiles::commit(const std::string& record) {
-  if (!record_name_.empty()) {
+  if (!record_name_.empty()) {  // whether it has its place is known before anything else takes its name
     try {
       if (!record_) record_.emplace(record_name_);
       record_->write(record);
@@ -101,9 +131,10 @@ void RunFiles::commit(const std::string& record) {
       record_.reset();
     }
   }
+  const std::string before = lost_;
   with_files(&OutputFile::commit);
   if (state_) guarded(state_->file(), [&] { state_->file().commit(); });
-  if (record_) record_->commit();
+  if (record_ && lost_ == before) record_->commit();  // or it tells of files that are not there
 }
 
 }  // namespace poinsot::app

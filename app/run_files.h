@@ -3,8 +3,8 @@
 //
 // Rows go to files of other names until it is certain that there is a run (half a second of it); then the files take
 // their names, a record says "running", and from there on what was computed stands in them, at most a second late:
-// `tail -f FILE.csv` shows it. A file that takes no more (a full disk) keeps its complete rows, and the run is asked to
-// come to an end.
+// `tail -f FILE.csv` shows it. Where a file takes no more (a full disk) the run is asked to come to an end, and all
+// files keep the same rows, as many as have room beside the record that says so.
 #pragma once
 
 #include <chrono>
@@ -46,7 +46,9 @@ class RunFiles {
   // What a file does not take is remembered, and the run asked to end.
   void guarded(study::OutputFile& file, const std::function<void()>& act);
   // Does it with every file that grows.
-  void with_files(void (study::OutputFile::*act)());
+  void with_files(const std::function<void(study::OutputFile&)>& act);
+  void open_record();
+  void end_together();
 
   using Clock = std::chrono::steady_clock;
   std::optional<TrajectoryWriter> trajectory_;
@@ -55,8 +57,10 @@ class RunFiles {
   std::optional<StateSaver> state_;
   std::filesystem::path record_name_;
   std::optional<study::OutputFile> record_;
-  std::function<std::string()> running_;  // empty once it is written
+  std::function<std::string()> running_;
   Clock::time_point next_;
+  bool under_way_ = false;  // files have their names, and the record that says so stands
+  bool torn_ = false;       // a file did not take everything
   std::string lost_;
 };
 

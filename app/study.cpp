@@ -162,21 +162,25 @@ int conclude(const Options& options, const Computation& c) {
                             c.selection.size()));
     return caught_signal() != 0 ? signal_status() : kNumericsFailed;
   }
+  int status = kDone;
   std::vector<fs::path> written{c.folder / (c.shard.name() + ".part")};
   if (c.shard.places == 1) {
     written = {c.folder / "cases.csv"};
     c.table.write(c.selection, written.front());
     const std::string why = draw_pictures(c.study, c.selection, c.table, c.folder, origin_lines(c.core), written);
-    if (!why.empty()) print_notice(why);
+    if (!why.empty()) {
+      print_error(why);
+      status = kNumericsFailed;
+    }
   }
-  if (options.quiet) return kDone;
+  if (options.quiet) return status;
   if (c.table.unused() > 0)
     print_notice(
         fmt::format("{} rows in {} are of cases that the study does not have", c.table.unused(), c.folder.string()));
   if (c.table.damaged() > 0) print_notice(fmt::format("{} damaged lines were left out", c.table.damaged()));
   fmt::print("{} cases, {} failed\n", there, c.table.failures());
   for (const fs::path& file : written) fmt::print("{}\n", file.string());
-  return kDone;
+  return status;
 }
 
 // Rank 0, or the only process.

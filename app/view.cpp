@@ -9,6 +9,7 @@
 #include "app/settings_options.h"
 #include "app/terminal.h"
 #include "bench/study/output_file.h"
+#include "bench/study/startable_scene.h"
 #include "bench/view/page.h"
 #include "bench/view/trajectory_file.h"
 #include "core/input_error.h"
@@ -53,11 +54,12 @@ view::Motion computed(const Options& options, const Scene& scene, const std::sha
   std::vector<BodyState> bodies(scene.bodies.size());
   {
     ProgressLine progress("s", !options.quiet);
-    outcome = simulate(scene, settings, [&](const Sample& sample) {
+    const auto observe = [&](const Sample& sample) {
       sample.problem.to_bodies(sample.a, bodies);
       recorder.add(sample.t, bodies);
       progress.at({sample.t, settings.end});
-    });
+    };
+    outcome = naming(options.scene, [&] { return simulate(scene, settings, observe); });
   }
   outcome.notices.insert(outcome.notices.begin(), notices.begin(), notices.end());
   note_stride(recorder.stride(), options.quiet);

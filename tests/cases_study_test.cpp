@@ -69,6 +69,10 @@ TEST(CasesStudy, TheLastDimensionVariesFastestAndKeysAreOfWhatIsComputed) {
   document["vary"][0]["values"] = {0.5, 1, 1.5};
   study = study_of(document);
   for (std::int64_t k = 2; k < 6; ++k) EXPECT_TRUE(keys.contains(key_of(study, case_of(study, k)))) << k;
+  Json kept = document;
+  kept["keep"].push_back("counts");
+  study = study_of(kept);
+  for (std::int64_t k = 0; k < 6; ++k) EXPECT_FALSE(keys.contains(key_of(study, case_of(study, k)))) << k;
   document["settings"]["step"] = 0.0005;
   study = study_of(document);
   for (std::int64_t k = 0; k < 6; ++k) EXPECT_FALSE(keys.contains(key_of(study, case_of(study, k)))) << k;
@@ -88,6 +92,27 @@ TEST(CasesStudy, ShardsAndATenthAreDisjointAndComplete) {
   const Selection quick(study, true);
   ASSERT_EQ(quick.size(), 8);  // four of 37 lengths, in both formulations
   for (std::int64_t k = 0; k < quick.size(); ++k) EXPECT_EQ(quick.at(k), k / 2 * 22 + k % 2);
+}
+
+// A row is one byte for byte, of the case that it says; everything else is computed again.
+TEST(CasesStudy, ADamagedRowIsNone) {
+  const Study study = study_of(table()["base"]);
+  std::string folder = (std::filesystem::temp_directory_path() / "poinsot-rows-XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const std::filesystem::path part = std::filesystem::path(folder) / "cases.part";
+  CaseTable(study).open(part);
+  const std::string whole = "pendulum,1,1,rA,ok,1,2,3,4,5,";
+  std::string damaged = make_row(study, case_of(study, 1), whole, false).line;
+  damaged[damaged.size() - 3] ^= 1;  // a digit
+  std::ofstream(part, std::ios::app) << make_row(study, case_of(study, 0), whole, false).line << damaged
+                                     << make_row(study, case_of(study, 2), "pendulum,1,1", false).line << "no row\n";
+  CaseTable rows(study);
+  EXPECT_EQ(rows.read(part, false), 1);
+  EXPECT_TRUE(rows.has(0));
+  EXPECT_FALSE(rows.has(1));
+  EXPECT_FALSE(rows.has(2)) << "its checksum is right, but fields are missing";
+  EXPECT_EQ(rows.damaged(), 3);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

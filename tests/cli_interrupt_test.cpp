@@ -1,5 +1,5 @@
 // Interrupted and killed: what was computed is kept in complete rows and marked, nothing half-written remains, and the
-// exit status says by which signal.
+// exit status says by which signal. As the user of the tests, and where that is root as nobody, too.
 #include <fmt/format.h>
 #include <sys/stat.h>
 
@@ -12,9 +12,13 @@ namespace poinsot::test {
 namespace {
 namespace fs = std::filesystem;
 
-class Interrupted : public CommandLine {
+class Interrupted : public CommandLine, public testing::WithParamInterface<const char*> {
  protected:
   Interrupted() { write("pendulum.json", kPendulum); }
+  void SetUp() override {
+    if (std::string_view(GetParam()) == "nobody" && !become_nobody())
+      GTEST_SKIP() << "the tests are not run by root: as whom they run is tested";
+  }
 
   template <class Condition>
   static bool wait_for(const Condition& condition) {
@@ -44,8 +48,9 @@ class Interrupted : public CommandLine {
 
   // The whole of a command in the folder, as a shell takes it; POINSOT is the program.
   int shell(const std::string& commands) const {
-    const std::string line = fmt::format("cd '{}' && export POINSOT='{}' && bash -c '{}' 2> .said.shell",
-                                         folder().string(), POINSOT_PROGRAM, commands);
+    const std::string as = program() == POINSOT_PROGRAM ? "" : "setpriv --reuid=65534 --regid=65534 --clear-groups ";
+    const std::string line = fmt::format("cd '{}' && export POINSOT='{}' && {}bash -c '{}' 2> .said.shell",
+                                         folder().string(), program(), as, commands);
     const int status = std::system(line.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
@@ -54,7 +59,7 @@ class Interrupted : public CommandLine {
 const std::vector<std::string> kLongRun{"run", "pendulum.json", "--end", "1e6",         "--every",
                                         "0.1", "--out",         "a.csv", "--reactions", "r.csv"};
 
-TEST_F(Interrupted, ARunKeepsWhatWasComputed) {
+TEST_P(Interrupted, ARunKeepsWhatWasComputed) {
   for (const auto& [signal, name] : {std::pair{SIGINT, "SIGINT"},
                                      {SIGTERM, "SIGTERM"},
                                      {SIGQUIT, "SIGQUIT"},
@@ -83,7 +88,7 @@ TEST_F(Interrupted, ARunKeepsWhatWasComputed) {
   }
 }
 
-TEST_F(Interrupted, TheFileGrowsWhileTheRunGoesOnAndTheRecordSaysSo) {
+TEST_P(Interrupted, TheFileGrowsWhileTheRunGoesOnAndTheRecordSaysSo) {
   const pid_t child = start(kLongRun);
   ASSERT_TRUE(wait_for([&] { return size("a.csv") > 0 && exists("a.run.json"); }));
   EXPECT_EQ(read_json("a.run.json")["status"], "running");
@@ -100,7 +105,7 @@ TEST_F(Interrupted, TheFileGrowsWhileTheRunGoesOnAndTheRecordSaysSo) {
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
 }
 
-TEST_F(Interrupted, EveryIntegratorAsksOnceAStep) {
+TEST_P(Interrupted, EveryIntegratorAsksOnceAStep) {
   for (const char* integrator : {"implicit_euler", "dop853", "radau5", "ida"}) {
     const pid_t child = start({"run", "pendulum.json", "--integrator", integrator, "--formulation", "rp", "--end",
                                "1e6", "--every", "1e5", "--out", "a.csv"});
@@ -112,8 +117,9 @@ TEST_F(Interrupted, EveryIntegratorAsksOnceAStep) {
   }
 }
 
-TEST_F(Interrupted, WithNothingComputedNothingIsWritten) {
-  ASSERT_EQ(mkfifo((folder() / "scene.json").c_str(), 0600), 0);  // nobody writes to it
+TEST_P(Interrupted, WithNothingComputedNothingIsWritten) {
+  ASSERT_EQ(mkfifo((folder() / "scene.json").c_str(), 0600), 0);  // that no one writes to
+  fs::permissions(folder() / "scene.json", fs::perms(0666));
   const auto before = files();
   const pid_t child = start({"run", "scene.json", "--out", "new/a.csv"});
   usleep(100000);
@@ -124,13 +130,13 @@ TEST_F(Interrupted, WithNothingComputedNothingIsWritten) {
   EXPECT_EQ(files(), before);
 }
 
-TEST_F(Interrupted, AnIgnoredSignalStaysIgnored) {
+TEST_P(Interrupted, AnIgnoredSignalStaysIgnored) {
   EXPECT_EQ(shell("trap \"\" HUP; $POINSOT run pendulum.json --end 20 --every 1 --out a.csv & "
                   "sleep 0.1; kill -HUP $!; wait $!"),
             0);
 }
 
-TEST_F(Interrupted, AReaderThatGoesAwayEndsTheRun) {
+TEST_P(Interrupted, AReaderThatGoesAwayEndsTheRun) {
   EXPECT_EQ(shell("$POINSOT run pendulum.json --end 1e6 --out - | head -n 2 > rows; exit ${PIPESTATUS[0]}"),
             128 + SIGPIPE);
   EXPECT_EQ(lines(read("rows")).size(), 2u);
@@ -138,7 +144,7 @@ TEST_F(Interrupted, AReaderThatGoesAwayEndsTheRun) {
 }
 
 // A limit on the size of files stands for a full disk; with the signal ignored it is one.
-TEST_F(Interrupted, AFullDiskKeepsTheRowsThereWasRoomFor) {
+TEST_P(Interrupted, AFullDiskKeepsTheRowsThereWasRoomFor) {
   const std::string run = "ulimit -f 64; $POINSOT run pendulum.json --integrator implicit_euler --end 10 --out a.csv";
   EXPECT_EQ(shell("trap \"\" XFSZ; " + run), 3);
   const std::string said = read(".said.shell");
@@ -154,9 +160,60 @@ TEST_F(Interrupted, AFullDiskKeepsTheRowsThereWasRoomFor) {
   EXPECT_EQ(shell(run), 128 + SIGXFSZ);
   expect_complete_rows("a.csv");
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
+  // A state is whole, or as it was.
+  write("s.json", "before");
+  EXPECT_EQ(shell("$POINSOT make chain --bodies 50 --out c.json; ulimit -f 1; trap \"\" XFSZ; "
+                  "$POINSOT run c.json --integrator implicit_euler --end 0.01 --save-state s.json > /dev/null"),
+            3);
+  EXPECT_NE(read(".said.shell").find("s.json: cannot be written: File too large"), std::string::npos);
+  EXPECT_EQ(read("s.json"), "before");
+  EXPECT_EQ(leftovers(), std::vector<std::string>{});
 }
 
-TEST_F(Interrupted, AChartSaysThatItIsNotFinishedAndGoesOn) {
+// The disk is one for all: what the files keep of the run is the same rows, and the record beside them says so.
+TEST_P(Interrupted, AFullDiskIsSharedByAllFiles) {
+  if (geteuid() != 0 || std::system("unshare --mount true 2> /dev/null") != 0)
+    GTEST_SKIP() << "only root can make a small disk";
+  fs::create_directory(folder() / "kept");
+  fs::create_directory(folder() / "disk");
+  fs::permissions(folder() / "kept", fs::perms(0777));
+  write("commands.sh",
+        "\"$POINSOT\" run pendulum.json --integrator implicit_euler --quiet "
+        "--out disk/a.csv --reactions disk/r.csv --signals disk/s$NPY \"$@\" 2> kept/said");
+  for (const char* options :
+       {"--end 1", "--end 1e6 --step 1e-4"})  // shorter and longer than files wait for their names
+    for (const char* npy : {".csv", ".npy"}) {
+      SCOPED_TRACE(fmt::format("{} {}", options, npy));
+      const std::string as = program() == POINSOT_PROGRAM ? "" : "setpriv --reuid=65534 --regid=65534 --clear-groups ";
+      const int status = std::system(
+          fmt::format(
+              "cd '{}' && rm -rf kept/* && export POINSOT='{}' NPY={} && unshare --mount bash -c 'mount -t tmpfs "
+              "-o size=96k none disk && chmod 777 disk && {}bash commands.sh {}; s=$?; cp -r disk/. kept; exit $s'",
+              folder().string(), program(), npy, as, options)
+              .c_str());
+      EXPECT_EQ(WEXITSTATUS(status), 3) << read("kept/said");
+      const std::size_t rows = lines(read("kept/a.csv")).size() - 1;
+      EXPECT_GT(rows, 10u);
+      expect_complete_rows("kept/a.csv");
+      expect_complete_rows("kept/r.csv");
+      EXPECT_EQ(lines(read("kept/r.csv")).size() - 1, rows);
+      const std::string signals = read(std::string("kept/s") + npy);
+      if (npy == std::string_view(".csv"))
+        EXPECT_EQ(lines(signals).size() - 1, rows);
+      else
+        EXPECT_NE(signals.find(fmt::format("'shape': ({}, ", rows)), std::string::npos) << signals.substr(0, 200);
+      const nlohmann::json record = read_json("kept/a.run.json");
+      EXPECT_EQ(record["incomplete"], true);
+      EXPECT_EQ(record["status"], "interrupted");
+      EXPECT_NE(read("kept/said")
+                    .find(fmt::format("No space left on device; what is kept of all files ends with row {}\n", rows)),
+                std::string::npos)
+          << read("kept/said");
+      EXPECT_EQ(leftovers(), std::vector<std::string>{});
+    }
+}
+
+TEST_P(Interrupted, AChartSaysThatItIsNotFinishedAndGoesOn) {
   std::size_t rows = 0;
   for (int time = 0; time < 2; ++time) {
     const pid_t child = start({"chart", "pendulum.json", "--end", "10", "--cache", "cache", "--out", "out"});
@@ -181,7 +238,7 @@ std::size_t processes(const fs::path& folder) {
   return count;
 }
 
-TEST_F(Interrupted, TablesFiguresAndScaleLeaveNothingHalf) {
+TEST_P(Interrupted, TablesFiguresAndScaleLeaveNothingHalf) {
   for (const char* command : {"tables", "figures", "scale"}) {
     SCOPED_TRACE(command);
     fs::remove_all(folder() / "out");
@@ -197,7 +254,7 @@ TEST_F(Interrupted, TablesFiguresAndScaleLeaveNothingHalf) {
   }
 }
 
-TEST_F(Interrupted, AnExistingFileKeepsItsModeAndIsReplacedAtOnce) {
+TEST_P(Interrupted, AnExistingFileKeepsItsModeAndIsReplacedAtOnce) {
   write("a.csv", "before");
   fs::permissions(folder() / "a.csv", fs::perms::owner_read | fs::perms::owner_write);
   ASSERT_EQ(
@@ -210,6 +267,8 @@ TEST_F(Interrupted, AnExistingFileKeepsItsModeAndIsReplacedAtOnce) {
   EXPECT_EQ(read("a.csv"), "before");
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
 }
+
+INSTANTIATE_TEST_SUITE_P(As, Interrupted, testing::Values("tester", "nobody"));
 
 }  // namespace
 }  // namespace poinsot::test

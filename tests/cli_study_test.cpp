@@ -264,6 +264,15 @@ TEST_F(CliStudy, AFullDiskKeepsTheRowsThereWasRoomFor) {
   EXPECT_EQ(read("out/cases.csv"), expected);
 }
 
+TEST_F(CliStudy, APictureThatIsNotDrawnIsNoSuccess) {
+  write_study(4, 0.02, R"(, "pictures": [{"file": "lengths", "title": "l", "histogram": "rod.y.min"}])");
+  fs::create_directories(folder() / "out" / "lengths.svg");  // in its place
+  const Result result = study({"--out", "out"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.err.find("picture was drawn"), std::string::npos) << result.err;
+  EXPECT_EQ(lines(read("out/cases.csv")).size(), 9u);
+}
+
 TEST_F(CliStudy, TheExamplesRunInTheirQuickForm) {
   const fs::path studies = fs::path(POINSOT_SOURCE_DIR) / "bench/studies";
   const std::pair<const char*, std::size_t> examples[] = {{"tolerances", 1000}, {"coupler_curve", 15}};

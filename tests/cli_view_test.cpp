@@ -116,6 +116,7 @@ TEST_F(View, WrongInputWritesNothing) {
   write("number.csv", lines(read("a.csv"))[0] + "\n0,x\n");
   write("other.json", R"({"scene": 1, "name": "other", "bodies": [
     {"name": "ball", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]}]})");
+  write("conflicting.json", kConflicting);
   const auto before = files();
   const auto refused = [&](const std::vector<std::string>& arguments, const std::string& said) {
     const Result result = poinsot(arguments);
@@ -133,6 +134,10 @@ TEST_F(View, WrongInputWritesNothing) {
           "--step: expected nothing, a trajectory that is given is not computed");
   refused({"view", "scene.json", "--trajectory", "a.csv", "--out", "a.csv"},
           "a.csv: --out would overwrite --trajectory; choose another name or folder for the output");
+  refused(
+      {"view", "conflicting.json", "--end", "0.1", "--out", "a.html"},
+      "conflicting.json: the constraints conflict: with the others satisfied, constraint 'CD2' is still violated by "
+      "1 m/s (velocity); `poinsot check` names what it depends on");
 }
 
 TEST(ViewSymbols, ConstraintsThatMakeJointsAreDrawnAsJoints) {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <fcntl.h>
+#include <grp.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -54,8 +56,25 @@ class CommandLine : public testing::Test {
   ~CommandLine() override { std::filesystem::remove_all(folder_); }
 
   std::filesystem::path folder() const { return folder_; }
+  std::string program() const { return program_; }
 
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  // From now on the program runs as nobody, and the files of the test are nobody's; false where the test is no root.
+  bool become_nobody() {
+    namespace fs = std::filesystem;
+    if (geteuid() != 0) return false;
+    program_ = folder_ / ".said.poinsot";  // where nobody may not go it stands elsewhere
+    fs::copy_file(POINSOT_PROGRAM, program_);
+    fs::permissions(program_, fs::perms(0755));
+    user_ = kNobody;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_)) give(entry.path());
+    give(folder_);
+    return true;
+  }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    give(folder_ / name);
+  }
   std::string read(const std::string& name) const { return test::read(folder_ / name); }
   nlohmann::json read_json(const std::string& name) const { return nlohmann::json::parse(read(name)); }
 
@@ -70,16 +89,18 @@ class CommandLine : public testing::Test {
   // `poinsot ARGUMENTS` in the folder; returns its process.
   pid_t start(const std::vector<std::string>& arguments, const std::string& tag = "") const {
     const std::string out = (folder_ / (".said.out" + tag)).string(), err = (folder_ / (".said.err" + tag)).string();
-    std::vector<const char*> argv{POINSOT_PROGRAM};
+    std::vector<const char*> argv{program_.c_str()};
     for (const std::string& argument : arguments) argv.push_back(argument.c_str());
     argv.push_back(nullptr);
     const pid_t child = fork();
     if (child != 0) return child;
+    for (int number = 1; number < NSIG; ++number) signal(number, SIG_DFL);  // also where the tests ignore some
     if (chdir(folder_.c_str()) != 0) _exit(127);
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
     dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666), STDOUT_FILENO);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666), STDERR_FILENO);
-    execv(POINSOT_PROGRAM, const_cast<char* const*>(argv.data()));
+    if (user_ == kNobody && (setgroups(0, nullptr) != 0 || setgid(user_) != 0 || setuid(user_) != 0)) _exit(127);
+    execv(argv[0], const_cast<char* const*>(argv.data()));
     _exit(127);
   }
 
@@ -92,7 +113,15 @@ class CommandLine : public testing::Test {
   Result poinsot(const std::vector<std::string>& arguments) const { return finish(start(arguments)); }
 
  private:
+  static constexpr uid_t kNobody = 65534;
+
+  void give(const std::filesystem::path& file) const {
+    if (user_ == kNobody && chown(file.c_str(), user_, user_) != 0) throw std::runtime_error("cannot be nobody's");
+  }
+
   std::filesystem::path folder_;
+  std::string program_ = POINSOT_PROGRAM;
+  uid_t user_ = geteuid();
 };
 
 // A rod of 2 m on a hinge at the origin, horizontal at rest, swinging about x.

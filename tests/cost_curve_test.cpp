@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <tuple>
 
 #include "bench/study/interval.h"
 
@@ -98,6 +100,54 @@ TEST(Interval, OfTheMedianByTheOrderOfTheValues) {
   EXPECT_NEAR(few.confidence, 0.75, 1e-15) << "too few for what is asked: all of them, and what that is worth";
   EXPECT_EQ(median_interval({5}).confidence, 0);
   EXPECT_EQ(median_interval({1, 4}).median, 2.5);
+}
+
+// A chart that goes on takes a row for the case that it is of, and for no other.
+TEST(ChartRow, IsOfOneCase) {
+  Case one;
+  one.settings.formulation = "rA";
+  one.settings.integrator = "dop853";
+  one.settings.linear_solver = "klu";
+  one.settings.rtol = 1e-6;
+  const ChartRow row{"rA", "dop853", "klu", one.parameter(), one.value(), {}, {}};
+  EXPECT_TRUE(row.of(one));
+  Case other = one;
+  other.settings.linear_solver = "block";
+  EXPECT_FALSE(row.of(other));
+  other = one;
+  other.settings.formulation = "rp";
+  EXPECT_FALSE(row.of(other));
+  other = one;
+  other.settings.integrator = "dopri5";
+  EXPECT_FALSE(row.of(other));
+  other = one;
+  other.settings.rtol = 1e-7;
+  EXPECT_FALSE(row.of(other));
+}
+
+// Both are more accurate than the reference can tell: what is left is their time.
+TEST(ChartFile, FrontIsThatOfWhatTheReferenceResolves) {
+  std::string folder = (std::filesystem::temp_directory_path() / "poinsot-chart-XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  ChartFile file(std::filesystem::path(folder) / "chart.csv", {}, true);
+  for (const auto& [integrator, error, seconds] : {std::tuple("dop853", 1e-13, 1.0), {"dopri5", 1e-15, 2.0}}) {
+    Case one;
+    one.settings.integrator = integrator;
+    Measured measured;
+    measured.error.fill(error);
+    measured.seconds = seconds;
+    file.add(one, measured);
+  }
+  Reference reference;
+  reference.methods.emplace_back();
+  reference.given = 0;
+  reference.agreement.fill(1e-12);
+  file.finish(reference);
+  for (std::size_t quantity = 0; quantity < kQuantities.size(); ++quantity) {
+    EXPECT_TRUE(file.rows()[0].front[quantity]);
+    EXPECT_FALSE(file.rows()[1].front[quantity]);
+  }
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <ctime>
 #include <functional>
 #include <memory>
 #include <numbers>
 
+#include "core/scene_generator.h"
 #include "tests/support/scene_transform.h"
 
 namespace poinsot::test {
@@ -192,6 +194,32 @@ TEST_P(ReactionForces, RedundantReactionsAreTheLeast) {
     // the planar load does not press any link out of the plane
     for (int group = 0; group < 7; ++group) EXPECT_NEAR(wrench(reactions, group).force.z(), 0, 1e-8) << sample.t;
   });
+}
+
+// The plane of a chain kept once more: the reactions of 300 bodies cost about what a step does, not the cube of them.
+TEST(RedundantReactions, OfALongChainAreFoundSparsely) {
+  Scene scene = find_scene_generator("chain")->make(300);
+  Constraint& again = scene.constraints.emplace_back();
+  again.name = "again";
+  again.type = ConstraintType::CD;
+  again.j = 0;
+  again.c = Vector3::UnitX();
+  Settings settings = dynamics("rA", 1e-3, 0.01);
+  const auto seconds = [](const auto& act) {
+    const std::clock_t began = std::clock();
+    act();
+    return static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
+  };
+  const double alone = seconds([&] { EXPECT_TRUE(simulate(scene, settings, [](const Sample&) {}).status.ok()); });
+  int samples = 0;
+  const double with = seconds([&] {
+    with_reactions(scene, settings, [&](const Sample& sample, const Reactions&) {
+      EXPECT_LT(sample.problem.model_rows().size(), sample.problem.model().rows.size()) << "no row is redundant";
+      ++samples;
+    });
+  });
+  EXPECT_EQ(samples, 11);
+  EXPECT_LT(with, 6 * alone) << "a dense decomposition takes a second for every sample";
 }
 
 // Upright and at rest the double four-bar is its own mirror image, and so are the least reactions.

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs every test: the release build first, then the build with address and
-# undefined-behaviour sanitizers. Ends with ctest's summary, or at the first thing that fails.
+# undefined-behaviour sanitizers; between them all readers of files are fuzzed for a minute. Ends with ctest's summary,
+# or at the first thing that fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-# A browser to look at the pages of `poinsot view` and `report`, MPI for studies.
-bash cmake/install_packages.sh chromium libopenmpi-dev openmpi-bin
+# A browser to look at the pages of `poinsot view` and `report`, MPI for studies, clang for fuzzing.
+bash cmake/install_packages.sh chromium clang libopenmpi-dev openmpi-bin
 
 # Layouts differ between versions of clang-format; the project's is that of Debian 12.
 format=clang-format
@@ -24,4 +25,5 @@ for preset in release debug; do
   cmake --preset "$preset" -G Ninja --log-level=WARNING
   cmake --build --preset "$preset" --parallel "$jobs"
   ctest --preset "$preset" --parallel "$jobs"
+  if [ "$preset" = release ]; then python3 -B tests/fuzz/run.py; fi
 done

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/dense_problem.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -59,6 +60,27 @@ TEST_P(SpringLaws, without_rate_and_time_conserve_energy) {
   ASSERT_TRUE(outcome.status.ok()) << outcome.status.message;
   EXPECT_LT(drift, 1e-7);
   EXPECT_GT(kinetic, 0.3);  // it moves
+}
+
+// Its direction is undefined, so it pulls in none; moved in any direction it pulls back all the same.
+TEST_P(SpringLaws, of_no_length_stiffen_the_newton_matrix) {
+  for (const char* law : {R"j("stiffness": 60)j", R"j("law": "60*x + x^3")j"}) {
+    const Scene scene = parse_scene(fmt::format(R"j({{"scene": 1, "bodies": [
+      {{"name": "ball", "mass": 2, "inertia": [1, 1, 1], "position": [1, 2, 3]}}], "forces": [
+      {{"type": "spring", "bodies": ["ground", "ball"], "s_i": [1, 2, 3], "s_j": [0, 0, 0], "length": 0, {}}}]}})j",
+                                                law),
+                                    "ball.json");
+    const std::unique_ptr<Problem> problem = make_problem(GetParam(), compile(scene));
+    std::vector<BodyState> at(1);
+    at[0].r = Vector3(1, 2, 3);
+    VectorX q(problem->nq()), v(problem->nv());
+    ASSERT_TRUE(problem->from_bodies(at, view(q), view(v)).ok());
+    problem->set_position(0, view(q));
+    problem->set_velocity(view(v));
+    const VectorX none = VectorX::Zero(problem->nv()), lambda = VectorX::Zero(problem->nc());
+    const MatrixX matrix = assemble(*problem, MatrixKind::exact, {1, 0, 0.5}, none, none, lambda);
+    EXPECT_LT((matrix.topLeftCorner(3, 3) - 32 * MatrixX::Identity(3, 3)).norm(), 1e-12) << matrix;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SpringLaws, testing::Values("rA", "rp", "reps"),

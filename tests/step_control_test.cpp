@@ -15,6 +15,8 @@ namespace {
 TEST(SampleTimes, AreThoseOfFixedSteps) {
   SampleTimes times(0.1, 1);
   for (int k = 1; k <= 12; ++k, times.pass()) EXPECT_EQ(times.next(), k >= 10 ? 1 : k / 10.0);
+  SampleTimes short_last(0.3, 1);  // the end is no multiple
+  for (int k = 1; k <= 4; ++k, short_last.pass()) EXPECT_EQ(short_last.next(), k == 4 ? 1 : k * 0.3);
   SampleTimes none(0, 3);
   EXPECT_EQ(none.next(), 3);
 }

@@ -132,6 +132,8 @@ TEST(ReferenceKey, differs_wherever_the_result_could) {
   EXPECT_NE(key, study::reference_key(scene, usual, "another program"));
   EXPECT_NE(key, study::reference_key(other, usual, "program"));
   EXPECT_EQ(study::program_identity(), study::program_identity());
+  EXPECT_EQ(study::program_identity().find(fmt::format("{:016x}", study::content_hash(""))), std::string::npos)
+      << "no code was read";
 }
 
 using KeptReference = Kept;

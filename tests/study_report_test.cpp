@@ -149,6 +149,13 @@ TEST_F(Written, file_is_whole_or_as_it_was) {
   EXPECT_THROW(study::OutputFile{folder_}, InputError);
 }
 
+TEST(CsvField, what_a_spreadsheet_would_compute_is_quoted) {
+  for (const char* formula : {"=cmd|' /C calc'!A0", "@SUM(1)", "-1+2", "+x", "-x"})
+    EXPECT_EQ(study::csv_field(formula), fmt::format("\"{}\"", formula));
+  for (const char* plain : {"", "-", "-1.5", "+2e-3", "1", "rod.x", "a=b"}) EXPECT_EQ(study::csv_field(plain), plain);
+  EXPECT_EQ(study::csv_field("a \"b\", c"), "\"a \"\"b\"\", c\"");
+}
+
 TEST(Panels, hold_every_point_and_how_to_draw_it) {
   study::PanelPlot plot{"plot", "Title", "x", "y"};
   plot.log_y = false;

@@ -47,9 +47,19 @@ std::uint64_t hex(std::string_view digits) {
 
 constexpr char kOk = ' ', kFailed = '!';  // after the key
 
-// Whether the line, without its end, is a row; of which case.
-bool is_row(std::string_view line, std::uint64_t& key, std::int64_t& number, bool& failed) {
-  if (line.size() <= kHead || line[kHex] != ' ') return false;
+std::size_t fields_in(std::string_view line) {
+  std::size_t count = 1;
+  bool quoted = false;
+  for (const char c : line) {
+    quoted ^= c == '"';
+    count += c == ',' && !quoted;
+  }
+  return count;
+}
+
+// Whether the line, without its end, is a row of so many fields; of which case.
+bool is_row(std::string_view line, std::size_t fields, std::uint64_t& key, std::int64_t& number, bool& failed) {
+  if (line.size() <= kHead || line[kHex] != ' ' || fields_in(line.substr(kHead)) != fields) return false;
   failed = line[2 * kHex + 1] == kFailed;
   if (hex(line.substr(0, kHex)) != content_hash(line.substr(kHex + 1))) return false;
   key = hex(line.substr(kHex + 1, kHex));
@@ -139,12 +149,13 @@ std::int64_t CaseTable::read(const fs::path& file, bool once) {
   parts_.push_back({file, descriptor});
   const std::size_t part = parts_.size() - 1;
   std::int64_t taken = 0;
+  const std::size_t fields = fields_in(header(study_));
   std::map<std::uint64_t, std::pair<std::uint64_t, bool>> elsewhere;  // by key: rows under other numbers
   while (lines.next(line)) {
     std::uint64_t key = 0;
     std::int64_t number = 0;
     bool failed = false;
-    if (!is_row(line, key, number, failed)) {
+    if (!is_row(line, fields, key, number, failed)) {
       ++damaged_;
     } else if (number >= 0 && number < study_.size() && key == key_of(study_, case_of(study_, number))) {
       place(number, part, lines.offset(), failed, once);

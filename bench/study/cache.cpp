@@ -60,13 +60,16 @@ fs::path user_cache() {
 }
 
 std::string program_identity() {
-  const Provenance& origin = provenance();
-  const std::set<fs::path> files{code_file(reinterpret_cast<const void*>(&provenance)),
-                                 code_file(reinterpret_cast<const void*>(&program_identity))};
-  std::string code;
-  for (const fs::path& file : files) code += content(file);
-  return fmt::format("poinsot {} {} {} {}, code {:016x}", origin.version, origin.commit, origin.compiler, origin.flags,
-                     content_hash(code));
+  static const std::string identity = [] {  // megabytes are read for it
+    const Provenance& origin = provenance();
+    const std::set<fs::path> files{code_file(reinterpret_cast<const void*>(&provenance)),
+                                   code_file(reinterpret_cast<const void*>(&program_identity))};
+    std::string code;
+    for (const fs::path& file : files) code += content(file);
+    return fmt::format("poinsot {} {} {} {}, code {:016x}", origin.version, origin.commit, origin.compiler,
+                       origin.flags, content_hash(code));
+  }();
+  return identity;
 }
 
 fs::path Cache::file(std::string_view key) const {

@@ -52,6 +52,15 @@ std::string shown(const fs::path& target) {
   return target == "-" ? "standard output" : target.string();
 }
 
+// What a spreadsheet would compute: no sign of a number, nor a dash alone.
+bool is_formula(std::string_view text) {
+  if (text.starts_with('=') || text.starts_with('@')) return true;
+  const bool sign = text.starts_with('+') || text.starts_with('-');
+  double number = 0;
+  return sign && text.size() > 1 &&
+         std::from_chars(text.data() + 1, text.data() + text.size(), number).ptr != text.data() + text.size();
+}
+
 std::string cannot_be_written(const fs::path& target, std::string_view reason) {
   return fmt::format("{}: cannot be written: {}", shown(target), reason);
 }
@@ -171,8 +180,9 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view text) {
+  if (failed_) return;
   buffer_ += text;
-  if (buffer_.size() >= kBuffer) write_out();
+  if (buffer_.size() >= kBuffer) drain();
 }
 
 void OutputFile::write(double value) {
@@ -183,48 +193,114 @@ void OutputFile::write(double value) {
 
 void OutputFile::write_field(std::string_view text) {
   write(",");
-  const bool formula = !text.empty() && std::string_view("=+-@").find(text.front()) != std::string_view::npos;
-  const std::string field = csv_field(text);
-  write(formula && field == text ? fmt::format("\"{}\"", field) : field);
+  write(csv_field(text));
 }
 
-void OutputFile::write_out() {
-  std::string_view rest = failed_ ? std::string_view() : buffer_;
-  int why = 0;
-  while (!rest.empty() && why == 0) {
+int OutputFile::put(std::string_view rest) {
+  while (!rest.empty()) {
     const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
-    if (count < 0) {
-      why = errno == EINTR ? 0 : errno;
-      continue;
-    }
-    const std::string_view written = rest.substr(0, static_cast<std::size_t>(count));
-    this->count(written);
-    rest.remove_prefix(written.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return errno;
+    this->count(rest.substr(0, static_cast<std::size_t>(count)));
+    rest.remove_prefix(static_cast<std::size_t>(count));
   }
-  buffer_.clear();
-  if (binary_.row > 0 && lines_ > 0 && !failed_) {
-    const std::string header = binary_.renewed(lines_ - 1);
-    if (pwrite(descriptor_, header.data(), header.size(), 0) < 0 && why == 0) why = errno;
+  return renew_header();
+}
+
+int OutputFile::renew_header() {
+  if (binary_.row == 0 || lines_ == 0) return 0;
+  const std::string header = binary_.renewed(lines_ - 1);
+  return pwrite(descriptor_, header.data(), header.size(), 0) < 0 ? errno : 0;
+}
+
+void OutputFile::cut() {
+  size_ = line_end_;
+  if (ftruncate(descriptor_, line_end_) != 0 || lseek(descriptor_, line_end_, SEEK_SET) < 0) lines_ = 0;
+}
+
+void OutputFile::drain() {
+  if (failed_ || descriptor_ < 0) return;
+  const std::int64_t before = size_;
+  const int why = put(buffer_);
+  if (why != 0 && regular_) {  // the rest, from the last whole line on, may find room yet: end_at()
+    std::string torn(static_cast<std::size_t>(size_ - line_end_), '\0');
+    const ssize_t got = pread(descriptor_, torn.data(), torn.size(), line_end_);
+    buffer_.erase(0, static_cast<std::size_t>(size_ - before));
+    buffer_.insert(0, torn, 0, static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+    cut();
+  } else {
+    buffer_.clear();
   }
   if (why == 0) return;
   failed_ = true;
-  if (regular_ && ftruncate(descriptor_, line_end_) != 0) lines_ = 0;
   throw OutputError(cannot_be_written(target_, std::strerror(why)));
 }
 
 void OutputFile::count(std::string_view written) {
-  const std::int64_t before = size_;
+  const std::int64_t before = size_, lines = lines_in(written);
+  lines_ += lines;
   size_ += static_cast<std::int64_t>(written.size());
-  if (binary_.row > 0) {
-    const auto header = static_cast<std::int64_t>(binary_.header), row = static_cast<std::int64_t>(binary_.row);
-    if (size_ < header) return;
-    lines_ = 1 + (size_ - header) / row;
-    line_end_ = header + (lines_ - 1) * row;
-    return;
+  if (lines == 0) return;
+  line_end_ = binary_.row > 0 ? start_of(lines_) : before + static_cast<std::int64_t>(written.rfind('\n')) + 1;
+}
+
+std::int64_t OutputFile::lines_in(std::string_view text) const {
+  if (binary_.row == 0) return std::count(text.begin(), text.end(), '\n');
+  const auto header = static_cast<std::int64_t>(binary_.header), row = static_cast<std::int64_t>(binary_.row);
+  const std::int64_t all = size_ + static_cast<std::int64_t>(text.size());
+  return all < header ? 0 : 1 + (all - header) / row - lines_;
+}
+
+std::int64_t OutputFile::lines_given() const {
+  return lines_ + lines_in(buffer_);
+}
+
+std::int64_t OutputFile::start_of(std::int64_t line) const {
+  if (line == 0) return 0;
+  if (binary_.row > 0)
+    return static_cast<std::int64_t>(binary_.header + static_cast<std::size_t>(line - 1) * binary_.row);
+  std::int64_t from = line_end_, behind = lines_ - line;  // lines that are passed on the way back
+  std::array<char, 1 << 16> piece;
+  while (from > 0) {
+    const auto size = static_cast<ssize_t>(std::min<std::int64_t>(from, piece.size()));
+    if (pread(descriptor_, piece.data(), static_cast<std::size_t>(size), from - size) != size) break;
+    for (ssize_t k = size; k > 0; --k, --from)
+      if (piece[static_cast<std::size_t>(k - 1)] == '\n' && behind-- == 0) return from;
   }
-  if (const std::size_t last = written.rfind('\n'); last != std::string_view::npos)
-    line_end_ = before + static_cast<std::int64_t>(last) + 1;
-  lines_ += std::count(written.begin(), written.end(), '\n');
+  return 0;
+}
+
+bool OutputFile::end_at(std::int64_t lines) {
+  failed_ = true;
+  if (lines <= lines_) {
+    line_end_ = start_of(lines);
+    lines_ = lines;
+    buffer_.clear();
+    cut();
+    return renew_header() == 0;
+  }
+  std::size_t bytes = 0;  // of the buffer, which begins where the file ends
+  if (binary_.row > 0)
+    bytes = static_cast<std::size_t>(start_of(lines) - size_);
+  else
+    for (std::int64_t k = lines_; k < lines; ++k) bytes = buffer_.find('\n', bytes) + 1;
+  const std::int64_t there = lines_, end = line_end_;
+  if (put(std::string_view(buffer_).substr(0, bytes)) == 0) {
+    buffer_.clear();
+    return true;
+  }
+  lines_ = there;
+  line_end_ = end;
+  cut();
+  return false;
+}
+
+bool OutputFile::reserve(std::size_t bytes) {
+  const int why = posix_fallocate(descriptor_, size_, static_cast<off_t>(bytes));
+  reserved_ = true;
+  if (why != ENOSPC && why != EDQUOT) return true;
+  cut();
+  return false;
 }
 
 void OutputFile::publish() {
@@ -241,13 +317,14 @@ void OutputFile::publish() {
 }
 
 void OutputFile::flush() {
-  write_out();
+  drain();
   publish();
 }
 
 void OutputFile::complete() {
   if (descriptor_ < 0) return;
-  write_out();
+  drain();
+  if (reserved_) (void)!ftruncate(descriptor_, size_);
   const bool closed = close(descriptor_) == 0;
   descriptor_ = -1;
   if (!closed) throw OutputError(cannot_be_written(target_, std::strerror(errno)));
@@ -255,11 +332,11 @@ void OutputFile::complete() {
 
 void OutputFile::commit() {
   complete();
-  publish();
+  if (!failed_ || lines_ > 0) publish();
 }
 
 std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos && !is_formula(text)) return std::string(text);
   std::string quoted = "\"";
   for (const char c : text) {
     quoted += c;

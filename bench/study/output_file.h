@@ -41,17 +41,30 @@ class OutputFile {
   // written to it later is not.
   void write(std::string_view text);
   void write(double value);                 // with 17 significant digits
-  void write_field(std::string_view text);  // a comma and a field of a CSV header, quoted also where a
-                                            // spreadsheet would take it for a formula
-  void flush();                             // what was written stands under the target's name
-  void complete();                          // what was written is on the disk, under either name
-  void commit();                            // the target is complete; after an error it is what was kept
+  void write_field(std::string_view text);  // a comma and a field of a CSV header
+  void drain();                             // what was written is on the disk
+  void flush();                             // and stands under the target's name
+  void complete();                          // nothing more is written
+  void commit();                            // the target is complete; after an error it is what was kept, if anything
+
+  // Of a file, where the disk is full. It ends with so many lines, the header counted, of those on the disk and of
+  // those that found no room; false: nor do so few find room.
+  bool end_at(std::int64_t lines);
+  // The place of so many bytes is its own from now on; false: there is none.
+  bool reserve(std::size_t bytes);
 
   const std::filesystem::path& target() const { return target_; }
   std::int64_t lines() const { return lines_; }  // on the disk, the header counted
+  std::int64_t lines_given() const;              // and those that are not there yet or found no room
+  bool is_file() const { return regular_; }
+  bool failed() const { return failed_; }
 
  private:
-  void write_out();
+  std::int64_t lines_in(std::string_view text) const;  // that follows what is on the disk
+  std::int64_t start_of(std::int64_t line) const;      // on the disk
+  int put(std::string_view text);                      // 0, or the system's error
+  int renew_header();
+  void cut();  // what was not a whole line
   void count(std::string_view written);
   void publish();
 
@@ -59,7 +72,7 @@ class OutputFile {
   std::filesystem::path target_, real_, temporary_;  // temporary_ is empty where the target itself is written
   std::vector<std::filesystem::path> folders_;       // made for it, the innermost first
   int descriptor_ = -1;
-  bool regular_ = false, failed_ = false;
+  bool regular_ = false, failed_ = false, reserved_ = false;
   std::int64_t size_ = 0, line_end_ = 0, lines_ = 0;  // bytes written, those of complete lines
   std::string buffer_;
 };
@@ -71,7 +84,7 @@ void remove_unfinished() noexcept;
 bool is_device(const std::filesystem::path& file);
 // Of a name like /dev/stdout, or "-"; -1 of any other.
 int open_descriptor(const std::filesystem::path& file);
-// A field of CSV, quoted where it has to be.
+// A field of CSV, quoted where it has to be, and where a spreadsheet would take it for a formula.
 std::string csv_field(std::string_view text);
 
 }  // namespace poinsot::study
