@@ -8,13 +8,13 @@
 namespace poinsot::test {
 namespace {
 
-using Spelling = std::tuple<std::string, std::string>;  // model, formulation
+using Written = std::tuple<std::string, std::string>;  // model, formulation
 
-std::string name_of(const ::testing::TestParamInfo<Spelling>& test) {
+std::string name_of(const ::testing::TestParamInfo<Written>& test) {
   return std::get<0>(test.param) + "_" + std::get<1>(test.param);
 }
 
-class KinematicsOfSpellings : public ::testing::TestWithParam<Spelling> {};
+class KinematicsOfSpellings : public ::testing::TestWithParam<Written> {};
 
 TEST_P(KinematicsOfSpellings, IsTheSame) {
   const auto& [model, formulation] = GetParam();
@@ -28,7 +28,7 @@ INSTANTIATE_TEST_SUITE_P(All, KinematicsOfSpellings,
                                             ::testing::ValuesIn(formulation_names())),
                          name_of);
 
-class DynamicsOfSpellings : public ::testing::TestWithParam<Spelling> {};
+class DynamicsOfSpellings : public ::testing::TestWithParam<Written> {};
 
 // The rows differ, what they span does not: the reactions do, so the discrete motion does.
 TEST_P(DynamicsOfSpellings, IsTheSame) {

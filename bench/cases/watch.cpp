@@ -6,7 +6,7 @@
 namespace poinsot::cases {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSameTime = 1e-9;  // relative
 
 }  // namespace
@@ -53,7 +53,7 @@ void Watch::observe_energy(const Sample& sample) {
 std::vector<double> Watch::errors(const study::Reference& reference) const {
   study::PerQuantity error =
       study::difference(motion_, reference.motion, study::sizes(reference.motion, *model_), *model_);
-  if (model_->rows.empty()) error.back() = kNone;
+  if (model_->rows.empty()) error.back() = kMissing;
   return {error.begin(), error.end()};
 }
 
@@ -66,15 +66,15 @@ std::vector<double> Watch::values(const Statistics& s, const study::Reference* r
     if (quantity.least) values.push_back(seen.range.low);
     if (quantity.greatest) values.push_back(seen.range.high);
     if (quantity.range) values.push_back(seen.range.high - seen.range.low);
-    for (std::size_t n = 0; n < quantity.at.size(); ++n) values.push_back(n < seen.at.size() ? seen.at[n] : kNone);
+    for (std::size_t n = 0; n < quantity.at.size(); ++n) values.push_back(n < seen.at.size() ? seen.at[n] : kMissing);
   }
   if (kept_.errors) {
     const std::vector<double> all =
-        reference ? errors(*reference) : std::vector<double>(study::kQuantities.size(), kNone);
+        reference ? errors(*reference) : std::vector<double>(study::kQuantities.size(), kMissing);
     values.insert(values.end(), all.begin(), all.end());
   }
   if (kept_.violation) values.insert(values.end(), {s.violation.position, s.violation.velocity});
-  if (kept_.energy_drift) values.push_back(conservative_ && kinetic_ > 0 ? drift_ / kinetic_ : kNone);
+  if (kept_.energy_drift) values.push_back(conservative_ && kinetic_ > 0 ? drift_ / kinetic_ : kMissing);
   if (kept_.counts)
     for (const std::int64_t n : {s.steps, s.newton_iterations, s.factorizations})
       values.push_back(static_cast<double>(n));

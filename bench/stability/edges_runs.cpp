@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRate = 14.715;  // m g l/J of a rod of 1 m about its end, 1/s²
 
-std::vector<double> rod(double start, double g, double t) {
+std::vector<double> swung_rod(double start, double g, double t) {
   const double angle = swing(std::sqrt(kRate * g), start, t).angle;
   return {std::sin(angle) / 2, -std::cos(angle) / 2};
 }
@@ -44,7 +44,7 @@ Family inconsistent() {
   f.y = accuracy();
   f.columns = {"rod.y", "rod.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
-    return {rod(std::numbers::pi / 2, 1 + at.nudge, t)};
+    return {swung_rod(std::numbers::pi / 2, 1 + at.nudge, t)};
   };
   return f;
 }

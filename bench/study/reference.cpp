@@ -15,7 +15,7 @@ namespace poinsot::study {
 namespace {
 using Json = nlohmann::json;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 struct MethodEntry {
   const char *integrator, *formulation;
@@ -53,7 +53,7 @@ Json packed(const PerQuantity& difference) {
 PerQuantity unpacked(const Json& list) {
   PerQuantity difference;
   for (std::size_t k = 0; k < difference.size(); ++k)
-    difference[k] = list.at(k).is_null() ? kInfinity : list.at(k).get<double>();
+    difference[k] = list.at(k).is_null() ? kUnlimited : list.at(k).get<double>();
   return difference;
 }
 
@@ -137,7 +137,7 @@ struct Pair {
 Pair tightest_pair(const Scene& scene, const MethodEntry& entry, const ReferenceSettings& asked) {
   Pair pair{{entry.integrator, entry.formulation, 0, 0, {}, {}, {}}, {}, {}};
   Reference::Method& method = pair.method;
-  method.apart.fill(kInfinity);
+  method.apart.fill(kUnlimited);
   method.tight = std::max(std::pow(10.0, -asked.digits - 1), entry.smallest);
   for (int retreat = 0;; ++retreat, method.tight *= kRetreat) {
     method.loose = kApart * method.tight;
