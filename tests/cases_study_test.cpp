@@ -7,6 +7,7 @@
 #include <set>
 
 #include "bench/cases/case_table.h"
+#include "bench/cases/computation.h"
 #include "bench/cases/study_file.h"
 #include "core/input_error.h"
 
@@ -88,6 +89,33 @@ TEST(CasesStudy, ShardsAndATenthAreDisjointAndComplete) {
   const Selection quick(study, true);
   ASSERT_EQ(quick.size(), 8);  // four of 37 lengths, in both formulations
   for (std::int64_t k = 0; k < quick.size(); ++k) EXPECT_EQ(quick.at(k), k / 2 * 22 + k % 2);
+}
+
+// As a program does it, without a command line; what is there already is not computed again.
+TEST(CasesStudy, AFewLinesComputeOne) {
+  const auto folder = std::filesystem::temp_directory_path() / "poinsot_cases_study_test";
+  std::filesystem::remove_all(folder);
+  Json document = table()["base"];
+  document.erase("pictures");
+  for (const bool again : {false, true}) {
+    ComputationOptions options;
+    options.folder = folder;
+    options.threads = 1;
+    Computation computation(study_of(document), options);
+    EXPECT_EQ(computation.there(), again ? 4 : 0);
+    computation.compute();
+    ASSERT_TRUE(computation.complete());
+    std::vector<std::filesystem::path> written;
+    EXPECT_EQ(computation.conclude(written), "");
+    EXPECT_EQ(computation.failures(), 0);
+    ASSERT_EQ(written, std::vector{folder / "cases.csv"});
+    std::ifstream in(written.front());
+    std::string line;
+    int rows = 0;
+    while (std::getline(in, line)) rows += !line.starts_with("#");
+    EXPECT_EQ(rows, 1 + 4);
+  }
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
-#include "app/run_files.h"
+#include "bench/records/run_files.h"
 
 #include <fmt/format.h>
 
 #include "core/interruption.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 using namespace study;
 namespace {
 
@@ -106,4 +106,4 @@ void RunFiles::commit(const std::string& record) {
   if (record_) record_->commit();
 }
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records
