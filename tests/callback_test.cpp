@@ -70,7 +70,8 @@ Scene with_callback(bool with_sensitivity) {
 }
 
 // A spring of length 0 pulls along its span and is smooth everywhere: what the callback computes, by another way. In rp
-// the two are equal as far as Euler parameters are of unit length.
+// the two differ in the part along p, which the multiplier of the normalization takes up, and a stabilized method sees
+// that: by a small part of its own error, which a run of half the step shows.
 TEST(Callback, is_the_element_it_computes_in_every_formulation_and_integrator) {
   for (const std::string& formulation : formulation_names()) {
     for (const IntegratorEntry& integrator : integrators()) {
@@ -78,10 +79,15 @@ TEST(Callback, is_the_element_it_computes_in_every_formulation_and_integrator) {
       Settings settings = controlled(integrator.name, formulation, 1e-9, 0.5, 0.1);
       settings.step = 0.005;
       settings.tolerance = 1e-10;
-      const Recorded expected = run(with_elements(), settings);
-      const double allowed = 2e-7 + 10 * expected.outcome.statistics.violation.position;
+      const std::vector<Snapshot> expected = motion(with_elements(), settings);
+      double allowed = 2e-7;
+      if (formulation == "rp" && !integrator.controls_error) {
+        Settings half = settings;
+        half.step /= 2;
+        allowed += 0.01 * distance(motion(with_elements(), half), expected).largest();
+      }
       for (const bool with_sensitivity : {true, false}) {
-        const Distance off = distance(motion(with_callback(with_sensitivity), settings), expected.samples);
+        const Distance off = distance(motion(with_callback(with_sensitivity), settings), expected);
         EXPECT_LT(off.largest(), allowed) << integrator.name << " in " << formulation << ": " << off;
       }
     }

@@ -2,7 +2,8 @@
 //
 //   Computation computation(read_study("study.json"), {});
 //   computation.compute();
-//   if (computation.complete()) computation.conclude();
+//   std::vector<std::filesystem::path> written;
+//   if (computation.complete()) computation.conclude(written);
 //
 // Computing goes on where an earlier one in the same folder stopped. An interruption (core/interruption.h) ends it
 // after the cases under way.
