@@ -3,16 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/json_output.h"
-#include "app/name_list.h"
 #include "app/options.h"
+#include "app/scene_lines.h"
 #include "app/terminal.h"
 #include "bench/study/advice.h"
 #include "bench/study/measure.h"
+#include "bench/study/name_list.h"
 #include "bench/study/startable_scene.h"
 #include "core/expression.h"
 #include "core/input_error.h"
@@ -180,9 +180,9 @@ int run_advise(const Options& options) {
   std::vector<std::string> notices = scene.notices;
   const Advice advice = advise(scene, end, what, Cache(options.cache), notices);
   if (!options.quiet)
-    for (const std::string& notice : notices) print_notice(notice);
+    for (const std::string& notice : notices) print_notice(with_lines_of(options.scene, notice));
   if (advice.reference.given < 0) {
-    print_error(fmt::format("nothing can be checked: {}", why_none(advice.reference)));
+    print_error(fmt::format("nothing can be checked: {}", with_lines_of(options.scene, why_none(advice.reference))));
     return kNumericsFailed;
   }
   for (const std::size_t quantity : advice.unresolved)
@@ -199,25 +199,24 @@ int run_advise(const Options& options) {
 }  // namespace
 
 void add_advise(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("advise", "find the cheapest way to an accuracy on a scene, by trying");
-  const auto options = std::make_shared<Options>();
-  add_scene(*command, options->scene);
-  add_set(*command, options->set);
+  const auto [command, options] =
+      add_command(app, status, "advise", "find the cheapest way to an accuracy on a scene, by trying", run_advise);
+  add_scene(command, options.scene);
+  add_set(command, options.set);
   command
-      ->add_option("--accuracy", options->accuracy,
-                   fmt::format("largest error, relative to the motion (default {})", options->accuracy))
+      .add_option("--accuracy", options.accuracy,
+                  fmt::format("largest error, relative to the motion (default {})", options.accuracy))
       ->type_name("X");
   command
-      ->add_option("--of", options->of,
-                   fmt::format("what must be so accurate, with commas between: {} (default {})",
-                               fmt::join(kQuantities, ", "), options->of))
+      .add_option("--of", options.of,
+                  fmt::format("what must be so accurate, with commas between: {} (default {})",
+                              fmt::join(kQuantities, ", "), options.of))
       ->type_name("NAMES");
-  add_end(*command, options->end);
-  add_cache(*command, options->cache);
-  add_json(*command, options->json);
-  add_quiet(*command, options->quiet);
-  command->footer("Everything named has been run on this scene and compared with a reference (`poinsot reference`).");
-  command->callback([options, &status] { status = run_advise(*options); });
+  add_end(command, options.end);
+  add_cache(command, options.cache);
+  add_json(command, options.json);
+  add_quiet(command, options.quiet);
+  command.footer("Everything named has been run on this scene and compared with a reference (`poinsot reference`).");
 }
 
 }  // namespace poinsot::app

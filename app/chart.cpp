@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <iterator>
-#include <memory>
 #include <set>
 
 #include "app/commands.h"
 #include "app/models_directory.h"
 #include "app/options.h"
 #include "app/progress_line.h"
+#include "app/scene_lines.h"
 #include "app/terminal.h"
 #include "bench/study/fronts.h"
 #include "bench/study/measure.h"
@@ -109,11 +109,11 @@ int chart(const Options& options) {
     const Reference r = reference(scenes[k], {end, end / kOutputs, plan.digits}, Cache(options.cache), said);
     for (const std::string& notice : said) {
       progress.clear();
-      if (!options.quiet) print_notice(notice);
+      if (!options.quiet) print_notice(with_lines_of(files[k], notice));
     }
     if (r.given < 0) {
       progress.clear();
-      print_error(fmt::format("{}: no chart: {}", shown_input(files[k]), why_none(r)));
+      print_error(fmt::format("{}: no chart: {}", shown_input(files[k]), with_lines_of(files[k], why_none(r))));
       status = kNumericsFailed;
       continue;
     }
@@ -160,25 +160,24 @@ int chart(const Options& options) {
 }  // namespace
 
 void add_chart(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("chart", "measure speed against accuracy of all methods, and draw it");
-  const auto options = std::make_shared<Options>();
-  command->add_option("scenes", options->scenes, "scene files")->type_name("SCENE");
-  add_set(*command, options->set);
-  command->add_flag("--all", options->all, "the models that came with the program, too");
-  add_models(*command, options->models);
-  add_out_folder(*command, options->out, "a CSV, SVG and PNG for each scene, and of several a summary of the fronts");
-  command->add_flag("--quick", options->quick, "a reduced set: fewer and shorter runs, a reference of ten digits");
-  add_end(*command, options->end);
-  add_names(*command, "formulation", options->formulations);
-  add_names(*command, "integrator", options->integrators);
-  add_names(*command, "linear_solver", options->linear_solvers);
-  command->add_flag("--fresh", options->fresh, "measure everything, also what the folder holds already");
-  add_cache(*command, options->cache);
-  add_quiet(*command, options->quiet);
-  command->footer(
+  const auto [command, options] =
+      add_command(app, status, "chart", "measure speed against accuracy of all methods, and draw it", chart);
+  command.add_option("scenes", options.scenes, "scene files")->type_name("SCENE");
+  add_set(command, options.set);
+  command.add_flag("--all", options.all, "the models that came with the program, too");
+  add_models(command, options.models);
+  add_out_folder(command, options.out, "a CSV, SVG and PNG for each scene, and of several a summary of the fronts");
+  command.add_flag("--quick", options.quick, "a reduced set: fewer and shorter runs, a reference of ten digits");
+  add_end(command, options.end);
+  add_names(command, "formulation", options.formulations);
+  add_names(command, "integrator", options.integrators);
+  add_names(command, "linear_solver", options.linear_solvers);
+  command.add_flag("--fresh", options.fresh, "measure everything, also what the folder holds already");
+  add_cache(command, options.cache);
+  add_quiet(command, options.quiet);
+  command.footer(
       "Errors are those against a reference (`poinsot reference`). A sweep that was interrupted goes on where it\n"
       "stopped when the command is given again.");
-  command->callback([options, &status] { status = chart(*options); });
 }
 
 }  // namespace poinsot::app

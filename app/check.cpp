@@ -1,265 +1,57 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "app/commands.h"
 #include "app/json_output.h"
 #include "app/options.h"
+#include "app/scene_lines.h"
 #include "app/terminal.h"
-#include "bench/study/scene_check.h"
+#include "bench/study/scene_check_text.h"
 #include "core/json_document.h"
-#include "core/printable.h"
 #include "core/scene_reader.h"
-#include "formulations/registry.h"
 
 namespace poinsot::app {
 using namespace study;
 namespace {
-using Json = nlohmann::ordered_json;
-
 struct Options {
   std::string scene;
   std::vector<std::string> set;
   bool json = false, quiet = false;
 };
 
-std::string count(std::size_t n, std::string_view one) {
-  return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
-}
-
-// "joint 'hinge'", "driver 'motor'": the groups that rows belong to. Rows of a group lie together.
-std::vector<std::string> groups_of(const Model& model, std::span<const int> rows) {
-  constexpr const char* kinds[] = {"constraint", "joint", "driver"};
-  std::vector<std::string> groups;
-  int last = -1;
-  for (const int row : rows) {
-    const int k = model.rows[static_cast<std::size_t>(row)].group;
-    if (k == std::exchange(last, k)) continue;
-    const Group& group = model.groups[static_cast<std::size_t>(k)];
-    groups.push_back(fmt::format("{} '{}'", kinds[static_cast<int>(group.kind)], group.name));
-  }
-  return groups;
-}
-
-// The first few of them.
-std::string groups_text(const Model& model, std::span<const int> rows) {
-  constexpr std::size_t most = 8;
-  const std::vector<std::string> groups = groups_of(model, rows);
-  const std::size_t shown = std::min(most, groups.size());
-  const std::string text = fmt::format("{}", fmt::join(std::span(groups).first(shown), ", "));
-  return groups.size() > most ? fmt::format("{} and {} more", text, groups.size() - most) : text;
-}
-
-void print_header(const Model& model) {
-  const std::size_t forces = model.point_forces.size() + model.torques.size() + model.springs.size() +
-                             model.torsions.size() + model.drags.size();
-  fmt::print("{}: {} {}, {}, {}\n", printable(model.name), model.bodies.size(),
-             model.bodies.size() == 1 ? "body" : "bodies", count(model.rows.size(), "constraint row"),
-             count(forces, "force"));
-}
-
-void print_measures(const SceneCheck& found) {
-  const Vector3 &x = found.extent, &g = found.model->gravity;
-  fmt::print("mass: {:.6g} kg; extent: {:.4g} x {:.4g} x {:.4g} m; gravity: {}\n", found.mass, x.x(), x.y(), x.z(),
-             g.isZero(0) ? "none" : fmt::format("[{:g}, {:g}, {:g}] m/s2", g.x(), g.y(), g.z()));
-}
-
-// Of the first joints; in a scene of thousands nobody reads them all.
-void print_joints(const Model& model) {
-  constexpr int most = 20;
-  int joints = 0;
-  for (const Group& group : model.groups) {
-    if (group.kind != GroupKind::joint || ++joints > most) continue;
-    fmt::print("joint '{}' leaves free: {}\n", group.name, left_free(group));
-  }
-  if (joints > most) fmt::print("... and {} more joints\n", joints - most);
-}
-
-void print_constraints(const SceneCheck& found) {
-  const Model& model = *found.model;
-  const RankAnalysis& analysis = found.rank;
-  const std::vector<Conflict>& conflicts = analysis.conflicts;
-  fmt::print("degrees of freedom: {}\n", analysis.degrees_of_freedom());
-  if (analysis.singular_position())
-    fmt::print("  the initial pose is a singular position: {} independent rows here, {} beside it\n",
-               analysis.rank_here, analysis.rank);
-  for (const Dependency& d : analysis.singular)
-    fmt::print("  {} is singular here: {}\n", describe_row(model, d.row),
-               d.others.empty() ? "its gradient vanishes" : "it follows from " + groups_text(model, d.others));
-  const std::size_t redundant = analysis.dependent.size() - conflicts.size();
-  fmt::print("redundant constraints: {}\n", redundant == 0 ? "none" : count(redundant, "row"));
-  if (!analysis.named)
-    fmt::print("  {} dependent rows in a mechanism so connected: what each follows from is not worked out\n",
-               analysis.dependent.size());
-  const auto from = [&](const Dependency& d) { return analysis.named ? groups_text(model, d.others) : "other rows"; };
-  // Both lists are by row.
-  auto conflict = conflicts.begin();
-  for (const Dependency& d : analysis.dependent) {
-    if (conflict != conflicts.end() && conflict->row == d.row)
-      ++conflict;
-    else
-      fmt::print("  {} follows from {}\n", describe_row(model, d.row), from(d));
-  }
-  fmt::print("conflicting constraints: {}\n", conflicts.empty() ? "none" : count(conflicts.size(), "row"));
-  conflict = conflicts.begin();
-  for (const Dependency& d : analysis.dependent) {
-    if (conflict == conflicts.end() || conflict->row != d.row) continue;
-    fmt::print("  {} contradicts {}: off by {} where those hold\n", describe_row(model, d.row), from(d),
-               describe(*conflict));
-    ++conflict;
-  }
-}
-
-std::vector<int> undetermined_rows(const SceneCheck& found) {
-  std::vector<int> rows;
-  for (const int group : found.rank.undetermined)
-    rows.push_back(found.model->groups[static_cast<std::size_t>(group)].first_row);
-  return rows;
-}
-
-void print_undetermined(const SceneCheck& found) {
-  if (found.rank.undetermined.empty()) return;
-  fmt::print("reactions that redundant rows leave undetermined: {}\n",
-             printable(groups_text(*found.model, undetermined_rows(found))));
-}
-
-void print_doubt(const SceneCheck& found) {
-  const RankAnalysis& analysis = found.rank;
-  if (analysis.doubtful < 0) return;
-  fmt::print("neither dependent nor clearly independent: {}, of which {:.0e} is left beside the others\n",
-             describe_row(*found.model, analysis.doubtful), analysis.doubt);
-}
-
-void print_state(const SceneCheck& found) {
-  const auto line = [&](const char* what, double largest, int row, int order) {
-    if (largest <= kSatisfied)
-      fmt::print("{}: consistent, largest violation {:.2g}\n", what, largest);
-    else
-      fmt::print("{}: violates {} by {}, the most of all\n", what, describe_row(*found.model, row),
-                 describe_residual(*found.model, row, largest, order));
-  };
-  const Violation& v = found.violation;
-  line("initial pose", v.position, v.position_row, 0);
-  line("initial velocities", v.velocity, v.velocity_row, 1);
-}
-
-void print_derivatives(const SceneCheck& found) {
-  std::vector<std::string_view> names;
-  for (const FormulationEntry& formulation : formulations()) names.push_back(formulation.name);
-  fmt::print("derivatives: {} compared ({}), {}\n", found.derivatives, fmt::join(names, ", "),
-             found.wrong.empty() ? fmt::format("all right, largest relative difference {:.2g}", found.derivative_error)
-                                 : fmt::format("{} wrong", found.wrong.size()));
-  for (const auto& [formulation, derivative] : found.wrong)
-    fmt::print("  {}: {}: {} is off by {:.3g}\n", formulation, derivative.name, derivative.what, derivative.error);
-}
-
-// All of it but the derivatives, which are not compared where no run can start.
-void print_text(const SceneCheck& found) {
-  print_header(*found.model);
-  print_measures(found);
-  print_joints(*found.model);
-  print_constraints(found);
-  print_undetermined(found);
-  print_doubt(found);
-  print_state(found);
-  if (!found.rank.conflicts.empty() || !found.refusal.empty()) return;
-  if (!found.consistent())
-    for (const std::string& notice : found.start.notices) fmt::print("  {}\n", printable(notice));
-  print_derivatives(found);
-}
-
-struct Verdict {
-  int status = kDone;
-  std::string message;
-};
-
-Verdict verdict(const SceneCheck& found) {
-  if (!found.rank.conflicts.empty())
-    return {kWrongInput, "the constraints conflict; remove or correct one of those named"};
-  if (!found.refusal.empty()) return {kWrongInput, found.refusal};
-  if (found.sound()) return {};
-  // Derivatives that are not finite are why the start fails where they are: they are named first.
-  return {kNumericsFailed,
-          found.wrong.empty() || found.start.status.failure == Failure::not_finite
-              ? found.start.status.message
-              : "derivatives are wrong or not finite at t = 0; try functions of time that have two derivatives there"};
-}
-
-Json check_json(const SceneCheck& found) {
-  const Model& model = *found.model;
-  const RankAnalysis& rank = found.rank;
-  const auto dependencies = [&](std::span<const Dependency> all, bool conflicting) {
-    Json list = Json::array();
-    for (const Dependency& d : all) {
-      const auto conflict = std::ranges::find(rank.conflicts, d.row, &Conflict::row);
-      if ((conflict != rank.conflicts.end()) != conflicting) continue;
-      Json& one =
-          list.emplace_back(Json{{"row", describe_row(model, d.row)}, {"follows_from", groups_of(model, d.others)}});
-      if (conflicting) one["off_by"] = describe(*conflict);
-    }
-    return list;
-  };
-  Json joints = Json::array();
-  for (const Group& group : model.groups)
-    if (group.kind == GroupKind::joint)
-      joints.push_back({{"name", group.name}, {"leaves_free", std::string(left_free(group))}});
-  std::vector<std::string> notices = found.notices;
-  notices.insert(notices.end(), found.start.notices.begin(), found.start.notices.end());
-  Json wrong = Json::array();
-  for (const auto& [formulation, derivative] : found.wrong)
-    wrong.push_back({{"formulation", formulation},
-                     {"of", derivative.name},
-                     {"what", derivative.what},
-                     {"off_by", derivative.error}});
-  return {{"scene", model.name},
-          {"bodies", model.bodies.size()},
-          {"rows", model.rows.size()},
-          {"mass", found.mass},
-          {"extent", {found.extent.x(), found.extent.y(), found.extent.z()}},
-          {"gravity", {model.gravity.x(), model.gravity.y(), model.gravity.z()}},
-          {"joints", joints},
-          {"degrees_of_freedom", rank.degrees_of_freedom()},
-          {"singular_position", rank.singular_position()},
-          {"singular", dependencies(rank.singular, false)},
-          {"redundant", dependencies(rank.dependent, false)},
-          {"conflicting", dependencies(rank.dependent, true)},
-          {"undetermined_reactions", groups_of(model, undetermined_rows(found))},
-          {"violation", {{"position", found.violation.position}, {"velocity", found.violation.velocity}}},
-          {"notices", notices},
-          {"derivatives",
-           {{"compared", found.derivatives}, {"largest_difference", found.derivative_error}, {"wrong", wrong}}},
-          {"sound", found.sound()},
-          {"message", verdict(found).message}};
+int status_of(const SceneCheck& found) {
+  if (!found.rank.conflicts.empty() || !found.refusal.empty()) return kWrongInput;
+  return found.sound() ? kDone : kNumericsFailed;
 }
 
 int run_check(const Options& options) {
-  const SceneCheck found = check_scene(read_scene(options.scene, values_set(options.set)));
+  const Scene scene = read_scene(options.scene, values_set(options.set));
+  const SceneCheck found = check_scene(scene);
+  const auto placed = [&](std::string_view sentence) { return with_lines_of(options.scene, sentence); };
   if (!options.quiet && !options.json)
-    for (const std::string& notice : found.notices) print_notice(notice);
+    for (const std::string& notice : found.notices) print_notice(placed(notice));
   if (options.json)
     print_json(stdout, check_json(found));
   else if (!options.quiet)
-    print_text(found);
-  const auto [status, message] = verdict(found);
-  if (status != kDone) print_error(fmt::format("{}: {}", shown_input(options.scene), message));
-  return status;
+    fmt::print("{}", placed(with_key_paths(check_text(found), scene)));
+  if (const int status = status_of(found); status != kDone) {
+    print_error(fmt::format("{}: {}", shown_input(options.scene), placed(verdict(found))));
+    return status;
+  }
+  return kDone;
 }
 
 }  // namespace
 
 void add_check(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
-      "check", "degrees of freedom, redundant and conflicting constraints, initial state, derivatives");
-  const auto options = std::make_shared<Options>();
-  add_scene(*command, options->scene);
-  add_set(*command, options->set);
-  add_json(*command, options->json);
-  add_quiet(*command, options->quiet);
-  command->callback([options, &status] { status = run_check(*options); });
+  const auto [command, options] =
+      add_command(app, status, "check",
+                  "degrees of freedom, redundant and conflicting constraints, initial state, derivatives", run_check);
+  add_scene(command, options.scene);
+  add_set(command, options.set);
+  add_json(command, options.json);
+  add_quiet(command, options.quiet);
 }
 
 }  // namespace poinsot::app

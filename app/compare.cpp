@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/json_output.h"
+#include "app/options.h"
 #include "app/terminal.h"
 #include "core/printable.h"
 
@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string a, b;
-  bool json = false;
+  bool json = false, quiet = false;
 };
 
 Json as_json(const Comparison& c) {
@@ -76,26 +76,28 @@ void print_text(const Options& options, const Comparison& c) {
   if (c.same()) fmt::print("nothing else differs\n");
 }
 
+int compare_folders(const Options& options) {
+  const Results a = read_results(options.a), b = read_results(options.b);
+  const Comparison result = compare(a, b);
+  if (options.json)
+    print_json(stdout, as_json(result));
+  else if (!options.quiet)
+    print_text(options, result);
+  return kDone;
+}
+
 }  // namespace
 
 void add_compare(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("compare", "tell what changed between two folders of results");
-  const auto options = std::make_shared<Options>();
-  command->add_option("A", options->a, "the results before")->required()->type_name("DIR");
-  command->add_option("B", options->b, "the results after")->required()->type_name("DIR");
-  add_json(*command, options->json);
-  command->footer(
+  const auto [command, options] =
+      add_command(app, status, "compare", "tell what changed between two folders of results", compare_folders);
+  command.add_option("A", options.a, "the results before")->required()->type_name("DIR");
+  command.add_option("B", options.b, "the results after")->required()->type_name("DIR");
+  add_json(command, options.json);
+  add_quiet(command, options.quiet);
+  command.footer(
       "Times have changed where the interval of the quotients of their repetitions does not hold 1; they are compared\n"
       "of one processor, compiler and flags only. The exit status is 0 whatever changed.");
-  command->callback([options, &status] {
-    const Results a = read_results(options->a), b = read_results(options->b);
-    const Comparison result = compare(a, b);
-    if (options->json)
-      print_json(stdout, as_json(result));
-    else
-      print_text(*options, result);
-    status = kDone;
-  });
 }
 
 }  // namespace poinsot::app

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <memory>
 
 #include "app/commands.h"
 #include "app/models_directory.h"
@@ -95,15 +94,14 @@ std::string footer() {
 }  // namespace
 
 void add_figures(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("figures", "compute and draw the paper's figures, and more of their kind");
-  const auto options = std::make_shared<Options>();
-  command->add_option("NAME", options->names, "of a figure, see below (default: all)")->type_name("");
-  add_out_folder(*command, options->out, "the Markdown page, CSV files and pictures");
-  add_models(*command, options->models);
-  command->add_flag("--quick", options->quick, "fewer and longer steps, shorter motions: to see that it works");
-  add_quiet(*command, options->quiet);
-  command->footer(footer());
-  command->callback([options, &status] { status = compute_figures(*options); });
+  const auto [command, options] = add_command(
+      app, status, "figures", "compute and draw the paper's figures, and more of their kind", compute_figures);
+  command.add_option("NAME", options.names, "of a figure, see below (default: all)")->type_name("");
+  add_out_folder(command, options.out, "the Markdown page, CSV files and pictures");
+  add_models(command, options.models);
+  command.add_flag("--quick", options.quick, "fewer and longer steps, shorter motions: to see that it works");
+  add_quiet(command, options.quiet);
+  command.footer(footer());
 }
 
 }  // namespace poinsot::app

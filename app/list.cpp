@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -80,21 +79,21 @@ Json lists() {
           {"jacobians", listed(jacobians())},           {"stopping_tests", listed(stopping_tests())}};
 }
 
+int list(const Options& options) {
+  if (options.json)
+    print_json(stdout, lists());
+  else if (!options.quiet)
+    print_lists();
+  return kDone;
+}
+
 }  // namespace
 
 void add_list(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("list", "formulations, integrators, linear solvers and Newton matrices there are");
-  const auto options = std::make_shared<Options>();
-  add_json(*command, options->json);
-  add_quiet(*command, options->quiet);
-  command->callback([options, &status] {
-    if (options->json)
-      print_json(stdout, lists());
-    else if (!options->quiet)
-      print_lists();
-    status = kDone;
-  });
+  const auto [command, options] =
+      add_command(app, status, "list", "formulations, integrators, linear solvers and Newton matrices there are", list);
+  add_json(command, options.json);
+  add_quiet(command, options.quiet);
 }
 
 }  // namespace poinsot::app

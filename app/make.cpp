@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <memory>
 #include <string>
 
 #include "app/commands.h"
@@ -47,19 +46,17 @@ int make(const Options& options) {
 }  // namespace
 
 void add_make(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("make", "write a scene of any size: " + structures());
-  const auto options = std::make_shared<Options>();
+  const auto [command, options] = add_command(app, status, "make", "write a scene of any size: " + structures(), make);
   std::string about;
   for (const SceneGenerator& generator : scene_generators()) {
     about += fmt::format("\n  {}: {}", generator.name, generator.about);
   }
-  command->add_option("STRUCTURE", options->structure, "one of:" + about)->required()->type_name("");
-  command->add_option("--bodies", options->bodies, fmt::format("at least so many (default {})", options->bodies))
+  command.add_option("STRUCTURE", options.structure, "one of:" + about)->required()->type_name("");
+  command.add_option("--bodies", options.bodies, fmt::format("at least so many (default {})", options.bodies))
       ->type_name("N");
-  command->add_option("--out", options->out, "the scene file (default: -, the standard output)")->type_name("FILE");
-  options->out = "-";
-  add_quiet(*command, options->quiet);
-  command->callback([options, &status] { status = make(*options); });
+  command.add_option("--out", options.out, "the scene file (default: -, the standard output)")->type_name("FILE");
+  options.out = "-";
+  add_quiet(command, options.quiet);
 }
 
 }  // namespace poinsot::app

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/name_list.h"
+#include "bench/study/name_list.h"
 #include "bench/study/natural_end.h"
 #include "core/input_error.h"
 #include "integrators/settings_reader.h"
@@ -92,7 +92,7 @@ void add_names(CLI::App& command, std::string_view setting, std::string& list) {
 }
 
 std::vector<std::string> names_given(std::string_view setting, const std::string& list) {
-  return names_in(option_of(setting), list, find_setting(setting)->names());
+  return study::names_in(option_of(setting), list, find_setting(setting)->names());
 }
 
 }  // namespace poinsot::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,21 @@
 #include "core/scene_reader.h"
 
 namespace poinsot::app {
+
+// A subcommand that is done by `run`, whose result is the exit status, and what its options are to fill in.
+template <class Options>
+struct Subcommand {
+  CLI::App& command;
+  Options& options;
+};
+template <class Options>
+Subcommand<Options> add_command(CLI::App& app, int& status, const std::string& name, const std::string& about,
+                                int (*run)(const Options& options)) {
+  CLI::App* const command = app.add_subcommand(name, about);
+  const auto options = std::make_shared<Options>();
+  command->callback([options, run, &status] { status = run(*options); });
+  return {*command, *options};
+}
 
 void add_scene(CLI::App& command, std::string& file);
 // --set NAME=VALUE, for every command that takes scenes; what it gave, for read_scene(). Throws InputError.

@@ -1,15 +1,15 @@
 #include <fmt/format.h>
 
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
 #include "app/json_output.h"
 #include "app/named_files.h"
 #include "app/options.h"
-#include "app/run_record.h"
+#include "app/scene_lines.h"
 #include "app/terminal.h"
-#include "app/trajectory_writer.h"
+#include "bench/records/run_record.h"
+#include "bench/records/trajectory_writer.h"
 #include "bench/study/reference.h"
 #include "bench/study/startable_scene.h"
 #include "core/input_error.h"
@@ -18,6 +18,7 @@
 
 namespace poinsot::app {
 using namespace study;
+using namespace records;
 namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -114,9 +115,9 @@ int run(const Options& options) {
     if (!m.failure.empty() && r.given >= 0)
       notices.push_back(fmt::format("{} in {} gives no reference: {}", m.integrator, m.formulation, m.failure));
   if (!options.quiet)
-    for (const std::string& notice : notices) print_notice(notice);
+    for (const std::string& notice : notices) print_notice(with_lines_of(options.scene, notice));
   if (r.given < 0) {
-    print_error(why_none(r));
+    print_error(with_lines_of(options.scene, why_none(r)));
     return kNumericsFailed;
   }
   if (trajectory) {
@@ -140,29 +141,28 @@ int run(const Options& options) {
 }  // namespace
 
 void add_reference(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("reference", "compute a motion as exactly as can be, and how exact it is");
-  const auto options = std::make_shared<Options>();
-  add_scene(*command, options->scene);
-  add_set(*command, options->set);
-  add_end(*command, options->end);
-  command->add_option("--every", options->every, fmt::format("time between output rows, s (default: end/{})", kRows))
+  const auto [command, options] =
+      add_command(app, status, "reference", "compute a motion as exactly as can be, and how exact it is", run);
+  add_scene(command, options.scene);
+  add_set(command, options.set);
+  add_end(command, options.end);
+  command.add_option("--every", options.every, fmt::format("time between output rows, s (default: end/{})", kRows))
       ->type_name("X");
   command
-      ->add_option("--digits", options->digits,
-                   fmt::format("decimal digits to aim at, 4 to 12 (default {})", options->digits))
+      .add_option("--digits", options.digits,
+                  fmt::format("decimal digits to aim at, 4 to 12 (default {})", options.digits))
       ->type_name("N");
   command
-      ->add_option("--out", options->out,
-                   "the motion, CSV, as `poinsot run` writes it; beside it .run.json with the evidence")
+      .add_option("--out", options.out,
+                  "the motion, CSV, as `poinsot run` writes it; beside it .run.json with the evidence")
       ->type_name("FILE.csv");
-  add_cache(*command, options->cache);
-  add_json(*command, options->json);
-  add_quiet(*command, options->quiet);
-  command->footer(
+  add_cache(command, options.cache);
+  add_json(command, options.json);
+  add_quiet(command, options.quiet);
+  command.footer(
       "Several methods, each at two tolerances: what they differ by is stated for positions, velocities, accelerations "
       "and\n"
       "multipliers. Kept by the content of scene, settings and program, and not computed twice.");
-  command->callback([options, &status] { status = run(*options); });
 }
 
 }  // namespace poinsot::app

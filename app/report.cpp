@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "app/commands.h"
 #include "app/named_files.h"
 #include "app/options.h"
@@ -42,17 +40,16 @@ int write_page(const Options& options) {
 }  // namespace
 
 void add_report(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("report", "write a page that shows a folder of results");
-  const auto options = std::make_shared<Options>();
-  command->add_option("FOLDER", options->folder, "that tables, figures, scale and chart have written to")
+  const auto [command, options] =
+      add_command(app, status, "report", "write a page that shows a folder of results", write_page);
+  command.add_option("FOLDER", options.folder, "that tables, figures, scale and chart have written to")
       ->required()
       ->type_name("DIR");
-  command->add_option("--out", options->out, "the page (default FOLDER/report.html)")->type_name("FILE.html");
-  add_quiet(*command, options->quiet);
-  command->footer(
+  command.add_option("--out", options.out, "the page (default FOLDER/report.html)")->type_name("FILE.html");
+  add_quiet(command, options.quiet);
+  command.footer(
       "What the sentences of the page are made of is written beside the tables, as report_*.csv. What the folder does\n"
       "not hold the page says, and which command makes it.");
-  command->callback([options, &status] { status = write_page(*options); });
 }
 
 }  // namespace poinsot::app

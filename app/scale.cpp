@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/progress_line.h"
@@ -52,16 +50,14 @@ int scale(const Options& options) {
 }  // namespace
 
 void add_scale(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("scale", "measure how time and memory grow with the number of bodies");
-  const auto options = std::make_shared<Options>();
-  add_out_folder(*command, options->out, "the Markdown page, CSV files and plots");
-  command->add_option("--bodies", options->most, fmt::format("largest scene (default {})", options->most))
-      ->type_name("N");
-  add_names(*command, "linear_solver", options->linear_solvers);
-  add_names(*command, "formulation", options->formulations);
-  add_repetitions(*command, options->repetitions, "each scene");
-  add_quiet(*command, options->quiet);
-  command->callback([options, &status] { status = scale(*options); });
+  const auto [command, options] =
+      add_command(app, status, "scale", "measure how time and memory grow with the number of bodies", scale);
+  add_out_folder(command, options.out, "the Markdown page, CSV files and plots");
+  command.add_option("--bodies", options.most, fmt::format("largest scene (default {})", options.most))->type_name("N");
+  add_names(command, "linear_solver", options.linear_solvers);
+  add_names(command, "formulation", options.formulations);
+  add_repetitions(command, options.repetitions, "each scene");
+  add_quiet(command, options.quiet);
 }
 
 }  // namespace poinsot::app

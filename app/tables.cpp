@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "app/commands.h"
 #include "app/models_directory.h"
 #include "app/options.h"
@@ -47,21 +45,19 @@ int tables(const Options& options) {
 }  // namespace
 
 void add_tables(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("tables", "measure and write the paper's tables, ours beside the paper's figures");
-  const auto options = std::make_shared<Options>();
-  add_out_folder(*command, options->out, "the Markdown page and the CSV files");
-  add_models(*command, options->models);
+  const auto [command, options] = add_command(
+      app, status, "tables", "measure and write the paper's tables, ours beside the paper's figures", tables);
+  add_out_folder(command, options.out, "the Markdown page and the CSV files");
+  add_models(command, options.models);
   command
-      ->add_option("--linear-solver", options->request.linear_solver,
-                   fmt::format("of the paper's tables (default {}); one more table compares all",
-                               options->request.linear_solver))
+      .add_option(
+          "--linear-solver", options.request.linear_solver,
+          fmt::format("of the paper's tables (default {}); one more table compares all", options.request.linear_solver))
       ->type_name("NAME");
-  add_repetitions(*command, options->request.repetitions, "each cell");
-  command->add_flag("--quick", options->request.quick,
-                    "a tenth of the simulated time and at most 5 repetitions: to see that it works");
-  add_quiet(*command, options->quiet);
-  command->callback([options, &status] { status = tables(*options); });
+  add_repetitions(command, options.request.repetitions, "each cell");
+  command.add_flag("--quick", options.request.quick,
+                   "a tenth of the simulated time and at most 5 repetitions: to see that it works");
+  add_quiet(command, options.quiet);
 }
 
 }  // namespace poinsot::app

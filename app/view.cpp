@@ -6,6 +6,7 @@
 #include "app/named_files.h"
 #include "app/options.h"
 #include "app/progress_line.h"
+#include "app/scene_lines.h"
 #include "app/settings_options.h"
 #include "app/terminal.h"
 #include "bench/study/output_file.h"
@@ -29,6 +30,7 @@ struct Options {
 };
 
 constexpr std::size_t kMostTrajectories = 2;
+constexpr std::size_t kSmooth = 300;  // frames; of fewer and larger steps the page would show what lies between wrongly
 
 // "dynamics, rA, dop853, rtol = 1e-08"
 std::string label_of(const Settings& settings) {
@@ -49,10 +51,10 @@ void note_stride(std::size_t stride, bool quiet) {
 view::Motion computed(const Options& options, const Scene& scene, const std::shared_ptr<const Model>& model,
                       Outcome& outcome) {
   std::vector<std::string> notices;
-  const Settings settings = options.settings.resolve(notices);
-  view::FrameRecorder recorder(model, settings.every == 0);
+  Settings settings = options.settings.resolve(notices);
   std::vector<BodyState> bodies(scene.bodies.size());
-  {
+  const auto run = [&] {
+    view::FrameRecorder recorder(model, settings.every == 0);
     ProgressLine progress("s", !options.quiet);
     const auto observe = [&](const Sample& sample) {
       sample.problem.to_bodies(sample.a, bodies);
@@ -60,10 +62,17 @@ view::Motion computed(const Options& options, const Scene& scene, const std::sha
       progress.at({sample.t, settings.end});
     };
     outcome = naming(options.scene, [&] { return simulate(scene, settings, observe); });
+    progress.clear();
+    note_stride(recorder.stride(), options.quiet);
+    return recorder.take();
+  };
+  std::vector<view::Frame> frames = run();
+  if (settings.every == 0 && chooses_steps(settings) && outcome.status.ok() && frames.size() < kSmooth) {
+    settings.every = settings.end / static_cast<double>(kSmooth);
+    frames = run();
   }
   outcome.notices.insert(outcome.notices.begin(), notices.begin(), notices.end());
-  note_stride(recorder.stride(), options.quiet);
-  return {label_of(settings), outcome.status.message, recorder.take()};
+  return {label_of(settings), outcome.status.message, std::move(frames)};
 }
 
 view::Motion read(const Options& options, const std::string& file, const Scene& scene,
@@ -92,41 +101,41 @@ int write_view(const Options& options) {
   Outcome outcome;
   for (const std::string& file : options.trajectories) motions.push_back(read(options, file, scene, model));
   if (motions.empty()) motions.push_back(computed(options, scene, model, outcome));
+  const auto placed = [&](std::string_view sentence) { return with_lines_of(options.scene, sentence); };
   if (motions.front().frames.empty()) {  // it failed before the first state
-    print_error(outcome.status.message);
+    print_error(placed(outcome.status.message));
     return kNumericsFailed;
   }
   out.write(view::page(*model, scene.about, motions));
   out.commit();
 
   if (!options.quiet)
-    for (const std::string& notice : outcome.notices) print_notice(notice);
+    for (const std::string& notice : outcome.notices) print_notice(placed(notice));
   if (outcome.status.ok()) return kDone;
-  print_error(outcome.status.message);
+  print_error(placed(outcome.status.message));
   return kNumericsFailed;
 }
 
 }  // namespace
 
 void add_view(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("view", "write a page that shows the motion in a browser");
-  const auto options = std::make_shared<Options>();
-  add_scene(*command, options->scene);
-  add_set(*command, options->set);
+  const auto [command, options] =
+      add_command(app, status, "view", "write a page that shows the motion in a browser", write_view);
+  add_scene(command, options.scene);
+  add_set(command, options.set);
   command
-      ->add_option("--trajectory", options->trajectories,
-                   "show this motion, as `poinsot run --out` wrote it, instead of computing one; given twice, both are "
-                   "shown, and where they part")
+      .add_option("--trajectory", options.trajectories,
+                  "show this motion, as `poinsot run --out` wrote it, instead of computing one; given twice, both are "
+                  "shown, and where they part")
       ->type_name("FILE.csv")
       ->expected(1)
       ->take_all();
-  command->add_option("--out", options->out, "the page")->required()->type_name("FILE.html");
-  options->settings.add_to(*command);
-  add_quiet(*command, options->quiet);
-  command->footer(
+  command.add_option("--out", options.out, "the page")->required()->type_name("FILE.html");
+  options.settings.add_to(command);
+  add_quiet(command, options.quiet);
+  command.footer(
       "The page needs nothing beside it and no network; `?` in it lists its keys. A run that fails is shown as far as\n"
       "it came.");
-  command->callback([options, &status] { status = write_view(*options); });
 }
 
 }  // namespace poinsot::app

@@ -87,6 +87,7 @@ void Definitions::resolve(const std::string& name, Entry<std::shared_ptr<const S
 }
 
 std::optional<double> Definitions::parameter(std::string_view name) {
+  ++asked_;
   const auto found = parameters_.find(name);
   if (found == parameters_.end()) return {};
   found->second.used = true;
@@ -95,6 +96,7 @@ std::optional<double> Definitions::parameter(std::string_view name) {
 }
 
 std::shared_ptr<const Spline> Definitions::table(std::string_view name) {
+  ++asked_;
   const auto found = tables_.find(name);
   if (found == tables_.end()) return {};
   found->second.used = true;

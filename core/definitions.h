@@ -24,6 +24,7 @@ class Definitions final : public ExpressionNames {
   std::string listed() const override;
 
   std::map<std::string, double> values() const;  // of all parameters
+  int asked() const { return asked_; }           // how often an expression has called anything by name
   // "parameter 'l' is used nowhere", of each that no expression has asked for.
   std::vector<std::string> unused() const;
 
@@ -48,6 +49,7 @@ class Definitions final : public ExpressionNames {
   Entries<double> parameters_;
   Entries<std::shared_ptr<const Spline>> tables_;
   std::vector<std::string> being_read_;  // outermost first
+  int asked_ = 0;
 };
 
 }  // namespace poinsot

@@ -44,6 +44,26 @@ Expression Expression::parse_law(std::string_view text, ExpressionNames* names) 
   return {text, parse_expression(text, Variables::law, names)};
 }
 
+Expression Expression::function(std::function<Jet2<double>(double t)> f) {
+  auto kept = std::make_shared<Parsed>();
+  kept->text = "a function of the program";
+  kept->function = std::move(f);
+  Expression result;
+  result.constant_ = false;
+  result.parsed_ = std::move(kept);
+  return result;
+}
+
+// Central differences of order 4; the step balances what rounding and the next derivative leave of f̈.
+Expression Expression::function(std::function<double(double t)> f) {
+  return function([f = std::move(f)](double t) -> Jet2<double> {
+    constexpr double h = 1.0 / 400;
+    const double middle = f(t), near[] = {f(t - h), f(t + h)}, far[] = {f(t - 2 * h), f(t + 2 * h)};
+    return {middle, (8 * (near[1] - near[0]) - (far[1] - far[0])) / (12 * h),
+            (16 * (near[0] + near[1]) - (far[0] + far[1]) - 30 * middle) / (12 * h * h)};
+  });
+}
+
 std::string Expression::fault(double t, int derivatives) const {
   const Jet2<double> f = at(t);
   const double values[] = {f.f, f.fd, f.fdd};
@@ -64,7 +84,7 @@ std::string Expression::law_fault(const Arguments<double>& at) const {
 }
 
 std::string Expression::not_finite(const char* which, const Arguments<double>& at, const std::string& where) const {
-  const Uncovered found = constant_ ? Uncovered{} : first_uncovered(parsed_->tape, at);
+  const Uncovered found = constant_ || is_function() ? Uncovered{} : first_uncovered(parsed_->tape, at);
   if (found.table) return fmt::format("'{}': {}", text(), describe(found));
   return fmt::format("{}'{}' is not finite{}", which, text(), where);
 }

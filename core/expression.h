@@ -6,6 +6,7 @@
 // differentiate by hand and nothing to step. Evaluation allocates nothing and changes nothing.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -59,16 +60,24 @@ class Expression {
   // As parse, with the variables x, v and t.
   static Expression parse_law(std::string_view text, ExpressionNames* names = nullptr);
   static std::vector<std::string_view> function_names();
+  // Computed by the program, no text of a scene: f with ḟ and f̈; or f alone, which is then differenced: to 1e-10 of
+  // what f comes to where it changes over a second, less where it changes faster, and asked for up to 5e-3 s to either
+  // side of t, before the start as well. As with all functions, ones that are not smooth cost error control its order.
+  static Expression function(std::function<Jet2<double>(double t)> f);
+  static Expression function(std::function<double(double t)> f);
   // What keeps a scene from calling something by it: "a function of expressions"; empty where nothing does. x and v are
   // free: they are variables in laws alone.
   static std::string_view why_no_name(std::string_view name);
 
   bool is_constant() const { return constant_; }
+  bool is_function() const { return !constant_ && parsed_->function != nullptr; }  // of the program
   std::string text() const;
 
   template <class T>  // double, long double
   Jet2<T> at(T t) const {
-    return constant_ ? Jet2<T>{T(value_), T(0), T(0)} : run_tape<T>(parsed_->tape, {{t, T(1), T(0)}, {}, {}});
+    if (constant_) return {T(value_), T(0), T(0)};
+    if (parsed_->function) return jet_of<T>(parsed_->function(static_cast<double>(t)));
+    return run_tape<T>(parsed_->tape, {{t, T(1), T(0)}, {}, {}});
   }
 
   template <class T>  // double, long double
@@ -95,7 +104,9 @@ class Expression {
   void switches(double t, std::span<double> values) const { switches({t, 0, 0}, values); }
 
   // Whether a switch may change its sign between these times; where not, none does.
-  bool may_switch(double from, double to) const { return !constant_ && tape_may_switch(parsed_->tape, from, to); }
+  bool may_switch(double from, double to) const {
+    return switch_count() > 0 && tape_may_switch(parsed_->tape, from, to);
+  }
 
   // Why f, or one of its first `derivatives` derivatives with time, is not finite at t, as a sentence's part:
   // "'1/(t - 1)' is not finite", "'road(t)': table 'road' has no value at 2.5: its points go from 0 to 2"; empty where
@@ -109,10 +120,15 @@ class Expression {
     std::string text;
     std::vector<TapeInstruction> tape;  // empty for a constant
     std::vector<std::shared_ptr<const Spline>> tables;
+    std::function<Jet2<double>(double)> function;  // in the place of the tape
     int switches = 0;
     bool with_rate = false;
   };
   Expression(std::string_view text, ParsedTape parsed);
+  template <class T>
+  static Jet2<T> jet_of(const Jet2<double>& f) {
+    return {static_cast<T>(f.f), static_cast<T>(f.fd), static_cast<T>(f.fdd)};
+  }
   std::string not_finite(const char* which, const Arguments<double>& at, const std::string& where) const;
 
   bool constant_ = true;

@@ -11,7 +11,7 @@
 #include <system_error>
 #include <vector>
 
-#include "core/input_error.h"
+#include "core/element_error.h"
 
 namespace poinsot {
 namespace {
@@ -39,8 +39,8 @@ class Builder final : public nlohmann::json_sax<Json> {
   bool key(string_t& key) override {
     Level& level = levels_.back();
     if (level.container->contains(key)) {
-      throw InputError(
-          fmt::format("{}: {}/{}: found the key twice, expected it once", file_, path(), pointer_token(key)));
+      const std::string twice = fmt::format("{}/{}", path(), pointer_token(key));
+      throw ElementError(fmt::format("{}: {}: found the key twice, expected it once", file_, twice), twice);
     }
     level.key = std::move(key);
     return true;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/element_error.h"
 #include "core/expression.h"
-#include "core/input_error.h"
 #include "core/printable.h"
 
 namespace poinsot {
@@ -46,7 +46,7 @@ std::string JsonValue::path() const {
 }
 
 void JsonValue::fail(std::string_view message) const {
-  throw InputError(fmt::format("{}: {}: {}", file_, path(), message));
+  throw ElementError(fmt::format("{}: {}: {}", file_, path(), message), path());
 }
 
 void JsonValue::expected(std::string_view allowed) const {

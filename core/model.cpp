@@ -8,6 +8,7 @@
 #include "core/check.h"
 #include "core/joint_frames.h"
 #include "core/nearest_rotation.h"
+#include "core/places.h"
 #include "core/scene_names.h"
 #include "core/scene_types.h"
 #include "core/scene_validation.h"
@@ -155,6 +156,7 @@ class Compiler {
   void add(const Torque& torque) { model_.torques.push_back(torque); }
   void add(const Spring& spring) { model_.springs.push_back(spring); }
   void add(const LinearDrag& drag) { model_.drags.push_back(drag); }
+  void add(const CallbackForce& force) { model_.callbacks.push_back(force); }
   void add(const TorsionSpring& spring) {
     TorsionElement element;
     element.spring = spring;
@@ -172,7 +174,7 @@ class Compiler {
 }  // namespace
 
 Model compile(const Scene& scene) {
-  validate(scene);
+  with_names_of_errors(scene, [&] { validate(scene); });
   return Compiler(scene).run();
 }
 

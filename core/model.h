@@ -68,6 +68,7 @@ struct Model {
   std::vector<Spring> springs;
   std::vector<TorsionElement> torsions;
   std::vector<LinearDrag> drags;
+  std::vector<CallbackForce> callbacks;
 
   std::vector<FollowedAngle> followed;  // none, unless signals are asked for (integrators/signals.h)
 };

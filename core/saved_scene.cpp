@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 
 #include "core/check.h"
 #include "core/expression_parser.h"
+#include "core/input_error.h"
 #include "core/model.h"
 
 namespace poinsot {
@@ -76,6 +78,31 @@ std::size_t number_end(std::string_view text, std::size_t k) {
   return error == std::errc() ? static_cast<std::size_t>(end - text.data()) : k + 1;
 }
 
+// What the program computes is in no file.
+void refuse_functions(const Scene& scene) {
+  const auto refuse = [](bool is_function, const char* section, std::size_t k) {
+    if (is_function)
+      throw InputError(
+          fmt::format("/{}/{}: found a function of the program, expected what a scene file can hold", section, k));
+  };
+  const auto any = [](const Expression(&components)[3]) {
+    return std::ranges::any_of(components, &Expression::is_function);
+  };
+  for (std::size_t k = 0; k < scene.constraints.size(); ++k) {
+    const Constraint& c = scene.constraints[k];
+    refuse(c.f.is_function() || (c.alternate && c.alternate->f.is_function()), "constraints", k);
+  }
+  for (std::size_t k = 0; k < scene.drivers.size(); ++k) refuse(scene.drivers[k].value.is_function(), "drivers", k);
+  for (std::size_t k = 0; k < scene.forces.size(); ++k) {
+    const Force& force = scene.forces[k];
+    const auto* at_point = std::get_if<PointForce>(&force);
+    const auto* torque = std::get_if<Torque>(&force);
+    refuse(std::holds_alternative<CallbackForce>(force) || (at_point && any(at_point->force)) ||
+               (torque && any(torque->torque)),
+           "forces", k);
+  }
+}
+
 }  // namespace
 
 std::string later(std::string_view text, double by) {
@@ -113,6 +140,7 @@ std::string later(std::string_view text, double by) {
 std::string saved_scene(const Scene& scene, double time, std::span<const BodyState> bodies,
                         std::span<const double> twists) {
   check(!scene.source.empty(), "a scene that is saved was read from text");
+  refuse_functions(scene);
   const Model model = compile(scene);
   check(bodies.size() == model.bodies.size() && twists.size() == model.torsions.size(), "the state is the scene's");
   Ordered json = Ordered::parse(scene.source, nullptr, true, true);

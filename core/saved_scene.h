@@ -18,6 +18,7 @@
 namespace poinsot {
 
 // JSON text. `twists`: angle of every torsion spring with its turns, in the order of the scene. Needs scene.source.
+// Throws InputError where the scene holds a function of the program, which no file can.
 std::string saved_scene(const Scene& scene, double time, std::span<const BodyState> bodies,
                         std::span<const double> twists);
 

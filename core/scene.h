@@ -9,21 +9,32 @@
 //   Scene scene;
 //   scene.gravity = {0, 0, -9.81};
 //   Body rod;
-//   rod.name = "rod", rod.mass = 1, rod.inertia = Vector3(0.001, 0.083, 0.083).asDiagonal(), rod.position = {0, 0.5,
-//   0}; scene.bodies.push_back(rod); Joint hinge;  // at the origin, about x, from the ground to body 0 hinge.i =
-//   kGround, hinge.j = 0, hinge.axis = {1, 0, 0}; scene.joints.push_back(hinge); Torque motor; motor.body = 0,
-//   motor.torque[0] = Expression::parse("2*sin(t)"); scene.forces.push_back(motor);
+//   rod.name = "rod", rod.mass = 1, rod.inertia = Vector3(0.001, 0.083, 0.083).asDiagonal();
+//   rod.position = {0, 0.5, 0};
+//   scene.bodies.push_back(rod);
+//   Joint hinge;  // at the origin, about x, from the ground to body 0
+//   hinge.i = kGround, hinge.j = 0, hinge.axis = {1, 0, 0};
+//   scene.joints.push_back(hinge);
+//   Torque motor;
+//   motor.body = 0, motor.torque[0] = Expression::parse("2*sin(t)");
+//   scene.forces.push_back(motor);
+//
+// What a program computes itself needs no expression: a CallbackForce is a function of time and of how bodies stand and
+// move, a driver's value can be Expression::function() of time. No scene file holds these.
 //
 // Whatever takes a scene first holds it to the rules of core/scene_validation.h, those of scene files; what is broken
 // is an InputError that names the place as a file would: "/joints/0/axis: found the zero vector, expected a direction".
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "core/body_state.h"
 #include "core/expression.h"
 
 namespace poinsot {
@@ -162,7 +173,34 @@ struct LinearDrag {
   double rotational = 0;     // N m s/rad
 };
 
-using Force = std::variant<PointForce, Torque, Spring, TorsionSpring, LinearDrag>;
+// What acts on one body.
+struct Load {
+  Vector3 force = Vector3::Zero();   // N, global, at the centre of mass
+  Vector3 torque = Vector3::Zero();  // N m, body frame
+};
+
+// How loads vary, 6 rows for each body (force, torque) and 6 columns for each: with its position (δr, global, and the
+// rotation θ in the body's frame, A becoming A exp(θ̃)), and with its velocity (δṙ, global, and δω, body frame).
+struct LoadSensitivity {
+  Eigen::MatrixXd position, velocity;
+};
+
+// Loads that a function of the program computes from time and from how the bodies listed stand and move (accelerations
+// are not among what it is given); both spans are in the order of `bodies`, and loads come as zeros. It has to be
+// smooth where error control is to keep its order; what it throws ends the run and comes out of simulate(). Several
+// threads may call it at once where several runs share the scene.
+//
+// The matrices of Newton's method hold the sensitivity: `sensitivity` fills in what is not zero, and without it the
+// loads are differenced, at 12 more calls a body and matrix: rounding leaves some eight digits of the derivatives,
+// which costs Newton's method a fraction of an iteration and no accuracy. Energies do not count what a callback stores.
+struct CallbackForce {
+  std::string name;
+  std::vector<int> bodies;  // different ones, none of them the ground
+  std::function<void(double t, std::span<const BodyState> states, std::span<Load> loads)> loads;
+  std::function<void(double t, std::span<const BodyState> states, LoadSensitivity& by)> sensitivity;  // may be empty
+};
+
+using Force = std::variant<PointForce, Torque, Spring, TorsionSpring, LinearDrag, CallbackForce>;
 
 // A number that the expressions of a scene file call by name.
 struct Parameter {

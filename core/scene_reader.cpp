@@ -8,8 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/definitions.h"
-#include "core/input_error.h"
+#include "core/element_error.h"
 #include "core/json_document.h"
+#include "core/places.h"
 #include "core/printable.h"
 #include "core/scene_parts.h"
 #include "core/scene_validation.h"
@@ -20,24 +21,12 @@
 namespace poinsot {
 namespace {
 
-// Calls read(item) for every item of a section; an absent section has none.
-template <class Read>
-void for_each(const JsonValue& root, std::string_view section, const std::string& allowed, Read read) {
-  const std::optional<JsonValue> list = root.optional(section);
-  if (!list) return;
-  const std::size_t size = list->size(allowed);
-  for (std::size_t k = 0; k < size; ++k) {
-    const JsonValue item = list->at(k);
-    read(item);
-  }
-}
-
 template <class Validate>
 void in_file(std::string_view file, Validate validate) {
   try {
     validate();
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", file, error.what()));
+  } catch (const ElementError& error) {
+    throw ElementError(fmt::format("{}: {}", file, error.what()), error.path());
   }
 }
 
@@ -98,8 +87,45 @@ void require_keys(const JsonDocument& document) {
                                    "constraints", "joints", "drivers", "forces"});
 }
 
+// An item of a section, in the place of what stands there.
+template <class Item, class Read>
+void read_items(const JsonValue& root, std::string_view section, std::string_view allowed, std::vector<Item>& items,
+                const Definitions& definitions, std::vector<std::size_t>& calling, Read read) {
+  const std::optional<JsonValue> list = root.optional(section);
+  if (!list) return;
+  const std::size_t size = list->size(allowed);
+  for (std::size_t k = 0; k < size; ++k) {
+    const JsonValue item = list->at(k);
+    const int before = definitions.asked();
+    items.push_back(read(item));
+    if (definitions.asked() > before) calling.push_back(k);
+  }
+}
+
+template <class Item, class Read>
+void read_again(const JsonValue& root, std::string_view section, std::vector<Item>& items,
+                const std::vector<std::size_t>& calling, Read read) {
+  if (calling.empty()) return;
+  const JsonValue list = root.required(section);
+  for (const std::size_t k : calling) {
+    const JsonValue item = list.at(k);
+    items[k] = read(item);
+  }
+}
+
+template <class Read>
+auto with_names(const BodyNames& bodies, Read read) {
+  return [&bodies, read](const JsonValue& item) { return read(item, bodies); };
+}
+
+void set_values(Scene& scene, const Definitions& definitions, const ParameterValues& set) {
+  scene.parameters.clear();
+  for (const auto& [name, value] : definitions.values()) scene.parameters.push_back({name, value, set.contains(name)});
+}
+
 // All but the text that is the scene.
-Scene read_document(const JsonDocument& document, std::string_view file, const ParameterValues& set) {
+Scene read_document(const JsonDocument& document, std::string_view file, const ParameterValues& set,
+                    CallingItems& calling) {
   Definitions definitions(document);
   const JsonValue root = document.root(&definitions);
   const JsonValue version = root.required("scene");
@@ -113,21 +139,20 @@ Scene read_document(const JsonDocument& document, std::string_view file, const P
   scene.gravity = optional_or(root, "gravity", read_vector, scene.gravity);
 
   (void)root.required("bodies");
-  for_each(root, "bodies", "an array of bodies",
-           [&](const JsonValue& item) { scene.bodies.push_back(read_body(item)); });
+  read_items(root, "bodies", "an array of bodies", scene.bodies, definitions, calling.bodies, read_body);
   in_file(file, [&] { validate_bodies(scene.bodies); });
   const BodyNames bodies(scene.bodies);
-  for_each(root, "constraints", "an array of constraints",
-           [&](const JsonValue& item) { scene.constraints.push_back(read_constraint(item, bodies)); });
-  for_each(root, "joints", "an array of joints",
-           [&](const JsonValue& item) { scene.joints.push_back(read_joint(item, bodies)); });
-  for_each(root, "drivers", "an array of drivers",
-           [&](const JsonValue& item) { scene.drivers.push_back(read_driver(item, bodies)); });
-  for_each(root, "forces", "an array of forces",
-           [&](const JsonValue& item) { scene.forces.push_back(read_force(item, bodies)); });
+  read_items(root, "constraints", "an array of constraints", scene.constraints, definitions, calling.constraints,
+             with_names(bodies, read_constraint));
+  read_items(root, "joints", "an array of joints", scene.joints, definitions, calling.joints,
+             with_names(bodies, read_joint));
+  read_items(root, "drivers", "an array of drivers", scene.drivers, definitions, calling.drivers,
+             with_names(bodies, read_driver));
+  read_items(root, "forces", "an array of forces", scene.forces, definitions, calling.forces,
+             with_names(bodies, read_force));
   in_file(file, [&] { validate(scene); });
 
-  for (const auto& [name, value] : definitions.values()) scene.parameters.push_back({name, value, set.contains(name)});
+  set_values(scene, definitions, set);
   scene.notices = definitions.unused();
   if (!root.optional("gravity") && !scene.joints.empty())
     scene.notices.push_back(
@@ -149,12 +174,16 @@ void require_read(const Scene& scene) {
 }  // namespace
 
 Scene parse_scene(std::string_view text, std::string_view file, const ParameterValues& set) {
-  JsonDocument document(text, file);
-  require_keys(document);
-  const bool with_values = set_parameters(document, set);
-  const bool with_files = load_tables(document, std::filesystem::path(file).parent_path());
-  Scene scene = read_document(document, file, set);
-  scene.source = with_values || with_files ? document.text() : std::string(text);
+  Scene scene;
+  with_lines_of_errors(text, [&] {
+    JsonDocument document(text, file);
+    require_keys(document);
+    const bool with_values = set_parameters(document, set);
+    const bool with_files = load_tables(document, std::filesystem::path(file).parent_path());
+    CallingItems none;  // are of interest
+    scene = read_document(document, file, set, none);
+    scene.source = with_values || with_files ? document.text() : std::string(text);
+  });
   return scene;
 }
 
@@ -170,12 +199,33 @@ Scene with_parameters(const Scene& scene, const std::map<std::string, double>& v
 }
 
 VariedScene::VariedScene(const Scene& scene)
-    : name_(printable(scene.name)), document_((require_read(scene), scene.source), name_) {}
+    : name_(printable(scene.name)), document_((require_read(scene), scene.source), name_) {
+  ParameterValues set;
+  for (const Parameter& parameter : scene.parameters)
+    if (parameter.set) set.emplace(parameter.name, "");
+  scene_ = read_document(document_, name_, set, calling_);
+}
 
-Scene VariedScene::with(const std::map<std::string, double>& values) {
-  const ParameterValues texts = texts_of(values);
-  set_parameters(document_, texts);
-  return read_document(document_, name_, texts);
+const Scene& VariedScene::with(const std::map<std::string, double>& values) {
+  with_names_of_errors(scene_, [&] { vary(texts_of(values)); });
+  return scene_;
+}
+
+void VariedScene::vary(ParameterValues set) {
+  set_parameters(document_, set);
+  for (const Parameter& parameter : scene_.parameters)
+    if (parameter.set) set.emplace(parameter.name, "");
+  Definitions definitions(document_);
+  const JsonValue root = document_.root(&definitions);
+  scene_.gravity = optional_or(root, "gravity", read_vector, scene_.gravity);
+  read_again(root, "bodies", scene_.bodies, calling_.bodies, read_body);
+  const BodyNames bodies(scene_.bodies);
+  read_again(root, "constraints", scene_.constraints, calling_.constraints, with_names(bodies, read_constraint));
+  read_again(root, "joints", scene_.joints, calling_.joints, with_names(bodies, read_joint));
+  read_again(root, "drivers", scene_.drivers, calling_.drivers, with_names(bodies, read_driver));
+  read_again(root, "forces", scene_.forces, calling_.forces, with_names(bodies, read_force));
+  in_file(name_, [&] { validate_bodies(scene_.bodies), validate(scene_); });
+  set_values(scene_, definitions, set);
 }
 
 }  // namespace poinsot

@@ -21,6 +21,7 @@ Scene read_scene(const std::filesystem::path& file, const ParameterValues& set =
 Scene parse_scene(std::string_view text, std::string_view file, const ParameterValues& set = {});
 
 // The scene with other values of some of its parameters. Files are not read again, and what was set before stays set.
+// Of many values VariedScene (core/varied_scene.h) reads again only what depends on them.
 Scene with_parameters(const Scene& scene, const std::map<std::string, double>& values);
 
 }  // namespace poinsot

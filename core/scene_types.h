@@ -33,10 +33,10 @@ inline constexpr TypeName<ShapeType> kShapeTypes[] = {{"box", ShapeType::box},
                                                       {"sphere", ShapeType::sphere},
                                                       {"polyline", ShapeType::polyline}};
 inline constexpr TypeName<Frame> kFrames[] = {{"global", Frame::global}, {"body", Frame::body}};
-// The type of a force is its place in the variant.
+// The type of a force is its place in the variant; the last, of callbacks, is for programs alone.
 inline constexpr TypeName<std::size_t> kForceTypes[] = {
     {"force", 0}, {"torque", 1}, {"spring", 2}, {"torsion_spring", 3}, {"linear_drag", 4}};
-static_assert(std::size(kForceTypes) == std::variant_size_v<Force>);
+static_assert(std::size(kForceTypes) + 1 == std::variant_size_v<Force>);
 
 constexpr const auto& type_names(ConstraintType) {
   return kConstraintTypes;
@@ -59,7 +59,7 @@ constexpr const char* type_name(Type type) {
   return type_names(type)[static_cast<std::size_t>(type)].name;
 }
 inline const char* type_name(const Force& force) {
-  return kForceTypes[force.index()].name;
+  return std::holds_alternative<CallbackForce>(force) ? "callback" : kForceTypes[force.index()].name;
 }
 
 // "one of DP1, DP2, D, CD, pfaffian"

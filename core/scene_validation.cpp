@@ -2,159 +2,21 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 
-#include "core/input_error.h"
-#include "core/json_value.h"
-#include "core/nearest_rotation.h"
 #include "core/scene_names.h"
 #include "core/scene_types.h"
+#include "core/validation_rules.h"
 
 namespace poinsot {
 namespace {
 
-// An item of a section, or the scene itself; its path is put together only where an error needs it.
-struct Place {
-  const char* section;
-  std::size_t index = 0;
-
-  std::string path() const { return fmt::format("/{}/{}", section, index); }
-  [[noreturn]] void fail(std::string_view key, std::string_view message) const {
-    throw InputError(fmt::format("{}{}{}: {}", path(), key.empty() ? "" : "/", key, message));
-  }
-};
-
-void finite(const Place& at, std::string_view key, double x) {
-  if (!std::isfinite(x)) at.fail(key, fmt::format("found {}, expected a finite number", x));
-}
-
-template <class Matrix>
-void finite_entries(const Place& at, std::string_view key, const Matrix& x) {
-  if (x.allFinite()) return;
-  for (Eigen::Index r = 0; r < x.rows(); ++r) {
-    for (Eigen::Index c = 0; c < x.cols(); ++c) {
-      finite(at, x.cols() == 1 ? fmt::format("{}/{}", key, r) : fmt::format("{}/{}/{}", key, r, c), x(r, c));
-    }
-  }
-}
-
-void finite(const Place& at, std::string_view key, const Vector3& x) {
-  finite_entries(at, key, x);
-}
-
-// Of functions of time, those that are constant: others may have poles, and a run that comes to one says so.
-void finite(const Place& at, std::string_view key, const Expression& f) {
-  if (f.is_constant()) finite(at, key, f.at(0.0).f);
-}
-
-void direction(const Place& at, std::string_view key, const Vector3& x) {
-  finite(at, key, x);
-  if (x.isZero(0)) at.fail(key, "found the zero vector, expected a direction");
-}
-
-// Enumerations come from casts as well.
-template <class Type>
-void known(const Place& at, std::string_view key, Type type) {
-  const auto& table = type_names(type);
-  if (static_cast<std::size_t>(type) >= std::size(table)) {
-    at.fail(key, fmt::format("found {}, expected {}", static_cast<int>(type), one_of(table)));
-  }
-}
-
-bool is_utf8(const std::string& text) {
-  if (std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; })) return true;
-  try {
-    (void)nlohmann::json(text).dump();
-  } catch (const nlohmann::json::type_error&) {
-    return false;
-  }
-  return true;
-}
-
-void name(const Place& at, const std::string& text) {
-  const auto fail = [&](std::string_view expected) {
-    using Json = nlohmann::json;
-    const Json shown = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
-    at.fail("name", fmt::format("found {}, expected {}", describe(shown), expected));
-  };
-  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  if (std::ranges::any_of(text, control)) fail("a name without control characters");
-  if (!is_utf8(text)) fail("a name in UTF-8");
-}
-
-void inertia(const Place& at, const Matrix3& J) {
-  finite_entries(at, "inertia", J);
-  const double rounding = 1e-12 * J.cwiseAbs().maxCoeff();
-  if (!((J - J.transpose()).cwiseAbs().maxCoeff() <= rounding)) {
-    at.fail("inertia", "found a matrix that is not symmetric, expected 3 principal moments or a symmetric 3x3 matrix");
-  }
-  const Matrix3 symmetric = 0.5 * J + 0.5 * J.transpose();
-  const double least =
-      J.isDiagonal(0)
-          ? J.diagonal().minCoeff()
-          : Eigen::SelfAdjointEigenSolver<Matrix3>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
-  if (!(least >= -rounding)) {
-    at.fail("inertia", fmt::format("found a principal moment of {:.6g}, expected none below zero", least));
-  }
-}
-
-void orientation(const Place& at, const Matrix3& A) {
-  constexpr std::string_view kKey = "orientation/matrix";
-  finite_entries(at, kKey, A);
-  constexpr double kFar = 10 * kOrientationTolerance;  // a defect that the tolerance, moving each entry, cannot reach
-  const double defect = orthogonality_defect(A);
-  if (!(defect <= kFar)) {
-    at.fail(kKey, fmt::format("found a matrix A with AᵀA off the identity by {:.2g}, expected a rotation to within {}",
-                              defect, kOrientationTolerance));
-  }
-  if (A.determinant() < 0) at.fail(kKey, "found a reflection (its determinant is -1), expected a rotation");
-  if (const double moved = (nearest_rotation(A) - A).cwiseAbs().maxCoeff(); moved > kOrientationTolerance) {
-    at.fail(kKey, fmt::format("found entries up to {:.2g} off the nearest rotation, expected at most {}", moved,
-                              kOrientationTolerance));
-  }
-}
-
-void positive(const Place& at, std::string_view key, double x) {
-  finite(at, key, x);
-  if (!(x > 0)) at.fail(key, fmt::format("found {}, expected a positive number", x));
-}
-
-void shape(const Place& at, const Shape& s) {
-  known(at, "shape/type", s.type);
-  finite(at, "shape/at", s.at);
-  switch (s.type) {
-    case ShapeType::box:
-      for (Eigen::Index k = 0; k < 3; ++k) positive(at, fmt::format("shape/size/{}", k), s.size[k]);
-      break;
-    case ShapeType::cylinder:
-    case ShapeType::capsule:
-      positive(at, "shape/length", s.length);
-      direction(at, "shape/axis", s.axis);
-      [[fallthrough]];
-    case ShapeType::sphere:
-      positive(at, "shape/radius", s.radius);
-      break;
-    case ShapeType::polyline:
-      if (s.points.size() < 2)
-        at.fail("shape/points", fmt::format("found {}, expected an array of at least 2 points",
-                                            s.points.empty() ? "an array of 0 values" : "an array of 1 value"));
-      for (std::size_t k = 0; k < s.points.size(); ++k) finite(at, fmt::format("shape/points/{}", k), s.points[k]);
-      break;
-  }
-}
-
-[[noreturn]] void already(const Place& at, std::string_view key, std::string_view name, std::string_view why,
-                          const Place& first) {
-  at.fail(key,
-          fmt::format("found \"{}\"{}, the name of {} already, expected a name of its own", name, why, first.path()));
-}
+using namespace rules;
 
 struct Names {
   ItemNames by_type;
@@ -183,7 +45,8 @@ class Validation {
   void run() const {
     for (Eigen::Index k = 0; k < 3; ++k) {
       if (const double g = scene_.gravity[k]; !std::isfinite(g)) {
-        throw InputError(fmt::format("/gravity/{}: found {}, expected a finite number", k, g));
+        const std::string path = fmt::format("/gravity/{}", k);
+        throw ElementError(fmt::format("{}: found {}, expected a finite number", path, g), path);
       }
     }
     validate_bodies(scene_.bodies);
@@ -359,11 +222,22 @@ class Validation {
     finite(at, "rotational", f.rotational);
   }
 
+  void force(const Place& at, const CallbackForce& f) const {
+    if (!f.loads) at.fail("loads", "found no function, expected one");
+    if (f.bodies.empty()) at.fail("bodies", "found none, expected at least one body");
+    for (std::size_t k = 0; k < f.bodies.size(); ++k) {
+      if (!is_body(f.bodies[k])) unknown(at, fmt::format("bodies/{}", k), f.bodies[k], "");
+      if (std::ranges::count(f.bodies, f.bodies[k]) > 1)
+        at.fail(fmt::format("bodies/{}", k), fmt::format("found {} twice, expected different bodies", f.bodies[k]));
+    }
+  }
+
   template <class AnySpring>
   static void law(const Place& at, const AnySpring& f) {
     finite(at, "stiffness", f.stiffness);
     finite(at, "damping", f.damping);
     if (!f.law) return;
+    if (f.law->is_function()) at.fail("law", "found a function of time, expected an expression, or a CallbackForce");
     finite(at, "law", *f.law);
     if (f.stiffness != 0 || f.damping != 0) at.fail("law", "found stiffness or damping beside it, expected it alone");
   }
@@ -393,31 +267,6 @@ class Validation {
 };
 
 }  // namespace
-
-void validate_bodies(const std::vector<Body>& bodies) {
-  if (bodies.empty()) throw InputError("/bodies: found an array of 0 values, expected at least one body");
-  std::unordered_map<std::string_view, std::size_t> taken;
-  taken.reserve(bodies.size());
-  for (std::size_t k = 0; k < bodies.size(); ++k) {
-    const Place at{"bodies", k};
-    const Body& b = bodies[k];
-    if (b.name.empty()) at.fail("name", "found \"\", expected a name without control characters");
-    name(at, b.name);
-    if (b.name == "ground") {
-      at.fail("name", "found \"ground\", which is body 0 and never listed, expected another name");
-    }
-    if (const auto [entry, is_new] = taken.emplace(b.name, k); !is_new) {
-      already(at, "name", b.name, "", Place{"bodies", entry->second});
-    }
-    positive(at, "mass", b.mass);
-    inertia(at, b.inertia);
-    finite(at, "position", b.position);
-    orientation(at, b.orientation);
-    finite(at, "velocity", b.velocity);
-    finite(at, "angular_velocity", b.angular_velocity);
-    if (b.shape) shape(at, *b.shape);
-  }
-}
 
 void validate(const Scene& scene) {
   Validation(scene).run();

@@ -20,10 +20,10 @@
 
 namespace poinsot {
 
-// Throws InputError that begins with the place as a path in a scene file: "/bodies/2/mass: found -1, expected a
+// Throws ElementError that begins with the place as a path in a scene file: "/bodies/2/mass: found -1, expected a
 // positive number". Linear in the scene, a fraction of what compile() takes.
 void validate(const Scene& scene);
-// The part of it that is about bodies alone: before anything refers to them by name.
+// The part of it that is about bodies alone (body_validation.cpp): before anything refers to them by name.
 void validate_bodies(const std::vector<Body>& bodies);
 
 }  // namespace poinsot

@@ -25,5 +25,7 @@ struct DerivativeCheck {
 // Both sides are sums of a few dozen products, rounded differently: they agree to about 1e-15 of the size of the terms.
 // A wrong or forgotten term is of that size itself. 1e-9 is far from both.
 inline constexpr double kDerivativeTolerance = 1e-9;
+// The sensitivity that a callback gives is compared with differences of its loads, which rounding leaves eight digits.
+inline constexpr double kDifferenceTolerance = 1e-5;
 
 }  // namespace poinsot

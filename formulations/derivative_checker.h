@@ -72,7 +72,7 @@ class DerivativeChecker {
     report("variation of the reaction", reaction_error);
   }
 
-  void force() {
+  void force(double tolerance = kDerivativeTolerance) {
     const Vector zero = Vector::Zero(problem_->nv()), no_lambda = Vector::Zero(problem_->nc());
     Vector load(problem_->nv());
     problem_->equations_of_motion(view(zero), view(no_lambda), view(load));
@@ -81,7 +81,7 @@ class DerivativeChecker {
       const Matrix entries = matrix(scale).topRows(problem_->nv());
       double error = 0;
       worst(error, entries - derivatives(scale).topRows(problem_->nv()), std::max(largest(load), largest(entries)));
-      report(what, error);
+      report(what, error, tolerance);
     }
   }
 
@@ -113,8 +113,8 @@ class DerivativeChecker {
     const double found = largest(difference);
     if (found > 0) error = std::max(error, found / size);
   }
-  void report(std::string_view what, double error) {
-    out_.push_back({name_, what, error, error <= kDerivativeTolerance});
+  void report(std::string_view what, double error, double tolerance = kDerivativeTolerance) {
+    out_.push_back({name_, what, error, error <= tolerance});
   }
 
   // The columns of the bodies in the Newton matrix of `scale`, by formula: a = 0, λ = 1 for every row of the model.
@@ -198,6 +198,14 @@ std::vector<DerivativeCheck> check_derivatives_in(const Model& model, std::span<
   for (const Spring& element : model.springs) force(element, element.name);
   for (const TorsionElement& element : model.torsions) force(element, element.spring.name);
   for (const LinearDrag& element : model.drags) force(element, element.name);
+  for (const CallbackForce& element : model.callbacks) {
+    const Part part = part_of(states, element);
+    DerivativeChecker<F>(part, named("force", element.name), out)
+        .force(element.sensitivity ? kDerivativeTolerance : kDifferenceTolerance);
+    if (!element.sensitivity) continue;
+    const double error = sensitivity_error(part.model.callbacks.front(), part.states);
+    out.push_back({named("force", element.name), "sensitivity", error, error <= kDifferenceTolerance});
+  }
   return out;
 }
 

@@ -141,7 +141,8 @@ struct Elements {
   std::vector<LinearDrag> drags;
   std::vector<FollowedAngleElement> followed;
   bool has_forces() const {
-    return !(springs.empty() && torsions.empty() && point_forces.empty() && torques.empty() && drags.empty());
+    return !(springs.empty() && torsions.empty() && point_forces.empty() && torques.empty() && drags.empty() &&
+             model->callbacks.empty());
   }
 
  private:

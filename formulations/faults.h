@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "core/index.h"
 #include "core/model_faults.h"
+#include "formulations/callbacks.h"
 #include "formulations/configuration.h"
 #include "formulations/torsion.h"
 
@@ -35,6 +37,17 @@ std::string first_fault(const Configuration<F, double>& c) {
     const double x = Torsion<F, double>::angle(c, s, c.twist[k]) - s.angle;
     const double rate = typename Torsion<F, double>::Twist(c, s, c.twist[k]).rate;
     if (std::string what = of_law(s, e.model->torsions[k].spring.name, x, rate); !what.empty()) return what;
+  }
+  for (CallbackLoads& k : c.callbacks) {
+    bool finite = true;
+    Callbacks<F, double>::loads(
+        c, k, [&](int, const Vector3& f, const Vector3& n) { finite = finite && f.allFinite() && n.allFinite(); });
+    const bool standing = std::ranges::all_of(k.states, [](const BodyState& s) {
+      return s.r.allFinite() && s.A.allFinite() && s.rd.allFinite() && s.w.allFinite();
+    });
+    if (!finite && standing)
+      return fault_sentence(c.time, fmt::format("force '{}'", k.force->name),
+                            "its function gave a load that is not finite");
   }
   return {};
 }

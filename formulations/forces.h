@@ -1,5 +1,5 @@
 // Applied forces and torques and their sensitivities, for every formulation: springs, torsion springs, point forces,
-// torques, drag. Gravity is constant and stands with the inertia.
+// torques, drag, callbacks. Gravity is constant and stands with the inertia.
 //
 // A force w at an attached point s is the wrench (w, E(s)ᵀw), a global torque n the wrench (0, [n; 0]); a formulation
 // pulls the ambient part back by Ŵᵀ. Matrices are K = ∂(−Q)/∂q and D = ∂(−Q)/∂v as small dense blocks over the bodies
@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "formulations/callbacks.h"
 #include "formulations/configuration.h"
 #include "formulations/problem.h"
 #include "formulations/spring_law.h"
@@ -58,6 +59,11 @@ class Forces {
     for (const TorqueElement& k : e.torques) add(k.body, Vec3<T>::Zero(), torque(global(c, k.body, k.frame, k.torque)));
     for (const LinearDrag& k : e.drags) {
       add(k.body, T(-k.translational) * c.rd(k.body), torque(T(-k.rotational) * c.rate[index(k.body)].wg));
+    }
+    for (CallbackLoads& k : c.callbacks) {
+      Callbacks<F, T>::loads(c, k, [&](int body, const Vec3<T>& force, const Vec3<T>& moment) {
+        add(body, force, torque(c.at[index(body)].A * moment));
+      });
     }
   }
 
@@ -132,6 +138,11 @@ class Forces {
           F::torque_variation(at, Vec3<T>(drag * c.rate[index(k.body)].wg)) +
           dragged.transpose() * F::angular_velocity_variation(at, c.rate[index(k.body)], c.xd(k.body));
       sink.body_block(k.body, k.body, Block(cq * K + cv * lowered(D, k.body)));
+    }
+    for (CallbackLoads& k : c.callbacks) {
+      Callbacks<F, T>::matrix(c, k, sink.places_only, [&](int a, int b, const Block& K, const Block& D) {
+        sink.body_block(a, b, Block(cq * K + cv * lowered(D, b)));
+      });
     }
   }
 

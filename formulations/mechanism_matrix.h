@@ -139,6 +139,7 @@ class MechanismMatrix {
   template <class Sink>
   struct ForceSink {
     Sink& sink;
+    bool places_only = Sink::places_only;  // no values: functions of the program are not asked for any
     template <class M>
     void body_block(int row_body, int col_body, const M& m) {
       sink.block(row_body * kV, col_body * kV, m);

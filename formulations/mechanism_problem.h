@@ -242,6 +242,7 @@ class MechanismProblem final : public Problem {
 
   struct Recorder {
     std::vector<Block>& blocks;
+    static constexpr bool places_only = true;
     template <class Derived>
     void block(int row, int col, const Eigen::MatrixBase<Derived>&) {
       blocks.push_back(
@@ -251,6 +252,7 @@ class MechanismProblem final : public Problem {
   struct Writer {
     const int* slot;
     double* values;
+    static constexpr bool places_only = false;
     template <class Derived>
     void block(int, int, const Eigen::MatrixBase<Derived>& m) {
       for (Eigen::Index c = 0; c < Derived::ColsAtCompileTime; ++c) {

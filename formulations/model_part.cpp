@@ -62,6 +62,13 @@ Part part_of(std::span<const BodyState> states, LinearDrag drag) {
   return part;
 }
 
+Part part_of(std::span<const BodyState> states, CallbackForce force) {
+  Part part;
+  for (int& body : force.bodies) body = add(part, states, body);
+  part.model.callbacks.push_back(std::move(force));
+  return part;
+}
+
 TermSize term_size(const Part& part, const Row& row) {
   const auto state = [&](int body) {
     return body == kGround ? BodyState() : part.states[static_cast<std::size_t>(body)];

@@ -10,7 +10,7 @@
 
 namespace poinsot {
 
-// A model of its own, at most two bodies without mass and inertia, and their states.
+// A model of its own, of the bodies it acts on without mass and inertia, and their states.
 struct Part {
   Model model;
   std::vector<BodyState> states;
@@ -22,6 +22,7 @@ Part part_of(std::span<const BodyState> states, TorsionElement torsion);
 Part part_of(std::span<const BodyState> states, PointForce force);
 Part part_of(std::span<const BodyState> states, Torque torque);
 Part part_of(std::span<const BodyState> states, LinearDrag drag);
+Part part_of(std::span<const BodyState> states, CallbackForce force);
 
 // Size at t = 0 of the terms that Φ = u·v − f and its first and second time derivatives are sums of, without regard to
 // what cancels. Of a pfaffian row, which has no Φ: of its gradient, of Ψv and of d(Ψv)/dt.

@@ -10,6 +10,7 @@
 #include "core/index.h"
 #include "core/input_error.h"
 #include "core/model_faults.h"
+#include "core/places.h"
 #include "core/scene_doubts.h"
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
@@ -88,9 +89,7 @@ std::string switch_notice(const Model& model, const IntegratorEntry& integrator,
       at, integrator.name);
 }
 
-}  // namespace
-
-Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
+Outcome run(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
   check_numbers(settings);
   const FormulationEntry& formulation = formulations().require(settings.formulation);
   LinearSystems systems(settings.linear());
@@ -103,8 +102,8 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   const auto model = std::make_shared<const Model>(std::move(compiled));
   Outcome outcome;
   const Tell notice = [&](const std::string& sentence) {
-    outcome.notices.push_back(sentence);
-    if (tell) tell(sentence);
+    outcome.notices.push_back(with_key_paths(sentence, scene));
+    if (tell) tell(outcome.notices.back());
   };
   InitialState start = find_initial_state(model, settings);
   outcome.status = start.status;
@@ -155,6 +154,18 @@ Outcome simulate(const Scene& scene, const Settings& settings, const Observer& o
   }
   outcome.statistics.linear = systems.work();
   return outcome;
+}
+
+}  // namespace
+
+Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
+  try {
+    Outcome outcome = run(scene, settings, observe, tell);
+    if (!outcome.status.ok()) outcome.status.message = with_key_paths(outcome.status.message, scene);
+    return outcome;
+  } catch (const InputError& refused) {
+    throw InputError(with_key_paths(refused.what(), scene));
+  }
 }
 
 }  // namespace poinsot

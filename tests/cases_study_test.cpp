@@ -7,6 +7,7 @@
 #include <set>
 
 #include "bench/cases/case_table.h"
+#include "bench/cases/computation.h"
 #include "bench/cases/study_file.h"
 #include "core/input_error.h"
 
@@ -96,7 +97,7 @@ TEST(CasesStudy, ShardsAndATenthAreDisjointAndComplete) {
 
 // A row is one byte for byte, of the case that it says; everything else is computed again.
 TEST(CasesStudy, ADamagedRowIsNone) {
-  const Study study = study_of(table()["base"]);
+  const Study study = study_of(case_table()["base"]);
   std::string folder = (std::filesystem::temp_directory_path() / "poinsot-rows-XXXXXX").string();
   ASSERT_NE(mkdtemp(folder.data()), nullptr);
   const std::filesystem::path part = std::filesystem::path(folder) / "cases.part";
@@ -112,6 +113,33 @@ TEST(CasesStudy, ADamagedRowIsNone) {
   EXPECT_FALSE(rows.has(1));
   EXPECT_FALSE(rows.has(2)) << "its checksum is right, but fields are missing";
   EXPECT_EQ(rows.damaged(), 3);
+  std::filesystem::remove_all(folder);
+}
+
+// As a program does it, without a command line; what is there already is not computed again.
+TEST(CasesStudy, AFewLinesComputeOne) {
+  const auto folder = std::filesystem::temp_directory_path() / "poinsot_cases_study_test";
+  std::filesystem::remove_all(folder);
+  Json document = case_table()["base"];
+  document.erase("pictures");
+  for (const bool again : {false, true}) {
+    ComputationOptions options;
+    options.folder = folder;
+    options.threads = 1;
+    Computation computation(study_of(document), options);
+    EXPECT_EQ(computation.there(), again ? 4 : 0);
+    computation.compute();
+    ASSERT_TRUE(computation.complete());
+    std::vector<std::filesystem::path> written;
+    EXPECT_EQ(computation.conclude(written), "");
+    EXPECT_EQ(computation.failures(), 0);
+    ASSERT_EQ(written, std::vector{folder / "cases.csv"});
+    std::ifstream in(written.front());
+    std::string line;
+    int rows = 0;
+    while (std::getline(in, line)) rows += !line.starts_with("#");
+    EXPECT_EQ(rows, 1 + 4);
+  }
   std::filesystem::remove_all(folder);
 }
 

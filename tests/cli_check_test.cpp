@@ -58,32 +58,36 @@ TEST_F(Check, ADerivativeThatIsNotFinite) {
   const Result result = poinsot({"check", "root.json"});
   EXPECT_EQ(result.status, 3);
   EXPECT_EQ(result.err,
-            "poinsot: root.json: at t = 0 s constraint 'root': the second derivative of 't^1.5' is not finite; end the "
+            "poinsot: root.json: at t = 0 s constraint 'root' (/constraints/0, line 3): the second derivative of "
+            "'t^1.5' is not finite; end the "
             "run before, "
             "or change the function\n");
-  expect_says(result, {"  rA: constraint 'root': gamma is off by "});
+  expect_says(result, {"  rA: constraint 'root' (/constraints/0, line 3): gamma is off by "});
 }
 
 TEST_F(Check, AStateOffTheConstraints) {
   const Result result = check_model("four_link");
   EXPECT_EQ(result.status, 0);
-  expect_says(result, {"degrees of freedom: 0\n", "initial pose: violates constraint 'revD-CD-i' by 0.0087 m,",
-                       "initial velocities: violates constraint 'univ-CD-j' by 6.28 m/s,", "'link 3' most"});
+  expect_says(result, {"degrees of freedom: 0\n", "initial pose: violates constraint 'revD-CD-i' (/constraints/",
+                       ") by 0.0087 m,", "initial velocities: violates constraint 'univ-CD-j' (/constraints/",
+                       ") by 6.28 m/s,", "'link 3' most"});
 }
 
 TEST_F(Check, RedundantConstraintsByName) {
   const Result planar = check_model("double_four_bar");
   EXPECT_EQ(planar.status, 0);
-  expect_says(planar, {"degrees of freedom: 1\n", "redundant constraints: 6 rows\n",
-                       "joint 'revolute7' (its row 3 of 5) follows from", "conflicting constraints: none\n"});
+  expect_says(planar, {"degrees of freedom: 1\n", "redundant constraints: 6 rows\n", "joint 'revolute7' (/joints/",
+                       "; its row 3 of 5) follows from", "conflicting constraints: none\n"});
 
   write("twice.json",
         rod(R"({"type": "D", "name": "first", "bodies": ["ground", "rod"], "s_i": [-1,0,0], "s_j": [0,0,0], "f": 4},
                              {"type": "D", "name": "again", "bodies": ["ground", "rod"], "s_i": [-1,0,0], "s_j": [0,0,0], "f": 4})"));
   const Result twice = poinsot({"check", "twice.json"});
   EXPECT_EQ(twice.status, 0) << twice.err;
-  expect_says(twice, {"degrees of freedom: 5\n", "redundant constraints: 1 row\n",
-                      "constraint 'again' follows from constraint 'first'\n"});
+  expect_says(
+      twice,
+      {"degrees of freedom: 5\n", "redundant constraints: 1 row\n",
+       "constraint 'again' (/constraints/1, line 4) follows from constraint 'first' (/constraints/0, line 3)\n"});
 }
 
 TEST_F(Check, ConflictingConstraintsByName) {
@@ -94,7 +98,8 @@ TEST_F(Check, ConflictingConstraintsByName) {
   EXPECT_EQ(torn.status, 2);
   EXPECT_EQ(torn.err, "poinsot: torn.json: the constraints conflict; remove or correct one of those named\n");
   expect_says(torn, {"redundant constraints: none\n", "conflicting constraints: 1 row\n",
-                     "constraint 'other' contradicts constraint 'first': off by 1.25 m (position) where those hold\n"});
+                     "constraint 'other' (/constraints/1, line 4) contradicts constraint 'first' (/constraints/0, line "
+                     "3): off by 1.25 m (position) where those hold\n"});
 
   write(
       "pulled.json",
@@ -102,7 +107,8 @@ TEST_F(Check, ConflictingConstraintsByName) {
                               {"type": "CD", "name": "pull", "bodies": ["ground", "rod"], "c": [1,0,0], "s_i": [1,0,0], "s_j": [0,0,0], "f": "t"})"));
   const Result pulled = poinsot({"check", "pulled.json"});
   EXPECT_EQ(pulled.status, 2);
-  expect_says(pulled, {"constraint 'pull' contradicts constraint 'still': off by 1 m/s (velocity) where those hold\n"});
+  expect_says(pulled, {"constraint 'pull' (/constraints/1, line 4) contradicts constraint 'still' (/constraints/0, "
+                       "line 3): off by 1 m/s (velocity) where those hold\n"});
 }
 
 }  // namespace

@@ -27,9 +27,11 @@ class Help : public CommandLine {
 TEST_F(Help, EveryCommandIsInTheHelpAndHasItsOwn) {
   const std::string help = said({"--help"});
   for (const char* command : {"run", "check", "view", "list", "tables", "make", "scale", "reference", "chart", "advise",
-                              "figures", "study", "completion", "manual"}) {
+                              "figures", "study", "report", "compare", "completion", "manual"}) {
     EXPECT_NE(help.find(fmt::format("\n  {} ", command)), std::string::npos) << help;
-    EXPECT_NE(said({command, "--help"}).find(fmt::format("Usage: poinsot {} ", command)), std::string::npos);
+    const std::string own = said({command, "--help"});
+    EXPECT_NE(own.find(fmt::format("Usage: poinsot {} ", command)), std::string::npos);
+    EXPECT_NE(own.find("--quiet"), std::string::npos) << command;
   }
   EXPECT_NE(help.find("Exit status: 0 done; 2 the input is wrong"), std::string::npos);
 }

@@ -1,4 +1,4 @@
-"""Includes point one way: core <- linsolve <- formulations <- integrators <- bench/study <- bench/view <- bench/cases <- bench/stability <- bench/paper <-
+"""Includes point one way: core <- linsolve <- formulations <- integrators <- bench/study <- bench/records <- bench/view <- bench/cases <- bench/stability <- bench/paper <-
 bench/report <- app, and within integrators from the seam through stepping, start and methods to what stands beside them. The benchmark binaries,
 bench/*, may include everything up to bench/study. Only the program knows CLI11. Prints every breach."""
 
@@ -7,7 +7,7 @@ import posixpath
 import re
 import sys
 
-LAYERS = ["core", "linsolve", "formulations", "integrators", "bench/study", "bench/view", "bench/cases", "bench/stability", "bench/paper", "bench/report",
+LAYERS = ["core", "linsolve", "formulations", "integrators", "bench/study", "bench/records", "bench/view", "bench/cases", "bench/stability", "bench/paper", "bench/report",
           "app"]
 BENCHMARKS = "bench"  # tests may include anything
 

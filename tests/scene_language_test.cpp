@@ -11,6 +11,8 @@
 #include "core/input_error.h"
 #include "core/printable.h"
 #include "core/scene_reader.h"
+#include "core/varied_scene.h"
+#include "tests/support/without_place.h"
 
 namespace poinsot {
 namespace {
@@ -41,7 +43,7 @@ class SceneLanguage : public testing::Test {
         if (!here) text += what[at];
         at += here ? where.size() : 1;
       }
-      return text;
+      return test::without_place(text);
     }
     return "";
   }
@@ -106,6 +108,35 @@ TEST_F(SceneLanguage, a_scene_is_varied_without_its_files) {
   }
   EXPECT_THROW((void)with_parameters(scene, {{"m", 1}}), InputError);
   EXPECT_THROW((void)with_parameters(Scene(), {{"m", 1}}), InputError);
+}
+
+// What calls no parameter is not read again, and the rest is as if everything were.
+TEST_F(SceneLanguage, many_values_read_again_what_calls_them) {
+  write_scene(
+      R"("parameters": {"a": 2, "b": "3*a", "scale": 1}, "tables": {"f": {"points": [[0, 0], [1, "a"], [2, 0]]}},)",
+      "b", "scale*f(t)");
+  const Scene scene = read();
+  VariedScene varied(scene);
+  for (const double a : {0.5, 7.0, 1e-3}) {
+    const Scene &one = varied.with({{"a", a}}), other = with_parameters(scene, {{"a", a}});
+    EXPECT_EQ(one.bodies[0].mass, 3 * a);
+    EXPECT_EQ(one.drivers[0].value.at(1.0).f, a);
+    EXPECT_EQ(one.notices, other.notices);
+    ASSERT_EQ(one.parameters.size(), other.parameters.size());
+    for (std::size_t k = 0; k < one.parameters.size(); ++k) {
+      EXPECT_EQ(one.parameters[k].value, other.parameters[k].value);
+      EXPECT_EQ(one.parameters[k].set, other.parameters[k].set);
+    }
+  }
+  try {
+    (void)varied.with({{"a", -1}});
+    ADD_FAILURE() << "a mass below zero";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("/bodies/0/mass: found -3, expected a positive number (body '"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(varied.with({{"a", 1}}).bodies[0].mass, 3);
 }
 
 TEST_F(SceneLanguage, tables_come_from_columns_of_files) {

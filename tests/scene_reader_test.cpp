@@ -13,6 +13,7 @@
 #include "core/input_error.h"
 #include "core/model.h"
 #include "tests/scale.h"
+#include "tests/support/without_place.h"
 
 namespace poinsot {
 namespace {
@@ -23,7 +24,7 @@ std::string error_of(const std::string& text) {
   try {
     (void)parse_scene(text, "case.json");
   } catch (const InputError& error) {
-    return error.what();
+    return test::without_place(error.what());
   }
   return "";
 }

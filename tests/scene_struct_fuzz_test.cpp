@@ -198,6 +198,7 @@ class Damage {
     if (below(2) == 0) return index(scene, f.body);
     number(below(2) == 0 ? f.translational : f.rotational);
   }
+  void force(const Scene& scene, CallbackForce& f) { index(scene, f.bodies[below(f.bodies.size())]); }
 
   std::mt19937_64& random_;
 };

@@ -103,21 +103,23 @@ constexpr Fault kFaults[] = {
     {"a pole",
      R"j("forces": [{"type": "force", "name": "push", "body": "rod", "point": [0, 0, 0],
       "force": [0, "1/(0.5 - t)", 0]}]})j",
-     "at t = 0\\.[45].* s force 'push', component y: '1/\\(0\\.5 - t\\)' is not finite; end the run before, or change "
+     "at t = 0\\.[45].* s force 'push' \\(/forces/0\\), component y: '1/\\(0\\.5 - t\\)' is not finite; end the run "
+     "before, or change "
      "the function"},
     {"a table that ends",
      R"j("tables": {"road": {"points": [[0, 0], [0.2, 1], [0.4, 0]]}}, "drivers": [{"type": "angle", "name": "motor",
       "bodies": ["ground", "rod"], "axis": [0, 0, 1], "angle": "road(t)"}]})j",
-     "at t = 0\\.4.* s driver 'motor': 'road\\(t\\)': table 'road' has no value at 0\\.4.*: its points go from 0 to "
+     "at t = 0\\.4.* s driver 'motor' \\(/drivers/0\\): 'road\\(t\\)': table 'road' has no value at 0\\.4.*: its "
+     "points go from 0 to "
      "0\\.4; .*"},
     {"a length that ends",
      R"j("drivers": [{"type": "distance", "name": "rope", "bodies": ["ground", "rod"], "s_i": [1, 0, -1],
       "s_j": [0, 0, 0], "length": "1 - 2*t"}]})j",
-     "at t = 0\\.[45].* s driver 'rope': the length '1 - 2\\*t' is .* m, expected a positive one; .*"},
+     "at t = 0\\.[45].* s driver 'rope' \\(/drivers/0\\): the length '1 - 2\\*t' is .* m, expected a positive one; .*"},
     {"a law",
      R"j("forces": [{"type": "spring", "name": "rope", "bodies": ["ground", "rod"], "s_i": [0, 0, 0],
       "s_j": [0, 0, 0], "length": 0.9, "law": "10*sqrt(x)"}]})j",
-     "at t = .* s force 'rope': '10\\*sqrt\\(x\\)' is not finite at x = -.*, v = .*; .*"},
+     "at t = .* s force 'rope' \\(/forces/0\\): '10\\*sqrt\\(x\\)' is not finite at x = -.*, v = .*; .*"},
 };
 
 TEST(SpringLaw, runs_end_where_a_function_does) {
@@ -149,10 +151,10 @@ TEST(SpringLaw, a_start_without_a_value_says_so) {
     "position": [1, 0, 0]}], "drivers": [{"type": "angle", "bodies": ["ground", "rod"], "axis": [0, 0, 1],
     "angle": "sqrt(t)"}]})j",
                                   "start.json");
-  EXPECT_EQ(
-      run(scene, Settings{}).outcome.status.message,
-      "at t = 0 s driver 'angle1': the first derivative of 'sqrt(t)' is not finite; end the run before, or change "
-      "the function");
+  EXPECT_EQ(run(scene, Settings{}).outcome.status.message,
+            "at t = 0 s driver 'angle1' (/drivers/0): the first derivative of 'sqrt(t)' is not finite; end the run "
+            "before, or change "
+            "the function");
 }
 
 }  // namespace

@@ -163,6 +163,7 @@ bool conserves_energy(const Model& model) {
   if (!std::all_of(model.springs.begin(), model.springs.end(), undamped)) return false;
   for (const TorsionElement& torsion : model.torsions)
     if (!undamped(torsion.spring)) return false;
+  if (!model.callbacks.empty()) return false;
   return std::all_of(model.drags.begin(), model.drags.end(),
                      [](const LinearDrag& drag) { return drag.translational == 0 && drag.rotational == 0; });
 }

@@ -6,6 +6,7 @@
 
 #include "core/check.h"
 #include "core/input_error.h"
+#include "core/places.h"
 #include "core/scene_doubts.h"
 #include "core/scene_types.h"
 #include "formulations/registry.h"
@@ -83,7 +84,9 @@ bool without_freedom(const Scene& scene) {
          analyze_rank(model, given_state(*model), RankNames::none).degrees_of_freedom() == 0;
 }
 
-SceneCheck check_scene(const Scene& scene) {
+namespace {
+
+SceneCheck checked(const Scene& scene) {
   SceneCheck result;
   result.model = std::make_shared<const Model>(compile(scene));
   result.notices = scene.notices;
@@ -100,6 +103,18 @@ SceneCheck check_scene(const Scene& scene) {
     return result;
   }
   compare_derivatives(result, result.start.status.ok() ? result.start.bodies : given);
+  return result;
+}
+
+}  // namespace
+
+SceneCheck check_scene(const Scene& scene) {
+  SceneCheck result = checked(scene);
+  const auto place = [&](std::string& sentence) { sentence = with_key_paths(sentence, scene); };
+  std::ranges::for_each(result.notices, place);
+  std::ranges::for_each(result.start.notices, place);
+  place(result.refusal);
+  place(result.start.status.message);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/counted.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/start/driven_pose.h"
 #include "integrators/start/singular_position.h"
@@ -217,13 +218,12 @@ class Kinematics final : public FixedSteps {
     }
     Eigen::Index largest = 0;
     delta_.cwiseAbs().maxCoeff(&largest);
-    return {
-        Failure::not_converged, t,
-        fmt::format("at t = {:.9g} s the position did not converge: after {} iterations the correction is {:.3g}, the "
-                    "tolerance {:.3g}; {} moves most; the mechanism may be locked here or the driver ask for more "
-                    "than it can reach; try a smaller step",
-                    t, settings_.max_iterations, correction, settings_.tolerance,
-                    problem_.describe_unknown(static_cast<int>(largest)))};
+    return {Failure::not_converged, t,
+            fmt::format("at t = {:.9g} s the position did not converge: after {} the correction is {:.3g}, the "
+                        "tolerance {:.3g}; {} moves most; the mechanism may be locked here or the driver ask for more "
+                        "than it can reach; try a smaller step",
+                        t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
+                        problem_.describe_unknown(static_cast<int>(largest)))};
   }
 
   Status find_rates(double t) {

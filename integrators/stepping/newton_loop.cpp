@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/counted.h"
 #include "formulations/gradient.h"
 
 namespace poinsot {
@@ -91,10 +92,10 @@ Status NewtonLoop::not_converged(double t, double correction) const {
   Eigen::Index largest = 0;
   delta_.cwiseAbs().maxCoeff(&largest);
   return {Failure::not_converged, t,
-          fmt::format("at t = {:.9g} s Newton's method did not converge: after {} iterations the correction is {:.3g}, "
+          fmt::format("at t = {:.9g} s Newton's method did not converge: after {} the correction is {:.3g}, "
                       "the tolerance {:.3g}; the largest correction is that of {}; try {}, the exact jacobian or a "
                       "larger tolerance",
-                      t, settings_.max_iterations, correction, settings_.tolerance,
+                      t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
                       problem_.describe_unknown(static_cast<int>(largest)),
                       divided ? "an integrator with error control" : "a smaller step")};
 }

@@ -32,6 +32,14 @@ endif()
 if(NOT output MATCHES "\nt 2\\.0 lower 0\\.115430 -1\\.455662 hinge 13\\.366886 65\\.447720\n$")
   message(FATAL_ERROR "the double pendulum ended elsewhere: ${output}")
 endif()
+file(WRITE ${work}/pendulum.json [=[{
+  "scene": 1, "name": "pendulum", "gravity": [0, 0, -9.81], "parameters": {"l": 1},
+  "bodies": [{"name": "rod", "mass": 3, "inertia": [1, "1/100", 1], "position": [0, "l", 0]}],
+  "joints": [{"type": "revolute", "bodies": ["ground", "rod"], "point": [0, 0, 0], "axis": [1, 0, 0]}]}]=])
+run(${work}/build/parameters ${work}/pendulum.json)
+if(NOT output MATCHES "^100 lengths, at most [0-9.]+e-(0[7-9]|[1-9][0-9]) m")
+  message(FATAL_ERROR "a pendulum did not come back: ${output}")
+endif()
 # What was measured differs from run to run; something is on the front, and the explicit pairs are where it is accurate.
 run(${work}/build/study ${work}/moved/share/poinsot/models/single_pendulum_free.json)
 if(NOT output MATCHES "dop(ri5|853) in r(A|p|eps) [0-9.]+e-[01][0-9] ")

@@ -7,20 +7,11 @@ import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join, resolve } from "node:path";
-import { pathToFileURL } from "node:url";
-import { browserPath, library } from "../view/browser.js";
+import { browserPath, conclude, expect, expectAccessible, launch, library, openPage } from "../view/browser.js";
 
 const [program, source, work, given, shots] = process.argv.slice(2).map((path) => resolve(path));
 const MOST_BYTES = 5e6;
 const EVIL = "</script><script>window.hacked = 1</script><img src=x onerror=\"window.hacked = 2\"> =1+1|'";
-
-let failures = 0, checks = 0;
-function expect(holds, what) {
-  ++checks;
-  if (holds) return;
-  ++failures;
-  console.log(`FAILED: ${what}`);
-}
 
 const folder = given ?? join(mkdtempSync(join(tmpdir(), "poinsot-report-")), "results");
 const poinsot = (...words) => execFileSync(program, words, { cwd: join(folder, ".."), encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
@@ -43,20 +34,6 @@ function fields(line) {
 function csv(file) {
   const lines = readFileSync(join(folder, file), "utf8").split("\n").filter((line) => line && !line.startsWith("#"));
   return lines.map(fields);
-}
-
-async function open(browser, { width, height = 900, dark = false, media = "screen" }) {
-  const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? "dark" : "light" });
-  const page = await context.newPage(), troubles = [], url = pathToFileURL(join(folder, "report.html")).href;
-  page.on("console", (message) => { if (message.type() === "error") troubles.push(message.text()); });
-  page.on("pageerror", (error) => troubles.push(String(error)));
-  page.on("request", (request) => { if (request.url() !== url && !/^data:/.test(request.url())) troubles.push(`asks for ${request.url()}`); });
-  await page.goto(url);
-  await page.emulateMedia({ media, colorScheme: dark ? "dark" : "light" });
-  return { page, async close(what) {
-    expect(troubles.length === 0, `${what}: no error and no request, found ${troubles.join("; ")}`);
-    await context.close();
-  } };
 }
 
 // Every table that a link below it names holds the fields of that file, in its order.
@@ -86,13 +63,6 @@ async function saysNothingOfItsOwn(page) {
   expect(shown.size > 100 && unknown.length === 0, `every number stands in a table, found beside them ${unknown.slice(0, 10).join(" ")}`);
 }
 
-async function accessible(page, axe, what) {
-  await page.evaluate(axe);
-  const found = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
-  const serious = found.violations.filter((one) => ["serious", "critical"].includes(one.impact));
-  expect(serious.length === 0, `${what}: accessible, found ${serious.map((one) => `${one.id}: ${one.nodes.slice(0, 3).map((node) => node.target + " " + node.failureSummary).join(" ")}`).join("; ")}`);
-}
-
 async function works(page) {
   await page.keyboard.press("Tab");
   expect(await page.evaluate(() => document.activeElement.className) === "skip", "the first stop is the skip link");
@@ -115,14 +85,13 @@ poinsot("report", basename(folder), "--quiet");
 expect(statSync(join(folder, "report.html")).size < MOST_BYTES, "the page is below 5 MB");
 expect(readdirSync(folder).includes("report_findings.csv"), "the numbers of the findings stand beside it");
 const executablePath = browserPath(), require = library(work);
-const { chromium } = require("playwright-core"), axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox"] });
+const browser = await launch(require, executablePath), report = join(folder, "report.html");
 try {
   for (const dark of [false, true])
     for (const width of [1400, 800, 390]) {
-      const what = `${width} pixels, ${dark ? "dark" : "light"}`, { page, close } = await open(browser, { width, dark });
+      const what = `${width} pixels, ${dark ? "dark" : "light"}`, { page, close } = await openPage(browser, report, { width, dark });
       expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${what}: nothing is wider than the window`);
-      if (width !== 800) await accessible(page, axe, what);
+      if (width !== 800) await expectAccessible(page, require, what);
       if (width === 1400 && !dark) {
         await holdsTheTables(page);
         await saysNothingOfItsOwn(page);
@@ -137,12 +106,13 @@ try {
       }
       await close(what);
     }
-  const { page, close } = await open(browser, { width: 1000, media: "print" });
+  const { page, close } = await openPage(browser, report, { width: 1000 });
+  await page.emulateMedia({ media: "print" });
   expect(await page.locator("nav").isHidden(), "navigation is not printed");
+  if (shots) await page.pdf({ path: join(shots, "report.pdf"), format: "A4" });
   await close("print");
 } finally {
   await browser.close();
   if (!given) rmSync(join(folder, ".."), { recursive: true });
 }
-console.log(`${checks} checks, ${failures} failed`);
-process.exit(failures > 0 ? 1 : 0);
+conclude();

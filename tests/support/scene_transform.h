@@ -73,6 +73,7 @@ struct Transform {
     f.i = new_body(f.i), f.j = new_body(f.j);
   }
   void transform(LinearDrag& f) const { f.body = new_body(f.body); }
+  void transform(CallbackForce&) const {}  // no file holds one
 };
 
 inline Scene Transform::apply(const Scene& scene) const {

@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { browserPath, library, skip } from "./browser.js";
+import { browserPath, launch, library, skip } from "./browser.js";
 
 const [program, source, work, out] = process.argv.slice(2).map((path) => resolve(path));
 const CLOSER = 4;
@@ -15,9 +15,9 @@ const committed = join(source, "bench/view/picture.png");
 
 if (/without the page/.test(spawnSync(program, ["view", "none.json", "--out", "none.html"], { encoding: "utf8" }).stderr))
   skip("the program was built without it (npm was not found)");
-const executablePath = browserPath(), { chromium } = library(work)("playwright-core");
+const executablePath = browserPath();
 const folder = mkdtempSync(join(tmpdir(), "poinsot-picture-"));
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+const browser = await launch(library(work), executablePath);
 try {
   execFileSync(program, ["view", join(source, "models/four_link.json"), "--end", "2", "--every", "0.01", "--out", join(folder, "motion.html"), "--quiet"]);
   const page = await (await browser.newContext({ viewport: { width: 1200, height: 760 }, colorScheme: "light" })).newPage();

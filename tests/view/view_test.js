@@ -1,24 +1,15 @@
-// Looks at the page of `poinsot view` in a browser: view_test.js PROGRAM SOURCE WORK.
+// Looks at the page of `poinsot view` in a browser: view_test.js PROGRAM SOURCE WORK [SHOTS]. Needs what browser.js says;
+// where the program was built without the page it says so and ends with 77: skipped.
 //
-// Needs Chromium (Debian: chromium) and, from npm, playwright-core and axe-core, which are installed in WORK. Where
-// there is none of them, or the program was built without the page, it says so and ends with 77: skipped.
+// With SHOTS pictures of four mechanisms are left there, to be looked at.
 
 import { execFileSync, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
-import { pathToFileURL } from "node:url";
-import { browserPath, library, skip } from "./browser.js";
+import { browserPath, conclude, expect, expectAccessible, launch, library, openPage, skip } from "./browser.js";
 
-const [program, source, work] = process.argv.slice(2).map((path) => resolve(path));
-
-let failures = 0, checks = 0;
-function expect(holds, what) {
-  ++checks;
-  if (holds) return;
-  ++failures;
-  console.log(`FAILED: ${what}`);
-}
+const [program, source, work, shots] = process.argv.slice(2).map((path) => resolve(path));
 
 const folder = mkdtempSync(join(tmpdir(), "poinsot-view-"));
 const poinsot = (...words) => execFileSync(program, words, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
@@ -41,25 +32,14 @@ const EVIL_SCENE = {
 };
 
 class Looker {
-  constructor(browser, axe) {
+  constructor(browser, require) {
     this.browser = browser;
-    this.axe = axe;
+    this.require = require;
   }
 
-  async open(file, { width = 1400, height = 900, dark = false } = {}) {
-    this.context = await this.browser.newContext({ viewport: { width, height }, colorScheme: dark ? "dark" : "light" });
-    this.page = await this.context.newPage();
-    this.troubles = [];
-    this.page.on("console", (message) => { if (message.type() === "error") this.troubles.push(message.text()); });
-    this.page.on("pageerror", (error) => this.troubles.push(String(error)));
-    const url = pathToFileURL(join(folder, file)).href;
-    this.page.on("request", (request) => { if (request.url() !== url && !/^(data|blob):/.test(request.url())) this.troubles.push(`asks for ${request.url()}`); });
-    await this.page.goto(url);
+  async open(file, options = {}) {
+    Object.assign(this, await openPage(this.browser, join(folder, file), options));
     await this.page.waitForFunction(() => window.poinsot?.drawn > 0, null, { timeout: 20000 });
-  }
-  async close(what) {
-    expect(this.troubles.length === 0, `${what}: no error and no request, found ${this.troubles.join("; ")}`);
-    await this.context.close();
   }
 
   seek(t) {
@@ -87,14 +67,7 @@ class Looker {
     }, png);
   }
 
-  async accessible(what) {
-    // As a program that looks on does, not as the page's own script, whose policy forbids strings as code.
-    await this.page.evaluate(this.axe);
-    const found = await this.page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
-    const serious = found.violations.filter((one) => ["serious", "critical"].includes(one.impact));
-    expect(serious.length === 0, `${what}: accessible, found ${serious.map((one) => `${one.id}: ${one.nodes.map((node) => node.target).join(" ")}`).join("; ")}`);
-  }
-
+  accessible(what) { return expectAccessible(this.page, this.require, what); }
   state(what) { return this.page.evaluate((name) => window.poinsot[name], what); }
 }
 
@@ -212,17 +185,57 @@ async function names(looker) {
   return looker.close("a scene of odd names");
 }
 
+// A thousand bodies at thirty frames a second: what the page's script takes for a frame, the picture left to whoever
+// renders it (here software, which takes longer).
+async function many(looker) {
+  const MOST_MS = 1000 / 30;
+  poinsot("make", "chain", "--bodies", "1000", "--out", "chain.json");
+  poinsot("view", "chain.json", "--integrator", "rattle", "--step", "0.01", "--end", "0.2", "--out", "chain.html", "--quiet");
+  await looker.open("chain.html", { before: () => {
+    window.frames_ms = [];
+    const request = window.requestAnimationFrame.bind(window);
+    window.requestAnimationFrame = (draw) => request((now) => {
+      const began = performance.now();
+      draw(now);
+      window.frames_ms.push(performance.now() - began);
+    });
+  } });
+  const { page } = looker;
+  expect((await looker.state("bodies")).length === 1000, "all bodies are there");
+  await page.click("#play");
+  await page.evaluate(() => { window.frames_ms.length = 0; });
+  await page.waitForFunction(() => window.frames_ms.length >= 20, null, { timeout: 60000 });
+  const ms = (await page.evaluate(() => window.frames_ms)).sort((a, b) => a - b), median = ms[Math.floor(ms.length / 2)];
+  console.log(`1000 bodies: ${median.toFixed(1)} ms of script a frame, median of ${ms.length}`);
+  expect(median < MOST_MS, `a frame of 1000 bodies takes less than ${MOST_MS.toFixed(1)} ms of script, found ${median}`);
+  return looker.close("the page of 1000 bodies");
+}
+
+async function photograph(looker) {
+  mkdirSync(shots, { recursive: true });
+  for (const [name, end] of [["slider_crank", 1], ["andrews", 0.03], ["delta_robot", 1], ["gyroscope", 1]]) {
+    poinsot("view", join(source, `models/${name}.json`), "--end", String(end), "--out", `${name}.html`, "--quiet");
+    for (const dark of [false, true])
+      for (const width of [1400, 800, 390]) {
+        await looker.open(`${name}.html`, { width, dark });
+        await looker.seek(0.6 * end);
+        await looker.page.screenshot({ path: join(shots, `${name}_${width}_${dark ? "dark" : "light"}.png`), fullPage: true });
+        expect(await looker.page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name}, ${width} pixels: nothing is wider than the window`);
+        await looker.close(`${name}, ${width} pixels`);
+      }
+  }
+}
+
 const probe = spawnSync(program, ["view", "none.json", "--out", "none.html"], { encoding: "utf8" });
 if (/without the page/.test(probe.stderr)) skip("the program was built without it (npm was not found)");
 const executablePath = browserPath(), require = library(work);
-const { chromium } = require("playwright-core");
-const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+const browser = await launch(require, executablePath);
 try {
-  const looker = new Looker(browser, readFileSync(require.resolve("axe-core/axe.min.js"), "utf8"));
-  for (const part of [shows, keys, two, names]) await part(looker);
+  const looker = new Looker(browser, require);
+  for (const part of [shows, keys, two, names, many]) await part(looker);
+  if (shots) await photograph(looker);
 } finally {
   await browser.close();
   rmSync(folder, { recursive: true });
 }
-console.log(`${checks} checks, ${failures} failed`);
-process.exit(failures > 0 ? 1 : 0);
+conclude();

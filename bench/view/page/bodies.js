@@ -61,7 +61,7 @@ export function ellipsoid(body, u) {
 export function bodyParts(body, u) {
   if (body.shape) return shaped(body.shape, u);
   const points = outline(body);
-  if (points.length === 1) return [["ball", ellipsoid(body, u)]];
+  if (points.length === 1) return [["ball", ellipsoid(body, u), true]];  // others may be inside
   const far = points.reduce((a, b) => (length(b) > length(a) ? b : a));
   const offLine = (p) => length(cross(p, unit(far)));
   const aside = points.reduce((a, b) => (offLine(b) > offLine(a) ? b : a));

@@ -1,4 +1,4 @@
-#include "app/run_files.h"
+#include "bench/records/run_files.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/interruption.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 using namespace study;
 namespace {
 
@@ -137,4 +137,4 @@ void RunFiles::commit(const std::string& record) {
   if (record_ && lost_ == before) record_->commit();  // or it tells of files that are not there
 }
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

@@ -7,7 +7,7 @@
 #include "core/scene.h"
 #include "integrators/integrator.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 
 class StateSaver {
  public:
@@ -25,4 +25,4 @@ class StateSaver {
   std::vector<double> twists_;
 };
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

@@ -1,8 +1,8 @@
-#include "app/state_saver.h"
+#include "bench/records/state_saver.h"
 
 #include "core/saved_scene.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 
 StateSaver::StateSaver(const std::filesystem::path& file, const Scene& scene)
     : file_(file), scene_(scene), bodies_(scene.bodies.size()) {}
@@ -18,4 +18,4 @@ void StateSaver::write() {
   file_.write(saved_scene(scene_, time_, bodies_, twists_));
 }
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

@@ -12,7 +12,7 @@
 
 #include "bench/study/output_file.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 
 bool is_npy(const std::filesystem::path& file);
 
@@ -33,4 +33,4 @@ class NumberTable {
   std::size_t column_ = 0;  // next
 };
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

@@ -14,13 +14,13 @@
 #include <string>
 #include <vector>
 
-#include "app/reactions_writer.h"
-#include "app/run_record.h"
-#include "app/signals_writer.h"
-#include "app/state_saver.h"
-#include "app/trajectory_writer.h"
+#include "bench/records/reactions_writer.h"
+#include "bench/records/run_record.h"
+#include "bench/records/signals_writer.h"
+#include "bench/records/state_saver.h"
+#include "bench/records/trajectory_writer.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 
 class RunFiles {
  public:
@@ -64,4 +64,4 @@ class RunFiles {
   std::string lost_;
 };
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

@@ -8,7 +8,7 @@
 #include "core/model.h"
 #include "integrators/start/reactions.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 
 class ReactionsWriter {
  public:
@@ -22,4 +22,4 @@ class ReactionsWriter {
   std::optional<Reactions> reactions_;  // from the first sample on
 };
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

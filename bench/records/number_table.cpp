@@ -1,10 +1,10 @@
-#include "app/number_table.h"
+#include "bench/records/number_table.h"
 
 #include <fmt/format.h>
 
 #include <bit>
 
-namespace poinsot::app {
+namespace poinsot::records {
 using namespace study;
 namespace {
 
@@ -55,4 +55,4 @@ void NumberTable::write(double value) {
   if (last) column_ = 0;
 }
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

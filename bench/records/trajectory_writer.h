@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "app/number_table.h"
+#include "bench/records/number_table.h"
 #include "core/scene.h"
 #include "integrators/integrator.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 
 // What a trajectory holds.
 class TrajectoryContent {
@@ -47,4 +47,4 @@ class TrajectoryWriter {
   std::vector<BodyState> states_;
 };
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

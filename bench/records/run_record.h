@@ -11,7 +11,7 @@
 #include "core/scene.h"
 #include "integrators/simulate.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 
 // Of files without a header.
 using ColumnsByOption = std::vector<std::pair<std::string, std::vector<std::string>>>;
@@ -32,4 +32,4 @@ std::string to_json(const RunRecord& record);
 // "program" and "processor": which program computed it, where.
 void add_origin(nlohmann::ordered_json& json);
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

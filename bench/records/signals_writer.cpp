@@ -1,6 +1,6 @@
-#include "app/signals_writer.h"
+#include "bench/records/signals_writer.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 namespace {
 
 std::vector<std::string> names_of(const Model& model) {
@@ -21,4 +21,4 @@ void SignalsWriter::write(const Sample& sample) {
   for (const double value : signals_->values()) table_.write(value);
 }
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "app/number_table.h"
+#include "bench/records/number_table.h"
 #include "core/model.h"
 #include "integrators/signals.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 
 class SignalsWriter {
  public:
@@ -25,4 +25,4 @@ class SignalsWriter {
   std::optional<Signals> signals_;  // from the first sample on
 };
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

@@ -1,6 +1,6 @@
-#include "app/reactions_writer.h"
+#include "bench/records/reactions_writer.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 using namespace study;
 
 ReactionsWriter::ReactionsWriter(const std::filesystem::path& file, const Model& model) : file_(file) {
@@ -36,4 +36,4 @@ void ReactionsWriter::write(const Sample& sample) {
   file_.write("\n");
 }
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

@@ -1,4 +1,4 @@
-#include "app/trajectory_writer.h"
+#include "bench/records/trajectory_writer.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 
-#include "app/name_list.h"
+#include "bench/study/name_list.h"
 #include "core/so3.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 namespace {
 
 struct Quantity {
@@ -50,13 +50,13 @@ TrajectoryContent::TrajectoryContent(const Scene& scene) : columns_(kQuantities.
 TrajectoryContent::TrajectoryContent(const Scene& scene, const std::string& columns, const std::string& bodies)
     : TrajectoryContent(scene) {
   if (!columns.empty()) {
-    const std::vector<std::string> all = quantity_names(), chosen = names_in("--columns", columns, all);
+    const std::vector<std::string> all = quantity_names(), chosen = study::names_in("--columns", columns, all);
     for (std::size_t k = 0; k < all.size(); ++k) columns_[k] = std::ranges::find(chosen, all[k]) != chosen.end();
   }
   if (bodies.empty()) return;
   std::vector<std::string> all;
   for (const Body& body : scene.bodies) all.push_back(body.name);
-  const std::vector<std::string> chosen = names_in("--bodies", bodies, all);
+  const std::vector<std::string> chosen = study::names_in("--bodies", bodies, all);
   std::erase_if(bodies_, [&](std::size_t b) { return std::ranges::find(chosen, all[b]) == chosen.end(); });
 }
 
@@ -94,4 +94,4 @@ void TrajectoryWriter::write(const Vector3& x) {
   for (const double component : x) table_.write(component);
 }
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

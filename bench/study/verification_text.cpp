@@ -1,4 +1,4 @@
-#include "app/verification_text.h"
+#include "bench/study/verification_text.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 
 #include "core/printable.h"
 
-namespace poinsot::app {
+namespace poinsot::study {
 
-void print(std::FILE* out, const study::Verification& verification) {
-  using Quantity = study::Verification::Quantity;
+void print(std::FILE* out, const Verification& verification) {
+  using Quantity = Verification::Quantity;
   const auto& all = verification.quantities;
   if (all.empty()) {
     fmt::print(out, "not verified: {}\n", printable(verification.failure));
@@ -30,4 +30,4 @@ void print(std::FILE* out, const study::Verification& verification) {
     fmt::print(out, "  the differences are too small to show an order\n");
 }
 
-}  // namespace poinsot::app
+}  // namespace poinsot::study

@@ -1,10 +1,10 @@
-#include "app/run_record.h"
+#include "bench/records/run_record.h"
 
 #include <nlohmann/json.hpp>
 
 #include "core/provenance.h"
 
-namespace poinsot::app {
+namespace poinsot::records {
 namespace {
 
 nlohmann::ordered_json packed(const study::Verification& verification) {
@@ -107,4 +107,4 @@ std::string to_json(const RunRecord& record) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace poinsot::app
+}  // namespace poinsot::records

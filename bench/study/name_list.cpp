@@ -1,4 +1,4 @@
-#include "app/name_list.h"
+#include "bench/study/name_list.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 
 #include "core/input_error.h"
 
-namespace poinsot::app {
+namespace poinsot::study {
 
 std::vector<std::string> names_in(std::string_view option, const std::string& list,
                                   const std::vector<std::string>& known) {
@@ -27,4 +27,4 @@ std::vector<std::string> names_in(std::string_view option, const std::string& li
   return names;
 }
 
-}  // namespace poinsot::app
+}  // namespace poinsot::study

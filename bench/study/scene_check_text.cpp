@@ -1,0 +1,224 @@
+#include "bench/study/scene_check_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/counted.h"
+#include "core/printable.h"
+#include "formulations/registry.h"
+
+namespace poinsot::study {
+namespace {
+using Json = nlohmann::ordered_json;
+
+template <class... Arguments>
+void add(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
+}
+
+// "joint 'hinge'", "driver 'motor'": the groups that rows belong to. Rows of a group lie together.
+std::vector<std::string> groups_of(const Model& model, std::span<const int> rows) {
+  constexpr const char* kinds[] = {"constraint", "joint", "driver"};
+  std::vector<std::string> groups;
+  int last = -1;
+  for (const int row : rows) {
+    const int k = model.rows[static_cast<std::size_t>(row)].group;
+    if (k == std::exchange(last, k)) continue;
+    const Group& group = model.groups[static_cast<std::size_t>(k)];
+    groups.push_back(fmt::format("{} '{}'", kinds[static_cast<int>(group.kind)], group.name));
+  }
+  return groups;
+}
+
+// The first few of them.
+std::string groups_text(const Model& model, std::span<const int> rows) {
+  constexpr std::size_t most = 8;
+  const std::vector<std::string> groups = groups_of(model, rows);
+  const std::size_t shown = std::min(most, groups.size());
+  const std::string names = fmt::format("{}", fmt::join(std::span(groups).first(shown), ", "));
+  return groups.size() > most ? fmt::format("{} and {} more", names, groups.size() - most) : names;
+}
+
+void add_header(std::string& text, const Model& model) {
+  const std::size_t forces = model.point_forces.size() + model.torques.size() + model.springs.size() +
+                             model.torsions.size() + model.drags.size() + model.callbacks.size();
+  add(text, "{}: {}, {}, {}\n", printable(model.name), counted(model.bodies.size(), "body", "bodies"),
+      counted(model.rows.size(), "constraint row"), counted(forces, "force"));
+}
+
+void add_measures(std::string& text, const SceneCheck& found) {
+  const Vector3 &x = found.extent, &g = found.model->gravity;
+  add(text, "mass: {:.6g} kg; extent: {:.4g} x {:.4g} x {:.4g} m; gravity: {}\n", found.mass, x.x(), x.y(), x.z(),
+      g.isZero(0) ? "none" : fmt::format("[{:g}, {:g}, {:g}] m/s2", g.x(), g.y(), g.z()));
+}
+
+// Of the first joints; in a scene of thousands nobody reads them all.
+void add_joints(std::string& text, const Model& model) {
+  constexpr int most = 20;
+  int joints = 0;
+  for (const Group& group : model.groups) {
+    if (group.kind != GroupKind::joint || ++joints > most) continue;
+    add(text, "joint '{}' leaves free: {}\n", group.name, left_free(group));
+  }
+  if (joints > most) add(text, "... and {} more joints\n", joints - most);
+}
+
+void add_constraints(std::string& text, const SceneCheck& found) {
+  const Model& model = *found.model;
+  const RankAnalysis& analysis = found.rank;
+  const std::vector<Conflict>& conflicts = analysis.conflicts;
+  add(text, "degrees of freedom: {}\n", analysis.degrees_of_freedom());
+  if (analysis.singular_position())
+    add(text, "  the initial pose is a singular position: {} independent rows here, {} beside it\n", analysis.rank_here,
+        analysis.rank);
+  for (const Dependency& d : analysis.singular)
+    add(text, "  {} is singular here: {}\n", describe_row(model, d.row),
+        d.others.empty() ? "its gradient vanishes" : "it follows from " + groups_text(model, d.others));
+  const std::size_t redundant = analysis.dependent.size() - conflicts.size();
+  add(text, "redundant constraints: {}\n", redundant == 0 ? "none" : counted(redundant, "row"));
+  if (!analysis.named)
+    add(text, "  {} dependent rows in a mechanism so connected: what each follows from is not worked out\n",
+        analysis.dependent.size());
+  const auto from = [&](const Dependency& d) { return analysis.named ? groups_text(model, d.others) : "other rows"; };
+  // Both lists are by row.
+  auto conflict = conflicts.begin();
+  for (const Dependency& d : analysis.dependent) {
+    if (conflict != conflicts.end() && conflict->row == d.row)
+      ++conflict;
+    else
+      add(text, "  {} follows from {}\n", describe_row(model, d.row), from(d));
+  }
+  add(text, "conflicting constraints: {}\n", conflicts.empty() ? "none" : counted(conflicts.size(), "row"));
+  conflict = conflicts.begin();
+  for (const Dependency& d : analysis.dependent) {
+    if (conflict == conflicts.end() || conflict->row != d.row) continue;
+    add(text, "  {} contradicts {}: off by {} where those hold\n", describe_row(model, d.row), from(d),
+        describe(*conflict));
+    ++conflict;
+  }
+}
+
+std::vector<int> undetermined_rows(const SceneCheck& found) {
+  std::vector<int> rows;
+  for (const int group : found.rank.undetermined)
+    rows.push_back(found.model->groups[static_cast<std::size_t>(group)].first_row);
+  return rows;
+}
+
+void add_undetermined(std::string& text, const SceneCheck& found) {
+  if (found.rank.undetermined.empty()) return;
+  add(text, "reactions that redundant rows leave undetermined: {}\n",
+      printable(groups_text(*found.model, undetermined_rows(found))));
+}
+
+void add_doubt(std::string& text, const SceneCheck& found) {
+  const RankAnalysis& analysis = found.rank;
+  if (analysis.doubtful < 0) return;
+  add(text, "neither dependent nor clearly independent: {}, of which {:.0e} is left beside the others\n",
+      describe_row(*found.model, analysis.doubtful), analysis.doubt);
+}
+
+void add_state(std::string& text, const SceneCheck& found) {
+  const auto line = [&](const char* what, double largest, int row, int order) {
+    if (largest <= kSatisfied)
+      add(text, "{}: consistent, largest violation {:.2g}\n", what, largest);
+    else
+      add(text, "{}: violates {} by {}, the most of all\n", what, describe_row(*found.model, row),
+          describe_residual(*found.model, row, largest, order));
+  };
+  const Violation& v = found.violation;
+  line("initial pose", v.position, v.position_row, 0);
+  line("initial velocities", v.velocity, v.velocity_row, 1);
+}
+
+void add_derivatives(std::string& text, const SceneCheck& found) {
+  std::vector<std::string_view> names;
+  for (const FormulationEntry& formulation : formulations()) names.push_back(formulation.name);
+  add(text, "derivatives: {} compared ({}), {}\n", found.derivatives, fmt::join(names, ", "),
+      found.wrong.empty() ? fmt::format("all right, largest relative difference {:.2g}", found.derivative_error)
+                          : fmt::format("{} wrong", found.wrong.size()));
+  for (const auto& [formulation, derivative] : found.wrong)
+    add(text, "  {}: {}: {} is off by {:.3g}\n", formulation, derivative.name, derivative.what, derivative.error);
+}
+
+}  // namespace
+
+std::string check_text(const SceneCheck& found) {
+  std::string text;
+  add_header(text, *found.model);
+  add_measures(text, found);
+  add_joints(text, *found.model);
+  add_constraints(text, found);
+  add_undetermined(text, found);
+  add_doubt(text, found);
+  add_state(text, found);
+  if (!found.rank.conflicts.empty() || !found.refusal.empty()) return text;
+  if (!found.consistent())
+    for (const std::string& notice : found.start.notices) add(text, "  {}\n", printable(notice));
+  add_derivatives(text, found);
+  return text;
+}
+
+std::string verdict(const SceneCheck& found) {
+  if (!found.rank.conflicts.empty()) return "the constraints conflict; remove or correct one of those named";
+  if (!found.refusal.empty()) return found.refusal;
+  if (found.sound()) return {};
+  // Derivatives that are not finite are why the start fails where they are: they are named first.
+  return found.wrong.empty() || found.start.status.failure == Failure::not_finite
+             ? found.start.status.message
+             : "derivatives are wrong or not finite at t = 0; try functions of time that have two derivatives there";
+}
+
+nlohmann::ordered_json check_json(const SceneCheck& found) {
+  const Model& model = *found.model;
+  const RankAnalysis& rank = found.rank;
+  const auto dependencies = [&](std::span<const Dependency> all, bool conflicting) {
+    Json list = Json::array();
+    for (const Dependency& d : all) {
+      const auto conflict = std::ranges::find(rank.conflicts, d.row, &Conflict::row);
+      if ((conflict != rank.conflicts.end()) != conflicting) continue;
+      Json& one =
+          list.emplace_back(Json{{"row", describe_row(model, d.row)}, {"follows_from", groups_of(model, d.others)}});
+      if (conflicting) one["off_by"] = describe(*conflict);
+    }
+    return list;
+  };
+  Json joints = Json::array();
+  for (const Group& group : model.groups)
+    if (group.kind == GroupKind::joint)
+      joints.push_back({{"name", group.name}, {"leaves_free", std::string(left_free(group))}});
+  std::vector<std::string> notices = found.notices;
+  notices.insert(notices.end(), found.start.notices.begin(), found.start.notices.end());
+  Json wrong = Json::array();
+  for (const auto& [formulation, derivative] : found.wrong)
+    wrong.push_back({{"formulation", formulation},
+                     {"of", derivative.name},
+                     {"what", derivative.what},
+                     {"off_by", derivative.error}});
+  return {{"scene", model.name},
+          {"bodies", model.bodies.size()},
+          {"rows", model.rows.size()},
+          {"mass", found.mass},
+          {"extent", {found.extent.x(), found.extent.y(), found.extent.z()}},
+          {"gravity", {model.gravity.x(), model.gravity.y(), model.gravity.z()}},
+          {"joints", joints},
+          {"degrees_of_freedom", rank.degrees_of_freedom()},
+          {"singular_position", rank.singular_position()},
+          {"singular", dependencies(rank.singular, false)},
+          {"redundant", dependencies(rank.dependent, false)},
+          {"conflicting", dependencies(rank.dependent, true)},
+          {"undetermined_reactions", groups_of(model, undetermined_rows(found))},
+          {"violation", {{"position", found.violation.position}, {"velocity", found.violation.velocity}}},
+          {"notices", notices},
+          {"derivatives",
+           {{"compared", found.derivatives}, {"largest_difference", found.derivative_error}, {"wrong", wrong}}},
+          {"sound", found.sound()},
+          {"message", verdict(found)}};
+}
+
+}  // namespace poinsot::study
