@@ -26,13 +26,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kListed = 6;  // further methods that reach the accuracy, and that do not
 
-struct Options {
+struct AdviseOptions {
   std::string scene, end, of = "position", accuracy = "1e-6", cache = user_cache().string();
   std::vector<std::string> set;
   bool json = false, quiet = false;
 };
 
-Asked asked(const Options& options) {
+Asked asked(const AdviseOptions& options) {
   Asked result;
   const auto refuse = [&](const std::string& why) {
     throw InputError(
@@ -67,7 +67,7 @@ std::string shell_word(const std::string& text) {
   return quoted + "'";
 }
 
-std::string command_line(const Options& options, const Case& one) {
+std::string command_line(const AdviseOptions& options, const Case& one) {
   const Settings& s = one.settings;
   std::string line = fmt::format("poinsot run {}", shell_word(options.scene));
   for (const std::string& set : options.set) line += fmt::format(" --set {}", shell_word(set));
@@ -100,7 +100,7 @@ void print_table(const std::string& title, std::span<const Candidate> candidates
   for (const Candidate& c : candidates.first(std::min(kListed, candidates.size()))) fmt::print("{}", row(c));
 }
 
-void print_advice(const Options& options, const Scene& scene, const Asked& asked, const Advice& advice) {
+void print_advice(const AdviseOptions& options, const Scene& scene, const Asked& asked, const Advice& advice) {
   const Reference& r = advice.reference;
   const Calibration& found = advice.calibration;
   std::vector<std::string_view> of;
@@ -134,7 +134,7 @@ Json named(const PerQuantity& errors) {
   return object;
 }
 
-Json listed(const Options& options, std::span<const Candidate> candidates) {
+Json listed(const AdviseOptions& options, std::span<const Candidate> candidates) {
   Json list = Json::array();
   for (const Candidate& c : candidates) {
     const Settings& s = c.one.settings;
@@ -150,7 +150,8 @@ Json listed(const Options& options, std::span<const Candidate> candidates) {
   return list;
 }
 
-Json advice_json(const Options& options, const Scene& scene, const Asked& asked, const Advice& advice, double end) {
+Json advice_json(const AdviseOptions& options, const Scene& scene, const Asked& asked, const Advice& advice,
+                 double end) {
   const Reference& r = advice.reference;
   Json of = Json::array(), unresolved = Json::array();
   for (const std::size_t quantity : asked.quantities) of.push_back(kQuantities[quantity]);
@@ -171,7 +172,7 @@ Json advice_json(const Options& options, const Scene& scene, const Asked& asked,
           {"costs_without_mattering", advice.waste}};
 }
 
-int run_advise(const Options& options) {
+int run_advise(const AdviseOptions& options) {
   const Asked what = asked(options);
   const Scene scene = read_startable_scene(options.scene, values_set(options.set));
   require_multipliers(what, scene);

@@ -38,7 +38,7 @@ std::string compared_integrators() {
   return fmt::format("{}", fmt::join(integrators_of(Analysis::dynamics), ","));
 }
 
-struct Options {
+struct ChartOptions {
   std::vector<std::string> scenes, set;
   std::string out = "results", end, models, cache = user_cache().string();
   std::string formulations = all_names("formulation"), integrators = compared_integrators(),
@@ -51,7 +51,7 @@ std::string stem_of(const fs::path& scene) {
   return scene == "-" ? "standard_input" : scene.stem().string();
 }
 
-std::vector<fs::path> scene_files(const Options& options) {
+std::vector<fs::path> scene_files(const ChartOptions& options) {
   std::set<fs::path> files(options.scenes.begin(), options.scenes.end());
   if (options.all) {
     for (const auto& entry : fs::directory_iterator(models_directory(options.models)))
@@ -68,7 +68,7 @@ std::vector<fs::path> scene_files(const Options& options) {
   return {files.begin(), files.end()};
 }
 
-SweepPlan plan_of(const Options& options) {
+SweepPlan plan_of(const ChartOptions& options) {
   SweepPlan plan = options.quick ? SweepPlan::quick() : SweepPlan::full();
   plan.formulations = names_given("formulation", options.formulations);
   plan.integrators = names_given("integrator", options.integrators);
@@ -81,14 +81,14 @@ SweepPlan plan_of(const Options& options) {
   return plan;
 }
 
-SweepPlan plan_for(const Scene& scene, const SweepPlan& asked, const Options& options) {
+SweepPlan plan_for(const Scene& scene, const SweepPlan& asked, const ChartOptions& options) {
   SweepPlan plan = asked;
   if (options.integrators == compared_integrators() && without_freedom(scene))
     std::ranges::copy(integrators_of(Analysis::kinematics), std::back_inserter(plan.integrators));
   return plan;
 }
 
-int chart(const Options& options) {
+int chart(const ChartOptions& options) {
   const std::vector<fs::path> files = scene_files(options);
   const SweepPlan asked = plan_of(options);
   std::vector<Scene> scenes;

@@ -14,7 +14,7 @@
 namespace poinsot::app {
 using namespace study;
 namespace {
-struct Options {
+struct CheckOptions {
   std::string scene;
   std::vector<std::string> set;
   bool json = false, quiet = false;
@@ -25,7 +25,7 @@ int status_of(const SceneCheck& found) {
   return found.sound() ? kDone : kNumericsFailed;
 }
 
-int run_check(const Options& options) {
+int run_check(const CheckOptions& options) {
   const Scene scene = read_scene(options.scene, values_set(options.set));
   const SceneCheck found = check_scene(scene);
   const auto placed = [&](std::string_view sentence) { return with_lines_of(options.scene, sentence); };

@@ -15,7 +15,7 @@ using namespace report;
 namespace {
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CompareOptions {
   std::string a, b;
   bool json = false, quiet = false;
 };
@@ -51,7 +51,7 @@ void print_list(const std::string& title, const std::vector<std::string>& lines)
   for (const std::string& line : lines) fmt::print("  {}\n", printable(line));
 }
 
-void print_text(const Options& options, const Comparison& c) {
+void print_text(const CompareOptions& options, const Comparison& c) {
   for (const auto& o : c.origins) fmt::print("{}\n  A: {}\n  B: {}\n", o.key, printable(o.a), printable(o.b));
   fmt::print("times: {} compared, {} changed beyond the noise", c.times, c.changed_times.size());
   if (c.by_chance > 0)
@@ -76,7 +76,7 @@ void print_text(const Options& options, const Comparison& c) {
   if (c.same()) fmt::print("nothing else differs\n");
 }
 
-int compare_folders(const Options& options) {
+int compare_folders(const CompareOptions& options) {
   const Results a = read_results(options.a), b = read_results(options.b);
   const Comparison result = compare(a, b);
   if (options.json)

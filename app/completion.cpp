@@ -13,7 +13,7 @@
 namespace poinsot::app {
 namespace {
 
-struct Options {
+struct CompletionOptions {
   std::string shell;
   bool quiet = false;
 };
@@ -129,7 +129,7 @@ std::string fish(const std::vector<Command>& tree) {
   return text;
 }
 
-int complete(const CLI::App& app, const Options& options) {
+int complete(const CLI::App& app, const CompletionOptions& options) {
   const std::vector<Command> tree = command_tree(app);
   if (options.shell == "bash")
     fmt::print("{}", bash(tree));
@@ -146,7 +146,7 @@ int complete(const CLI::App& app, const Options& options) {
 
 void add_completion(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("completion", "a script that completes commands, for bash, zsh or fish");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompletionOptions>();
   command->add_option("SHELL", options->shell, "bash, zsh or fish")->required()->type_name("");
   add_quiet(*command, options->quiet);
   command->footer("For a shell that runs: source <(poinsot completion bash). Installed with the program.");

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kText = "What the pictures show stands as numbers in CSV files beside them.";
 
-struct Options {
+struct FiguresOptions {
   std::string out = "results", models;
   std::vector<std::string> names;
   bool quick = false, quiet = false;
@@ -40,7 +40,7 @@ std::vector<const FigureEntry*> chosen(const std::vector<std::string>& names) {
 }
 
 // Whether all of it is there.
-bool add_figure(const FigureEntry& entry, FigureResult result, const Options& options, Report& report) {
+bool add_figure(const FigureEntry& entry, FigureResult result, const FiguresOptions& options, Report& report) {
   std::string pictures;
   for (const PanelPlot& plot : result.plots) pictures += fmt::format("![{}]({}.svg)\n\n", plot.title, plot.file);
   std::vector<std::string> failures;
@@ -61,7 +61,7 @@ bool add_figure(const FigureEntry& entry, FigureResult result, const Options& op
   return failures.empty();
 }
 
-int compute_figures(const Options& options) {
+int compute_figures(const FiguresOptions& options) {
   const std::vector<const FigureEntry*> entries = chosen(options.names);
   ProgressLine progress("runs", !options.quiet);
   const FigureRequest request{models_directory(options.models), options.quick, progress.callback()};

@@ -19,7 +19,7 @@ namespace poinsot::app {
 namespace {
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct ListOptions {
   bool json = false, quiet = false;
 };
 
@@ -79,7 +79,7 @@ Json lists() {
           {"jacobians", listed(jacobians())},           {"stopping_tests", listed(stopping_tests())}};
 }
 
-int list(const Options& options) {
+int list(const ListOptions& options) {
   if (options.json)
     print_json(stdout, lists());
   else if (!options.quiet)

@@ -14,7 +14,7 @@ namespace poinsot::app {
 using namespace study;
 namespace {
 
-struct Options {
+struct MakeOptions {
   std::string structure, out;
   int bodies = 100;
   bool quiet = false;
@@ -28,7 +28,7 @@ std::string structures() {
   return names;
 }
 
-int make(const Options& options) {
+int make(const MakeOptions& options) {
   const SceneGenerator* generator = find_scene_generator(options.structure);
   if (!generator) {
     throw InputError(fmt::format("STRUCTURE: found \"{}\", expected one of {}", options.structure, structures()));

@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kRows = 100;  // of the trajectory, where --every does not say
 
-struct Options {
+struct ReferenceOptions {
   std::string scene, out, end, every, cache = user_cache().string();
   std::vector<std::string> set;
   int digits = ReferenceSettings{}.digits;
@@ -92,7 +92,7 @@ Json record(const Scene& scene, const Reference& r, const ReferenceSettings& set
   return json;
 }
 
-int run(const Options& options) {
+int run(const ReferenceOptions& options) {
   ReferenceSettings settings;
   if (options.digits < 4 || options.digits > 12)
     throw InputError(fmt::format("--digits: found {}, expected a whole number from 4 to 12", options.digits));

@@ -12,12 +12,12 @@ using namespace study;
 namespace {
 namespace fs = std::filesystem;
 
-struct Options {
+struct ReportOptions {
   std::string folder, out;
   bool quiet = false;
 };
 
-int write_page(const Options& options) {
+int write_page(const ReportOptions& options) {
   const report::Results results = report::read_results(options.folder);
   const fs::path out = options.out.empty() ? results.folder / "report.html" : fs::path(options.out);
   for (const auto& [name, table] : results.tables)

@@ -28,7 +28,7 @@ using namespace records;
 namespace {
 namespace fs = std::filesystem;
 
-struct Options {
+struct RunOptions {
   std::string scene, out, reactions, signals, save_state;
   std::vector<std::string> set;
   std::string columns, bodies;  // of the trajectory
@@ -47,7 +47,7 @@ void tell_interruption(const RunFiles& files, double end, Status& status) {
 }
 
 // Messages of what comes after reading name the scene and its lines, too.
-Outcome simulate_file(const Options& options, const Scene& scene, const Settings& settings, const Observer& observe,
+Outcome simulate_file(const RunOptions& options, const Scene& scene, const Settings& settings, const Observer& observe,
                       const Tell& tell) {
   const auto placed = [&](std::string_view sentence) { return with_lines_of(options.scene, sentence); };
   std::vector<std::string> notices;
@@ -64,7 +64,7 @@ Outcome simulate_file(const Options& options, const Scene& scene, const Settings
   }
 }
 
-int run(const Options& options) {
+int run(const RunOptions& options) {
   std::vector<std::string> notices;
   Settings settings = options.settings.resolve(notices);
   settings.reactions = !options.reactions.empty();

@@ -11,13 +11,13 @@ namespace poinsot::app {
 using namespace study;
 namespace {
 
-struct Options {
+struct ScaleOptions {
   std::string out = "results", linear_solvers = "block", formulations = all_names("formulation");
   int most = 100000, repetitions = 3;
   bool quiet = false;
 };
 
-int scale(const Options& options) {
+int scale(const ScaleOptions& options) {
   const ScaleRequest request{names_given("formulation", options.formulations),
                              names_given("linear_solver", options.linear_solvers), options.most, options.repetitions};
   require_positive("--bodies", options.most);

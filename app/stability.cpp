@@ -24,14 +24,14 @@ using namespace stability;
 namespace {
 namespace fs = std::filesystem;
 
-struct Options {
+struct StabilityOptions {
   std::string out = "results", formulations = all_names("formulation"), integrators = all_names("integrator");
   std::vector<std::string> families;
   int threads = 0;
   bool quick = false, full = false, fresh = false, quiet = false;
 };
 
-std::vector<const Family*> chosen(const Options& options) {
+std::vector<const Family*> chosen(const StabilityOptions& options) {
   std::vector<const Family*> all;
   if (options.families.empty())
     for (const Family& family : families()) all.push_back(&family);
@@ -40,8 +40,8 @@ std::vector<const Family*> chosen(const Options& options) {
 }
 
 // The cells of a family: those that the folder holds, and the rest.
-std::vector<Cell> cells_of(const Family& family, const Extent& extent, const Options& options, ProgressLine& progress,
-                           double& done, double all) {
+std::vector<Cell> cells_of(const Family& family, const Extent& extent, const StabilityOptions& options,
+                           ProgressLine& progress, double& done, double all) {
   const FamilyStudy study(family, extent);
   cases::CaseTable table(study.study());
   const fs::path part = fs::path(options.out) / fmt::format("{}.part", family.name);
@@ -60,7 +60,7 @@ std::vector<Cell> cells_of(const Family& family, const Extent& extent, const Opt
   return interruption_requested ? std::vector<Cell>{} : study.cells(table);
 }
 
-int map(const Options& options) {
+int map(const StabilityOptions& options) {
   if (options.threads < 0) require_positive("--threads", options.threads);
   if (options.quick && options.full) throw InputError("--quick, --full: expected one of the two");
   const std::vector<const Family*> all = chosen(options);
@@ -105,7 +105,7 @@ int map(const Options& options) {
   return kDone;
 }
 
-std::string footer() {
+std::string families_text() {
   std::string text = "Families:\n";
   for (const Family& family : families()) text += fmt::format("  {:<24} {}\n", family.name, family.title);
   return text + "A suite that was interrupted goes on where it stopped.";
@@ -115,7 +115,7 @@ std::string footer() {
 
 void add_stability(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("stability", "map where each method fails: verdicts over families of scenes");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<StabilityOptions>();
   command->add_option("--family", options->families, "one of those below; may come several times (default: all)")
       ->type_name("NAME")
       ->allow_extra_args(false);
@@ -127,7 +127,7 @@ void add_stability(CLI::App& app, int& status) {
   add_out_folder(*command, options->out, "cells, maps and stability.md");
   command->add_flag("--fresh", options->fresh, "compute everything, also what the folder holds already");
   add_quiet(*command, options->quiet);
-  command->footer(footer());
+  command->footer(families_text());
   command->callback([options, &status] { status = map(*options); });
 }
 

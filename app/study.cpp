@@ -21,7 +21,7 @@ using namespace cases;
 namespace {
 namespace fs = std::filesystem;
 
-struct Options {
+struct StudyOptions {
   std::string file, out = "results", shard, cache = user_cache().string();
   std::vector<std::string> merge;
   int threads = 0;
@@ -43,7 +43,7 @@ Shard shard_of(const std::string& text) {
 }
 
 // What the rows come to: the table, the pictures, the record.
-int conclude(const Options& options, const Computation& c) {
+int conclude(const StudyOptions& options, const Computation& c) {
   std::vector<fs::path> written;
   const std::string why = c.conclude(written);
   if (!c.complete()) {
@@ -65,7 +65,7 @@ int conclude(const Options& options, const Computation& c) {
 }
 
 // Rank 0, or the only process.
-int lead_study(const Options& options, Ranks* ranks) {
+int lead_study(const StudyOptions& options, Ranks* ranks) {
   std::optional<Computation> c;
   try {
     if (!options.shard.empty() && !options.merge.empty()) throw InputError("--shard, --merge: expected one of the two");
@@ -95,7 +95,7 @@ int lead_study(const Options& options, Ranks* ranks) {
   return conclude(options, *c);
 }
 
-int follow_study(const Options& options, Ranks& ranks) {
+int follow_study(const StudyOptions& options, Ranks& ranks) {
   std::string content;
   share(ranks, content);
   if (content.empty() || !options.merge.empty()) return kDone;  // rank 0 says why
@@ -105,7 +105,7 @@ int follow_study(const Options& options, Ranks& ranks) {
   return follow(ranks, study, references, std::max(1, options.threads)) ? kDone : signal_status();
 }
 
-int study(const Options& options) {
+int study(const StudyOptions& options) {
   if (options.threads < 0) require_positive("--threads", options.threads);
   if (!started_by_launcher()) return lead_study(options, nullptr);
   const std::unique_ptr<Ranks> ranks = join_ranks();

@@ -14,13 +14,13 @@ namespace poinsot::app {
 namespace {
 namespace fs = std::filesystem;
 
-struct Options {
+struct TablesOptions {
   std::string out = "results", models;
   paper::TablesRequest request;
   bool quiet = false;
 };
 
-int tables(const Options& options) {
+int tables(const TablesOptions& options) {
   paper::TablesRequest request = options.request;
   Settings checked;
   set_setting(*find_setting("linear_solver"), request.linear_solver, checked);

@@ -22,7 +22,7 @@ using namespace study;
 namespace {
 namespace fs = std::filesystem;
 
-struct Options {
+struct ViewOptions {
   std::string scene, out;
   std::vector<std::string> set, trajectories;
   SettingsOptions settings;
@@ -48,7 +48,7 @@ void note_stride(std::size_t stride, bool quiet) {
         "the page shows every {}th of the states, as many as a browser takes; --every DT chooses them", stride));
 }
 
-view::Motion computed(const Options& options, const Scene& scene, const std::shared_ptr<const Model>& model,
+view::Motion computed(const ViewOptions& options, const Scene& scene, const std::shared_ptr<const Model>& model,
                       Outcome& outcome) {
   std::vector<std::string> notices;
   Settings settings = options.settings.resolve(notices);
@@ -75,7 +75,7 @@ view::Motion computed(const Options& options, const Scene& scene, const std::sha
   return {label_of(settings), outcome.status.message, std::move(frames)};
 }
 
-view::Motion read(const Options& options, const std::string& file, const Scene& scene,
+view::Motion read(const ViewOptions& options, const std::string& file, const Scene& scene,
                   const std::shared_ptr<const Model>& model) {
   view::FrameRecorder recorder(model, true);
   view::read_trajectory(file, scene, [&](double t, std::span<const BodyState> bodies) { recorder.add(t, bodies); });
@@ -83,7 +83,7 @@ view::Motion read(const Options& options, const std::string& file, const Scene& 
   return {fs::path(file).filename().string(), "", recorder.take()};
 }
 
-int write_view(const Options& options) {
+int write_view(const ViewOptions& options) {
   if (!view::missing_page().empty()) throw InputError(std::string(view::missing_page()));
   if (options.trajectories.size() > kMostTrajectories)
     throw InputError(

@@ -14,7 +14,7 @@
 
 namespace poinsot::study {
 namespace {
-using Json = nlohmann::ordered_json;
+using Ordered = nlohmann::ordered_json;
 
 template <class... Arguments>
 void add(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -178,23 +178,23 @@ nlohmann::ordered_json check_json(const SceneCheck& found) {
   const Model& model = *found.model;
   const RankAnalysis& rank = found.rank;
   const auto dependencies = [&](std::span<const Dependency> all, bool conflicting) {
-    Json list = Json::array();
+    Ordered list = Ordered::array();
     for (const Dependency& d : all) {
       const auto conflict = std::ranges::find(rank.conflicts, d.row, &Conflict::row);
       if ((conflict != rank.conflicts.end()) != conflicting) continue;
-      Json& one =
-          list.emplace_back(Json{{"row", describe_row(model, d.row)}, {"follows_from", groups_of(model, d.others)}});
+      Ordered& one =
+          list.emplace_back(Ordered{{"row", describe_row(model, d.row)}, {"follows_from", groups_of(model, d.others)}});
       if (conflicting) one["off_by"] = describe(*conflict);
     }
     return list;
   };
-  Json joints = Json::array();
+  Ordered joints = Ordered::array();
   for (const Group& group : model.groups)
     if (group.kind == GroupKind::joint)
       joints.push_back({{"name", group.name}, {"leaves_free", std::string(left_free(group))}});
   std::vector<std::string> notices = found.notices;
   notices.insert(notices.end(), found.start.notices.begin(), found.start.notices.end());
-  Json wrong = Json::array();
+  Ordered wrong = Ordered::array();
   for (const auto& [formulation, derivative] : found.wrong)
     wrong.push_back({{"formulation", formulation},
                      {"of", derivative.name},
