@@ -92,7 +92,7 @@ Json record(const Scene& scene, const Reference& r, const ReferenceSettings& set
   return json;
 }
 
-int run(const ReferenceOptions& options) {
+int find_motion(const ReferenceOptions& options) {
   ReferenceSettings settings;
   if (options.digits < 4 || options.digits > 12)
     throw InputError(fmt::format("--digits: found {}, expected a whole number from 4 to 12", options.digits));
@@ -142,7 +142,7 @@ int run(const ReferenceOptions& options) {
 
 void add_reference(CLI::App& app, int& status) {
   const auto [command, options] =
-      add_command(app, status, "reference", "compute a motion as exactly as can be, and how exact it is", run);
+      add_command(app, status, "reference", "compute a motion as exactly as can be, and how exact it is", find_motion);
   add_scene(command, options.scene);
   add_set(command, options.set);
   add_end(command, options.end);

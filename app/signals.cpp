@@ -35,9 +35,9 @@ constexpr std::array kSignals{
     Caught{SIGUSR2, "SIGUSR2", "", false},
 };
 
-pid_t program = 0;                       // not a child that only measures
-std::atomic<int> deferred{0}, first{0};  // first: the signal that came first while deferred
-std::atomic<long long> first_at{0};      // ns
+pid_t program = 0;                        // not a child that only measures
+std::atomic<int> deferrals{0}, first{0};  // first: the signal that came first while deferred
+std::atomic<long long> first_at{0};       // ns
 
 const Caught& entry(int number) {
   for (const Caught& one : kSignals)
@@ -48,7 +48,7 @@ const Caught& entry(int number) {
 // Nothing here allocates or locks.
 extern "C" void handle(int number) {
   if (getpid() != program) _exit(128 + number);
-  if (deferred > 0) {
+  if (deferrals > 0) {
     timespec now{};
     clock_gettime(CLOCK_MONOTONIC, &now);
     const long long at = 1'000'000'000LL * now.tv_sec + now.tv_nsec;
@@ -84,10 +84,10 @@ void catch_signals() {
 }
 
 Deferred::Deferred() {
-  ++deferred;
+  ++deferrals;
 }
 Deferred::~Deferred() {
-  --deferred;
+  --deferrals;
 }
 
 int caught_signal() {

@@ -40,8 +40,8 @@ std::vector<const Family*> chosen(const StabilityOptions& options) {
 }
 
 // The cells of a family: those that the folder holds, and the rest.
-std::vector<Cell> cells_of(const Family& family, const Extent& extent, const StabilityOptions& options,
-                           ProgressLine& progress, double& done, double all) {
+std::vector<stability::Cell> cells_of(const Family& family, const Extent& extent, const StabilityOptions& options,
+                                      ProgressLine& progress, double& done, double all) {
   const FamilyStudy study(family, extent);
   cases::CaseTable table(study.study());
   const fs::path part = fs::path(options.out) / fmt::format("{}.part", family.name);
@@ -57,7 +57,7 @@ std::vector<Cell> cells_of(const Family& family, const Extent& extent, const Sta
     progress.at({done + there(), all, 0}, fmt::format(", {}", family.name));
   });
   done += static_cast<double>(study.study().size());
-  return interruption_requested ? std::vector<Cell>{} : study.cells(table);
+  return interruption_requested ? std::vector<stability::Cell>{} : study.cells(table);
 }
 
 int map(const StabilityOptions& options) {

@@ -29,12 +29,12 @@ constexpr Precision kPrecision[] = {{"auto", 1e-12, 1e-9, 50},
                                     {"radau5", 1e-14, 2e-9, 200}};
 
 // Every integrator with error control in every formulation it does not refuse.
-struct Method {
+struct ControlledMethod {
   Precision of;
   std::string formulation;
 };
-std::vector<Method> methods() {
-  std::vector<Method> all;
+std::vector<ControlledMethod> methods() {
+  std::vector<ControlledMethod> all;
   for (const IntegratorEntry& entry : integrators()) {
     if (!entry.controls_error) continue;
     const auto of = std::ranges::find(kPrecision, entry.name, &Precision::integrator);
@@ -46,7 +46,7 @@ std::vector<Method> methods() {
   return all;
 }
 
-class ErrorControl : public ::testing::TestWithParam<Method> {
+class ErrorControl : public ::testing::TestWithParam<ControlledMethod> {
  protected:
   Settings settings(double rtol, double end, double every = 0) const {
     return controlled(GetParam().of.integrator, GetParam().formulation, rtol, end, every);

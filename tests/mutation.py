@@ -57,7 +57,7 @@ class Scratch:
         self.copy()
         if not (self.build / "build.ninja").exists():
             launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-            subprocess.run(["cmake", "--preset", "release", "-G", "Ninja", "--log-level=WARNING",
+            subprocess.run(["cmake", "--preset", "release", "-DCMAKE_UNITY_BUILD=OFF", "-G", "Ninja", "--log-level=WARNING",
                             "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", *launcher], cwd=folder, check=True)
 
     def copy(self):

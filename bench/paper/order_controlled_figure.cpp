@@ -28,31 +28,32 @@ struct Method {
   std::vector<int> steps;
   int first, last;
 };
-struct Mechanism {
+struct ControlledCase {
   const char* model;
   const char* title;
   double end;
   Vector3 spin;  // of every body, rad/s
   std::vector<Method> methods;
 };
-const std::vector<Mechanism>& mechanisms() {
-  static const std::vector<Mechanism> all{{"single_pendulum_free",
-                                           "free pendulum, set off",
-                                           2,
-                                           {0, 0, 3},
-                                           {{"dopri5", {20, 28, 40, 60, 80, 100, 120, 144, 172, 208, 248}, 80, 172},
-                                            {"radau5", {40, 48, 56, 68, 80, 100, 120, 144, 172}, 40, 80}}},
-                                          {"heavy_top",
-                                           "heavy top, slow",
-                                           1,
-                                           {2.6, -4.2, 1.4},
-                                           {{"radau5", {52, 68, 88, 112, 132, 160, 188, 244}, 68, 160}}},
-                                          {"knife_edge",
-                                           "knife edge",
-                                           8,
-                                           {0, 2, 0},
-                                           {{"radau5", {68, 88, 112, 144, 188, 244, 316, 400}, 112, 316},
-                                            {"dop853", {32, 40, 48, 52, 60, 68, 80, 92, 108, 128}, 60, 108}}}};
+const std::vector<ControlledCase>& mechanisms() {
+  static const std::vector<ControlledCase> all{
+      {"single_pendulum_free",
+       "free pendulum, set off",
+       2,
+       {0, 0, 3},
+       {{"dopri5", {20, 28, 40, 60, 80, 100, 120, 144, 172, 208, 248}, 80, 172},
+        {"radau5", {40, 48, 56, 68, 80, 100, 120, 144, 172}, 40, 80}}},
+      {"heavy_top",
+       "heavy top, slow",
+       1,
+       {2.6, -4.2, 1.4},
+       {{"radau5", {52, 68, 88, 112, 132, 160, 188, 244}, 68, 160}}},
+      {"knife_edge",
+       "knife edge",
+       8,
+       {0, 2, 0},
+       {{"radau5", {68, 88, 112, 144, 188, 244, 316, 400}, 112, 316},
+        {"dop853", {32, 40, 48, 52, 60, 68, 80, 92, 108, 128}, 60, 108}}}};
   return all;
 }
 
@@ -84,7 +85,7 @@ Motion march(const Scene& scene, const Method& method, std::string_view formulat
 }
 
 // Whose curves have the line of their order below them.
-bool last_of_order(const Mechanism& mechanism, const Method& method) {
+bool last_of_order(const ControlledCase& mechanism, const Method& method) {
   const int order = integrators().require(method.name).order;
   const auto last = std::find_if(mechanism.methods.rbegin(), mechanism.methods.rend(),
                                  [&](const Method& m) { return integrators().require(m.name).order == order; });
@@ -111,7 +112,7 @@ FigureResult order_controlled(const FigureRequest& request) {
        "neighbours", "from h, s", "to h, s"},
       {}};
   std::map<std::string_view, Range> exponents;
-  for (const Mechanism& mechanism : mechanisms()) {
+  for (const ControlledCase& mechanism : mechanisms()) {
     Scene scene = request.scene(mechanism.model);
     for (Body& body : scene.bodies) body.angular_velocity = mechanism.spin;
     const Model model = compile(scene);

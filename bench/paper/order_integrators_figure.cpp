@@ -22,10 +22,10 @@ struct DrivenOrFree {
   bool driven;
   double end;  // s; free motion is compared while neighbouring motions stay neighbours
 };
-constexpr DrivenOrFree kMechanisms[] = {{"single_pendulum", "single pendulum", true, 3},
-                                        {"slider_crank", "slider crank", true, 3},
-                                        {"four_link", "four link", true, 3},
-                                        {"double_pendulum", "double pendulum, set off", false, 1}};
+constexpr DrivenOrFree kCompared[] = {{"single_pendulum", "single pendulum", true, 3},
+                                      {"slider_crank", "slider crank", true, 3},
+                                      {"four_link", "four link", true, 3},
+                                      {"double_pendulum", "double pendulum, set off", false, 1}};
 // The double pendulum is set off with this, projected onto its constraints: from rest the velocity errors of
 // half-implicit Euler cancel to second order.
 constexpr double kSpin = 1;  // rad/s about the body's z axis, the hinges'
@@ -132,9 +132,9 @@ FigureResult order_integrators(const FigureRequest& request) {
   plot.columns = static_cast<int>(kQuantities.size());
   Table table = empty_table();
   std::map<int, std::vector<Curve>> fitted;  // by order
-  RunCounter counter(std::size(kMechanisms) * methods.size() * formulations().size() * steps.size(), request.progress);
+  RunCounter counter(std::size(kCompared) * methods.size() * formulations().size() * steps.size(), request.progress);
   std::map<const IntegratorEntry*, Range> exponents;
-  for (const DrivenOrFree& mechanism : kMechanisms) {
+  for (const DrivenOrFree& mechanism : kCompared) {
     const Scene scene = scene_of(mechanism, request);
     const Model model = compile(scene);
     const double end = request.quick ? 1 : mechanism.end;

@@ -25,7 +25,7 @@ using Complex = std::complex<double>;
 
 const Vector3 kAxis(0.48, 0.6, 0.64);
 constexpr double kAngle = 1e-6, kWay = 1e-6;  // rad, m: the unit
-constexpr int kSteps = 5;
+constexpr int kPropagations = 5;
 constexpr double kMost = 1.5;  // a radius that is drawn
 
 // Stiffness and inertia 1; starts at the unit state.
@@ -97,7 +97,7 @@ Sequence marched(const Oscillator& oscillator, bool moving, const Settings& sett
   Reader read(oscillator, moving);
   EqualSteps<Stepper> equal(scene, settings, make);
   read.y.push_back(moving ? Vector2d(0, 1) : Vector2d(1, 0));
-  const Status status = equal.march(settings.end, kSteps, 1, [&](const Sample& sample) { read(sample); });
+  const Status status = equal.march(settings.end, kPropagations, 1, [&](const Sample& sample) { read(sample); });
   return status.ok() ? read.y : Sequence{};
 }
 
@@ -152,7 +152,7 @@ double radius_of_recurrence(const Sequence& a, const Sequence& b) {
   Matrix3d square = Matrix3d::Zero();
   Eigen::Vector3d side = Eigen::Vector3d::Zero();
   for (const Sequence* y : {&a, &b})
-    for (std::size_t n = 1; n + 3 <= kSteps; ++n)
+    for (std::size_t n = 1; n + 3 <= kPropagations; ++n)
       for (Eigen::Index k = 0; k < 2; ++k) {
         const Eigen::Vector3d known((*y)[n][k], (*y)[n + 1][k], (*y)[n + 2][k]);
         square += known * known.transpose();
@@ -179,12 +179,12 @@ std::optional<double> spectral_radius(const Oscillator& oscillator, std::string_
   settings.integrator = name;
   settings.formulation = formulation;
   settings.step = hw;
-  settings.end = kSteps * hw;
+  settings.end = kPropagations * hw;
   settings.tolerance = 1e-10;
   settings.rtol = settings.atol.emplace(1e-14);
   const Sequence a = sequence(oscillator, false, integrator, settings);
   const Sequence b = sequence(oscillator, true, integrator, settings);
-  if (a.size() != kSteps + 1 || b.size() != kSteps + 1) return {};
+  if (a.size() != kPropagations + 1 || b.size() != kPropagations + 1) return {};
   Matrix2d M;
   M << a[1], b[1];
   constexpr double kSame = 1e-4;

@@ -66,7 +66,7 @@ inline void write(const SampleSystem& system, LinearSolver& solver) {
 
 enum class BodyKind { six, seven };  // 3 + 3 unknowns; 3 + 4 with a normalization row
 
-struct Joint {
+struct RowsBetween {
   int i, j;  // bodies, i may be −1: the ground
   int rows;
 };
@@ -74,7 +74,7 @@ struct Joint {
 struct Mechanism {
   std::string name;
   int bodies = 0;
-  std::vector<Joint> joints;
+  std::vector<RowsBetween> joints;
 };
 
 inline Mechanism chain(int bodies, int rows) {
@@ -112,7 +112,7 @@ inline SampleSystem saddle_point(const Mechanism& mechanism, BodyKind kind, std:
   SampleSystem s;
   s.name = mechanism.name + (kind == BodyKind::six ? "_six" : "_seven");
   int rows = 0;
-  for (const Joint& joint : mechanism.joints) rows += joint.rows;
+  for (const RowsBetween& joint : mechanism.joints) rows += joint.rows;
   const int normalization = b * mechanism.bodies + rows;
   s.pattern.n = normalization + (kind == BodyKind::seven ? mechanism.bodies : 0);
 
@@ -147,7 +147,7 @@ inline SampleSystem saddle_point(const Mechanism& mechanism, BodyKind kind, std:
     for (int c = 0; c < b; ++c) s.pattern.node.push_back(k);
   }
   int row = b * mechanism.bodies, group = mechanism.bodies;
-  for (const Joint& joint : mechanism.joints) {
+  for (const RowsBetween& joint : mechanism.joints) {
     for (const int body : {joint.i, joint.j}) {
       if (body < 0) continue;
       std::vector<double> g(static_cast<std::size_t>(joint.rows * b)), transposed(g.size());
