@@ -10,10 +10,10 @@
 #include "app/settings_options.h"
 #include "app/terminal.h"
 #include "bench/study/output_file.h"
-#include "bench/study/startable_scene.h"
 #include "bench/view/page.h"
 #include "bench/view/trajectory_file.h"
 #include "core/input_error.h"
+#include "core/json_document.h"
 #include "core/scene_reader.h"
 #include "integrators/simulate.h"
 
@@ -61,7 +61,11 @@ view::Motion computed(const ViewOptions& options, const Scene& scene, const std:
       recorder.add(sample.t, bodies);
       progress.at({sample.t, settings.end});
     };
-    outcome = naming(options.scene, [&] { return simulate(scene, settings, observe); });
+    try {
+      outcome = simulate(scene, settings, observe);
+    } catch (const InputError& refused) {
+      throw InputError(fmt::format("{}: {}", shown_input(options.scene), with_lines_of(options.scene, refused.what())));
+    }
     progress.clear();
     note_stride(recorder.stride(), options.quiet);
     return recorder.take();

@@ -43,8 +43,8 @@ std::string names(const char* key) {
 
 TEST_F(WrongInput, Usage) {
   const std::string commands =
-      "run, check, view, report, compare, list, tables, make, scale, reference, chart, advise, study, figures, "
-      "completion, manual; see poinsot --help";
+      "run, check, view, report, compare, list, tables, make, scale, reference, chart, advise, study, stability, "
+      "figures, completion, manual; see poinsot --help";
   expect_refused({}, "poinsot: found no command, expected one of " + commands);
   expect_refused({"fly"}, "poinsot: found \"fly\", expected one of " + commands);
   expect_refused({"--fly"}, "poinsot: found \"--fly\", expected one of " + commands);

@@ -240,7 +240,8 @@ TEST_F(Run, WhatWasComputedBeforeANumericalFailureIsKept) {
     EXPECT_EQ(lines(read("r.csv")).size(), rows.size());
     const double last = std::stod(fields(rows.back())[0]);
     EXPECT_LT(last, 1.05);
-    EXPECT_NEAR(record["failure_time"].get<double>(), last + 0.01, 1e-9);
+    EXPECT_GT(record["failure_time"].get<double>(), last);  // in a part of the next step
+    EXPECT_LE(record["failure_time"].get<double>(), last + 0.01 + 1e-9);
     EXPECT_EQ(files(),
               (std::vector<std::string>{"a.csv", "a.run.json", "overstretched.json", "pendulum.json", "r.csv"}));
   }

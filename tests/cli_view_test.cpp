@@ -134,10 +134,10 @@ TEST_F(View, WrongInputWritesNothing) {
           "--step: expected nothing, a trajectory that is given is not computed");
   refused({"view", "scene.json", "--trajectory", "a.csv", "--out", "a.csv"},
           "a.csv: --out would overwrite --trajectory; choose another name or folder for the output");
-  refused(
-      {"view", "conflicting.json", "--end", "0.1", "--out", "a.html"},
-      "conflicting.json: the constraints conflict: with the others satisfied, constraint 'CD2' is still violated by "
-      "1 m/s (velocity); `poinsot check` names what it depends on");
+  refused({"view", "conflicting.json", "--end", "0.1", "--out", "a.html"},
+          "conflicting.json: the constraints conflict: with the others satisfied, constraint 'CD2' (/constraints/1, "
+          "line 7) is "
+          "still violated by 1 m/s (velocity); `poinsot check` names what it depends on");
 }
 
 TEST(ViewSymbols, ConstraintsThatMakeJointsAreDrawnAsJoints) {

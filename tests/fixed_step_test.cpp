@@ -107,7 +107,9 @@ TEST_P(FixedStep, DoesAStepThatFailsInParts) {
       EXPECT_GT(statistics.divided_steps, 0);
       EXPECT_GT(statistics.steps, 50 + statistics.divided_steps - 1);
       EXPECT_THAT(parts.outcome.notices, ::testing::Contains(HasSubstr("were done in parts")));
-      EXPECT_LT(errors(parts.samples, exact)[0], 1.2 * errors(whole.samples, exact)[0]);
+      // Of the symplectic Euler method equal steps leave errors that cancel in part.
+      const double more = integrator.order == 1 ? 3 : 1.2;
+      EXPECT_LT(errors(parts.samples, exact)[0], more * errors(whole.samples, exact)[0]);
     }
   }
   EXPECT_GE(divided, 3);

@@ -64,9 +64,10 @@ class GeneralizedAlpha : public FixedSteps {
     z_n_ = x_.z + ratio * (z_n_ - x_.z);
     newton_.renew();
   }
-  void forget() override {
+  Status forget() override {
     z_n_ = x_.z;
     y_.setZero();
+    return {};
   }
   Status prepare() override { return system_.prepare(); }
 

@@ -29,9 +29,12 @@ class Rattle final : public FixedSteps {
         growth_(nv_) {}
 
   Status prepare() override { return ends_.prepare(); }
-  void forget() override {
-    stand();
-    if (complete().ok()) z_ = x_.z;
+  Status forget() override {  // the factorization may be that of the end
+    place(ends_.begin().problem);
+    if (Status status = factor(ends_.begin(), x_.t); !status.ok()) return status;
+    if (Status status = complete(); !status.ok()) return status;
+    z_ = x_.z;
+    return {};
   }
 
   Status begin() override {

@@ -105,7 +105,7 @@ Status FixedSteps::reach_in_halves(double t, bool sampled, int halvings) {
   const double h = h_, half = began + 0.5 * (t - began);
   if (!(began < half && half < t)) return as_one;
   x_.z = z_began_;
-  forget();
+  if (!forget().ok()) return as_one;
   const bool outermost = halvings == kHalvings;
   const std::vector<BodyState> before = outermost ? bodies() : std::vector<BodyState>{};
   const State state = x_;

@@ -55,7 +55,7 @@ class FixedSteps {
   // The next step is one of h_, which has been `before`.
   virtual void resize(double /*before*/) {}
   // The step failed: x_ is what it was before, and so is to be all else.
-  virtual void forget() {}
+  virtual Status forget() { return {}; }
 
   void place(Problem& problem) const {
     problem.set_position(x_.t, span(x_.q));
