@@ -9,6 +9,8 @@ target_compile_options(poinsot_warnings INTERFACE -Wall -Wextra -Wpedantic -Wsha
 # GCC 12 sees overlapping and overlong copies in std::string where there are none (its bugs 105651, 105329).
 target_compile_options(poinsot_warnings INTERFACE
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>)
+# Clang asks for the inner braces of an aggregate in an aggregate, which C++ lets be left out.
+target_compile_options(poinsot_warnings INTERFACE $<$<CXX_COMPILER_ID:Clang>:-Wno-missing-braces>)
 add_compile_options(-fno-math-errno -fno-trapping-math)
 
 # What a program has to be compiled with as well to fit this library: Eigen's alignment follows the instruction set.

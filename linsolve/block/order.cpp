@@ -18,8 +18,7 @@ namespace {
 // neighbour that became it, or of an element that went into it.
 class MinimumDegree {
  public:
-  explicit MinimumDegree(const Graph& graph)
-      : graph_(graph), eliminated_(graph), begin_(1, 0), atoms_(index(graph.atoms())) {
+  explicit MinimumDegree(const Graph& graph) : eliminated_(graph), begin_(1, 0), atoms_(index(graph.atoms())) {
     int top = 0;
     for (int a = 0; a < graph.atoms(); ++a) {
       const std::span<const int> neighbours = graph.neighbours[a];
@@ -155,7 +154,6 @@ class MinimumDegree {
     atoms_[index(b)].neighbours = static_cast<int>(std::remove_if(first, last, gone) - first);
   }
 
-  const Graph& graph_;
   Eliminated eliminated_;
   std::vector<int> list_, begin_, pool_, front_;
   std::vector<State> atoms_;
