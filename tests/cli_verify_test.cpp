@@ -38,9 +38,9 @@ class Verify : public CommandLine {
 
 TEST_F(Verify, EqualStepsAreHalvedTwiceAndShowTheirOrder) {
   for (const auto& [integrator, order] : {std::pair{"implicit_euler", 1}, {"rattle", 2}}) {
-    const auto with = [&](const char* step, const char* out) {
-      return std::vector<std::string>{"run",         "pendulum.json", "--integrator", integrator, "--step", step,
-                                      "--tolerance", "1e-9",          "--every",      "0.01",     "--out",  out};
+    const auto with = [name = integrator](const char* step, const char* out) {
+      return std::vector<std::string>{"run",         "pendulum.json", "--integrator", name,   "--step", step,
+                                      "--tolerance", "1e-9",          "--every",      "0.01", "--out",  out};
     };
     std::vector<std::string> run = with("1e-3", "a.csv");
     run.insert(run.end(), {"--verify", "--reactions", "r.csv"});

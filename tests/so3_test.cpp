@@ -10,14 +10,13 @@
 #include <random>
 #include <vector>
 
+#include "core/scene.h"
 #include "tests/scale.h"
 
 namespace poinsot {
 namespace {
 
 using std::numbers::pi;
-using Vector3 = Vec3<double>;
-using Matrix3 = Mat3<double>;
 using Vector4 = Vec4<double>;
 
 class So3 : public ::testing::Test {

@@ -46,7 +46,8 @@ void run_threads(const Study& study, References& references, int threads, const 
   };
   std::vector<std::jthread> pool;
   for (int k = 0; k < threads; ++k) pool.emplace_back(compute);
-  for (std::unique_lock lock(access); running > 0;) {
+  std::unique_lock lock(access);
+  while (running > 0) {
     ended.wait_for(lock, work.interval);
     lock.unlock();
     try {

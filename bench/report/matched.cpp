@@ -46,7 +46,7 @@ Table matched_table(const std::vector<const CsvTable*>& charts) {
     for (const auto& [integrator, rows] : chart.by_integrator)
       for (std::size_t quantity = 0; quantity < kQuantities.size(); ++quantity) {
         const std::vector<CostCurve> curves = cost_curves(rows, quantity, chart.agreement[quantity]);
-        const auto of = [&](const CostCurve& c) { return rows[c.knots.front().row].formulation; };
+        const auto of = [&rows = rows](const CostCurve& c) { return rows[c.knots.front().row].formulation; };
         for (const CostCurve& subject : curves)
           for (const CostCurve& other : curves)
             for (const int k : kExponents) {
