@@ -3,9 +3,9 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <set>
 
 #include "bench/study/output_file.h"
@@ -21,9 +21,13 @@ constexpr std::uintmax_t kLargest = 4'000'000'000;  // bytes of a file that is r
 // Empty where nothing can be read; only files are: a pipe would be waited for.
 std::string content(const fs::path& file) {
   std::error_code none;
-  if (!fs::is_regular_file(file, none) || fs::file_size(file, none) > kLargest) return {};
+  const std::uintmax_t size = fs::is_regular_file(file, none) ? fs::file_size(file, none) : 0;
+  if (none || size > kLargest) return {};
+  std::string text(size, '\0');
   std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  in.read(text.data(), static_cast<std::streamsize>(size));
+  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  return text;
 }
 
 // The file's first line; it vouches for the key and the data that follow.

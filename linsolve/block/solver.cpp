@@ -13,6 +13,7 @@
 // helper() shows who took them.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "core/check.h"
@@ -21,8 +22,8 @@
 #include "linsolve/block/cancellation.h"
 #include "linsolve/block/factor.h"
 #include "linsolve/block/graph.h"
-#include "linsolve/block/order.h"
 #include "linsolve/block/schedule.h"
+#include "linsolve/block/schedules.h"
 #include "linsolve/condition.h"
 #include "linsolve/csc_layout.h"
 #include "linsolve/equilibration.h"
@@ -75,21 +76,18 @@ class Solver final : public LinearSolver {
   }
 
   bool order() {
-    {
-      Graph graph;
-      graph.build(layout_, node_, fused_);
-      schedule_ = {};
-      if (!schedule_.build(layout_, graph, elimination_order(graph))) return false;
-    }
-    factor_.resize(schedule_);
-    statistics_.factor_nonzeros = schedule_.factor_nonzeros;
+    schedule_.reset();  // before another is made beside it
+    schedule_ = schedule_of(layout_, node_, fused_);
+    if (!schedule_) return false;
+    factor_.resize(*schedule_);
+    statistics_.factor_nonzeros = schedule_->factor_nonzeros;
     return true;
   }
 
   LinearStatus do_factor() override {
     if (answer_ == Answer::handed_over) return factor_by_klu();
     const bool examined = answer_ == Answer::trusted || answer_ == Answer::checked;
-    const Drift drift = factor_.factor(schedule_, values_, examined);
+    const Drift drift = factor_.factor(*schedule_, values_, examined);
     if (!examined || !within(drift, kFar)) return factor_fresh();
     ++statistics_.refactorizations;
     answer_ = watched_ || !within(drift, kNear) ? Answer::checked : Answer::trusted;
@@ -114,14 +112,17 @@ class Solver final : public LinearSolver {
     }
     answer_ = Answer::open;
     for (int repairs = 0; !trustworthy(); ++repairs) {
-      const auto bad = cancelled_pivots(schedule_, values_, residual_.rows(), kCancelled);
-      if (repairs == kRepairs || !fuse(bad) || !order()) return factor_by_klu();
+      const auto bad = cancelled_pivots(*schedule_, values_, residual_.rows(), kCancelled);
+      if (repairs == kRepairs || !fuse(bad)) return factor_by_klu();
+      if (order()) continue;
+      answer_ = Answer::handed_over;
+      return factor_by_klu();
     }
     // A pivot that is rounding may still pass for one in a system of very different masses; klu sees it at its own
     // size.
-    if (!cancelled_pivots(schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
-    watched_ = watched_ || !cancelled_pivots(schedule_, values_, weight_, kCancelled).empty();
-    factor_.keep_pivots(schedule_);
+    if (!cancelled_pivots(*schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
+    watched_ = watched_ || !cancelled_pivots(*schedule_, values_, weight_, kCancelled).empty();
+    factor_.keep_pivots(*schedule_);
     answer_ = watched_ ? Answer::checked : Answer::trusted;
     helped_ = 0;
     return {};
@@ -140,12 +141,12 @@ class Solver final : public LinearSolver {
     std::int64_t corrections = 0;
     const auto solve = [&](std::span<double> b) {
       b_.assign(b.begin(), b.end());
-      factor_.solve(schedule_, b);
+      factor_.solve(*schedule_, b);
       size = std::max(size, residual(b_, b));
     };
     for (const bool last : {false, true}) {
-      factor_.weigh_rows(schedule_, weight_);
-      (void)factor_.factor(schedule_, values_, false);
+      factor_.weigh_rows(*schedule_, weight_);
+      (void)factor_.factor(*schedule_, values_, false);
       size = 0;
       const double estimate = condition.estimate(layout_, values_, solve, x);
       statistics_.reciprocal_condition = 1 / estimate;
@@ -168,12 +169,12 @@ class Solver final : public LinearSolver {
     Graph graph;
     graph.build(layout_, node_, fused_);
     std::vector<int> place(fused_.size(), 0);  // in the order of elimination, by node
-    for (int k = 0; k < schedule_.n; ++k) place[index(node_[index(schedule_.unknown[index(k)])])] = k;
+    for (int k = 0; k < schedule_->n; ++k) place[index(node_[index(schedule_->unknown[index(k)])])] = k;
     bool any = false;
     for (const int k : bad) {
-      const Front& f = schedule_.fronts[index(k)];
+      const Front& f = schedule_->fronts[index(k)];
       for (int i = f.first; i < f.first + f.pivots; ++i) {
-        const int node = node_[index(schedule_.unknown[index(i)])];
+        const int node = node_[index(schedule_->unknown[index(i)])];
         if (graph.body_atoms[index(node)] == 0 && fused_[index(node)] < 0) {
           const std::span<const int> bodies = graph.bodies[node];
           if (bodies.empty()) continue;
@@ -195,11 +196,11 @@ class Solver final : public LinearSolver {
   LinearStatus do_solve(std::span<double> b) override {
     if (answer_ == Answer::helped || answer_ == Answer::handed_over) return klu_->solve(b);
     if (answer_ == Answer::trusted) {
-      factor_.solve(schedule_, b);
+      factor_.solve(*schedule_, b);
       return {};
     }
     b_.assign(b.begin(), b.end());
-    factor_.solve(schedule_, b);
+    factor_.solve(*schedule_, b);
     if (residual(b_, b) <= kGoodResidual || refine(b, statistics_.refinements) <= kLargeResidual) return {};
     std::ranges::copy(b_, b.begin());
     if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
@@ -220,7 +221,7 @@ class Solver final : public LinearSolver {
   // x ← x + A⁻¹ r with the last residual r.
   void correct(std::span<double> x) {
     const std::span<double> r = residual_.vector();
-    factor_.solve(schedule_, r);
+    factor_.solve(*schedule_, r);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += r[i];
   }
 
@@ -248,7 +249,7 @@ class Solver final : public LinearSolver {
 
   CscLayout layout_;
   std::vector<int> node_, fused_;
-  Schedule schedule_;
+  std::shared_ptr<const Schedule> schedule_;
   Factor factor_;
   std::unique_ptr<LinearSolver> klu_;
   Residual residual_;
