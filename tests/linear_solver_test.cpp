@@ -1,4 +1,6 @@
 // Every linear solver of the registry: it solves, again and again, and is called as its contract says.
+#include <thread>
+
 #include "core/index.h"
 #include "tests/support/linear_solver_suite.h"
 
@@ -96,6 +98,30 @@ TEST_P(LinearSolvers, FactorsAgainWhereValuesChangeByDecades) {
     const LinearStatus status = solver->factor();
     ASSERT_TRUE(status.ok()) << status.message;
     expect_solves(*solver, changed, random);
+  }
+}
+
+// What a thread knows of structures it met before changes no byte: a chain and a ladder by turns, a body of which
+// becomes singular by itself and changes the order, against the same in a thread of its own.
+TEST_P(LinearSolvers, AnswersDoNotDependOnWhatWasSolvedBefore) {
+  std::mt19937_64 random(19);
+  std::vector<SampleSystem> all;
+  for (int round = 0; round < 2; ++round)
+    for (const Mechanism& mechanism : {chain(3, 5), ladder(2)})
+      all.push_back(saddle_point(mechanism, BodyKind::six, random));
+  for (std::size_t m = 0; m < all[1].pattern.blocks.size(); ++m)
+    if (const Block& block = all[1].pattern.blocks[m]; block.row == 6 && block.col == 6)
+      std::ranges::fill(all[1].block(m), 0.0);
+  const auto answer = [&](const SampleSystem& s) {
+    const auto solver = make();
+    std::vector<double> b(static_cast<std::size_t>(s.pattern.n), 1.0);
+    if (!prepare(*solver, s).ok() || !solver->solve(b).ok()) b.clear();
+    return b;
+  };
+  for (const SampleSystem& s : all) {
+    std::vector<double> alone;
+    std::thread([&] { alone = answer(s); }).join();
+    EXPECT_EQ(answer(s), alone) << s.name;
   }
 }
 
