@@ -84,6 +84,58 @@ void tell_lengths(const Model& model, std::vector<std::string>& sentences) {
                     model.bodies[lengths.most.second].name, lengths.most.first));
 }
 
+std::string frame_of(const Model& model, int body) {
+  return body == kGround ? "the ground" : fmt::format("'{}'", model.bodies[static_cast<std::size_t>(body)].name);
+}
+
+// Angle drivers and torsion springs on a hinge that turn about another line than the hinge: a direction in body i's
+// frame was given as a global one. To the digits that axes are given with.
+void tell_axes(const Model& model, std::vector<std::string>& sentences) {
+  constexpr double kDigits = 1e-3;
+  struct Hinge {
+    std::pair<int, int> bodies;
+    Vector3 axis;  // in the frame of the first
+    std::size_t group;
+  };
+  std::vector<Hinge> hinges;  // from either body
+  std::size_t doubts = 0;
+  std::string first;
+  const auto look = [&](std::string_view kind, const std::string& name, int i, int j, const Vector3& axis) {
+    const std::pair bodies(i, j);
+    const Hinge* nearest = nullptr;
+    double least = HUGE_VAL;  // rad
+    for (auto at = std::ranges::lower_bound(hinges, bodies, {}, &Hinge::bodies);
+         at != hinges.end() && at->bodies == bodies; ++at)
+      if (const double apart = std::atan2(at->axis.cross(axis).norm(), std::abs(at->axis.dot(axis))); apart < least)
+        nearest = &*at, least = apart;
+    if (!nearest || least <= kDigits) return;
+    if (doubts++ == 0)
+      first = fmt::format(
+          "{} '{}' turns about an axis {:.3g} rad from that of joint '{}' on the same bodies: it is taken in the frame "
+          "of {}, where a joint's \"axis\" is global",
+          kind, name, least, model.groups[nearest->group].name, frame_of(model, i));
+  };
+  std::size_t joint = 0;
+  for (std::size_t k = 0; k < model.groups.size(); ++k) {
+    const Group& group = model.groups[k];
+    if (group.kind != GroupKind::joint) continue;
+    const JointFrames& frames = model.joints[joint++];
+    if (group.type != "revolute" && group.type != "cylindrical") continue;
+    hinges.push_back({{group.i, group.j}, frames.axis_i, k});
+    hinges.push_back({{group.j, group.i}, frames.axis_j, k});
+  }
+  std::ranges::stable_sort(hinges, {}, &Hinge::bodies);
+  for (const Group& group : model.groups) {
+    const Row& row = model.rows[static_cast<std::size_t>(group.first_row)];
+    if (group.kind == GroupKind::driver && row.type == RowType::angle)
+      look("driver", group.name, row.i, row.j, row.a_i.cross(row.b_i));
+  }
+  for (const TorsionElement& torsion : model.torsions)
+    look("force", torsion.spring.name, torsion.spring.i, torsion.spring.j, torsion.spring.axis);
+  if (doubts > 1) first += fmt::format("; {} more like it", doubts - 1);
+  if (doubts > 0) sentences.push_back(first);
+}
+
 }  // namespace
 
 std::string overflowing(const Model& model) {
@@ -120,6 +172,7 @@ std::vector<std::string> scene_doubts(const Model& model) {
   tell_moments(model, sentences);
   tell_masses(model, sentences);
   tell_lengths(model, sentences);
+  tell_axes(model, sentences);
   if (const std::string overflow = overflowing(model); !overflow.empty()) sentences.push_back(overflow);
   return sentences;
 }

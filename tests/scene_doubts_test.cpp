@@ -4,6 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+#include <variant>
+
+#include "core/so3.h"
+
 namespace poinsot {
 namespace {
 
@@ -56,6 +61,32 @@ TEST(SceneDoubts, are_masses_and_lengths_far_apart) {
               ElementsAre("lengths are six orders of magnitude apart: 'b' is held 4e-07 m from its centre "
                           "of mass, 'a' 0.5 m"));
   scene.bodies[1].position[0] = 1 + 1e-15;  // the rounding of a joint at the centre of mass
+  EXPECT_THAT(doubts(scene), ElementsAre());
+}
+
+TEST(SceneDoubts, are_axes_in_another_frame_than_their_hinge) {
+  using std::numbers::pi;
+  Scene scene = two_rods();
+  for (Body& body : scene.bodies) body.orientation = exp_so3<double>({pi / 2, 0, 0});
+  Driver motor;
+  motor.type = DriverType::angle;
+  motor.name = "motor";
+  motor.i = 0, motor.j = 1;
+  motor.axis = {0, 1, 0};  // that of the hinge, which is global
+  scene.drivers.push_back(motor);
+  const std::string said =
+      "driver 'motor' turns about an axis 1.57 rad from that of joint 'revolute1' on the same bodies: it is taken in "
+      "the frame of 'a', where a joint's \"axis\" is global";
+  EXPECT_THAT(doubts(scene), ElementsAre(said));
+  TorsionSpring spring;
+  spring.i = 1, spring.j = 0;
+  spring.axis = {0, 2, 0.5};
+  scene.forces.emplace_back(spring);
+  EXPECT_THAT(doubts(scene), ElementsAre(said + "; 1 more like it"));
+  scene.drivers[0].axis = std::get<TorsionSpring>(scene.forces[0]).axis = {0, 1e-4, -1};  // where the axis is
+  EXPECT_THAT(doubts(scene), ElementsAre());
+  scene.joints[0].type = JointType::spherical;
+  scene.drivers[0].axis = {1, 1, 1};
   EXPECT_THAT(doubts(scene), ElementsAre());
 }
 
