@@ -86,7 +86,6 @@ void NewtonLoop::measure_gradient() {
 // The residual is in delta_.
 bool NewtonLoop::balanced(double position, const Vector& z, const Vector& q) {
   if (!(position * max_norm(delta_.tail(problem_.nc())) <= rounding_of(problem_, q))) return false;
-  if (gradient_ < 0) measure_gradient();
   problem_.momentum(span(z).first(index(problem_.nv())), span(momentum_));
   return max_norm(delta_.head(problem_.nv())) <=
          256 * kEpsilon * (max_norm(momentum_) + gradient_ * max_norm(z.tail(problem_.nc())));

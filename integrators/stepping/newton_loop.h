@@ -43,6 +43,7 @@ class NewtonLoop {
   template <class Residual, class Matrix, class Correct>
   Status solve(double t, double position, const Vector& z, const Vector& q, Residual&& residual, Matrix&& matrix,
                Correct&& correct) {
+    if (gradient_ < 0) measure_gradient();
     double correction = 0, before = INFINITY;
     bool stalled = false, of_this_step = false;
     for (int k = 0; k < settings_.max_iterations; ++k) {
@@ -105,7 +106,7 @@ class NewtonLoop {
   Statistics& statistics_;
   double arm_;  // m, the longest of a body to a constraint
   Vector delta_, momentum_;
-  double gradient_ = -1;  // |Gᵀ|, of the first step that asks: directions and arms stay what they are
+  double gradient_ = -1;  // |Gᵀ|, of the first step: directions and arms stay what they are
   bool slow_ = false;     // the last corrections did not shrink as they should
 };
 
