@@ -96,31 +96,11 @@ class Mechanism {
     }
   }
 
-  // M a + Gᵀλ − Q, and in the same pass over the rows the step's constraint residual into `rows` (may be null).
+  // M a + Gᵀλ − Q, and in the same pass over the rows the step's constraint residual into `rows`. Without λ and `rows`
+  // (both may be null) no row is looked at.
   void residual(const T* a, const T* lambda, T* out, const StepScale* scale, T* rows) {
     for (auto& w : wrench_) w = Wrench<F, T>();
-    const T by = scale ? T(1.0 / scale->position) : T(0);
-    Rows<F, T>::scalar(c, [&](const Gradient& g, auto has_r, const T& Phi) {
-      react<decltype(has_r)::value>(g, lambda[g.row]);
-      if (rows) rows[g.row] = by * Phi;
-    });
-    for (const CoincidenceRows& k : c.elements->coincidences) {
-      const Vec3<T> force = Eigen::Map<const Vec3<T>>(lambda + k.row);
-      if (k.i != kGround) {
-        wrench_[index(k.i)].f -= force;
-        wrench_[index(k.i)].e -= C::Et_times(c.s[index(k.p)], force);
-      }
-      if (k.j != kGround) {
-        wrench_[index(k.j)].f += force;
-        wrench_[index(k.j)].e += C::Et_times(c.s[index(k.q)], force);
-      }
-      if (rows) Eigen::Map<Vec3<T>>{rows + k.row} = by * c.span(k.i, k.j, k.p, k.q);
-    }
-    Rows<F, T>::velocity(c, [&](const Gradient& g, auto has_r, const T& psi) {
-      react<decltype(has_r)::value>(g, lambda[g.row]);
-      if (rows) rows[g.row] = psi / T(scale->velocity);
-    });
-    if (rows) normalization_residual(by, rows);
+    if (lambda) reactions(lambda, scale, rows);
     if (c.elements->has_forces()) Forces<F, T>::residual(c, wrench_);
 
     const Vec3<T> gravity = c.elements->model->gravity.template cast<T>();
@@ -131,7 +111,9 @@ class Mechanism {
       Eigen::Map<Vec3<T>>(out + b * kV) = c.mass(b) * (Eigen::Map<const Vec3<T>>(ab) - gravity) + wrench_[index(b)].f;
       X x = at.W().transpose() * wrench_[index(b)].e;
       x += F::inertia_residual(at, c.rate[index(b)], xd, ab + 3, c.J(b));
-      if constexpr (F::normalized) x += lambda[c.elements->rows + b] * at.p;
+      if constexpr (F::normalized) {
+        if (lambda) x += lambda[c.elements->rows + b] * at.p;
+      }
       Eigen::Map<X>(out + b * kV + 3) = x;
     }
   }
@@ -190,6 +172,32 @@ class Mechanism {
   static bool damped(const Elements& e) {
     return std::any_of(e.springs.begin(), e.springs.end(), [](const SpringElement& k) { return k.damped; }) ||
            std::any_of(e.torsions.begin(), e.torsions.end(), [](const TorsionSpringElement& k) { return k.damped; });
+  }
+
+  // Gᵀλ into the wrenches, and the step's constraint residual into `rows`.
+  void reactions(const T* lambda, const StepScale* scale, T* rows) {
+    const T by = scale ? T(1.0 / scale->position) : T(0);
+    Rows<F, T>::scalar(c, [&](const Gradient& g, auto has_r, const T& Phi) {
+      react<decltype(has_r)::value>(g, lambda[g.row]);
+      if (rows) rows[g.row] = by * Phi;
+    });
+    for (const CoincidenceRows& k : c.elements->coincidences) {
+      const Vec3<T> force = Eigen::Map<const Vec3<T>>(lambda + k.row);
+      if (k.i != kGround) {
+        wrench_[index(k.i)].f -= force;
+        wrench_[index(k.i)].e -= C::Et_times(c.s[index(k.p)], force);
+      }
+      if (k.j != kGround) {
+        wrench_[index(k.j)].f += force;
+        wrench_[index(k.j)].e += C::Et_times(c.s[index(k.q)], force);
+      }
+      if (rows) Eigen::Map<Vec3<T>>{rows + k.row} = by * c.span(k.i, k.j, k.p, k.q);
+    }
+    Rows<F, T>::velocity(c, [&](const Gradient& g, auto has_r, const T& psi) {
+      react<decltype(has_r)::value>(g, lambda[g.row]);
+      if (rows) rows[g.row] = psi / T(scale->velocity);
+    });
+    if (rows) normalization_residual(by, rows);
   }
 
   // Adds a row's force l on its two bodies.

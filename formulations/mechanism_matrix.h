@@ -26,9 +26,11 @@ class MechanismMatrix {
 
   explicit MechanismMatrix(const Elements& elements) : second_(elements) {}
 
-  // See Problem::assemble. The sink takes block(row, col, matrix) calls; an empty dq (null) means T = I.
+  // See Problem::assemble. The sink takes block(row, col, matrix) calls; an empty dq (null) means T = I. Never inlined:
+  // it is called for places and for values, and would be compiled for each.
   template <class Sink>
-  void write(C& c, MatrixKind kind, const StepScale& scale, const T* dq, const T* a, const T* lambda, Sink& sink) {
+  [[gnu::noinline]] void write(C& c, MatrixKind kind, const StepScale& scale, const T* dq, const T* a, const T* lambda,
+                               Sink& sink) {
     const RowBlocks<F, T, Sink> rows(c, sink);
     if (kind == MatrixKind::kinematic) return rows.gradients(0, false);
     if (kind == MatrixKind::rates) {
@@ -139,7 +141,7 @@ class MechanismMatrix {
   template <class Sink>
   struct ForceSink {
     Sink& sink;
-    bool places_only = Sink::places_only;  // no values: functions of the program are not asked for any
+    bool places_only = sink.places_only();  // no values: functions of the program are not asked for any
     template <class M>
     void body_block(int row_body, int col_body, const M& m) {
       sink.block(row_body * kV, col_body * kV, m);

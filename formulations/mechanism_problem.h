@@ -119,8 +119,9 @@ class MechanismProblem final : public Problem {
     mechanism_.constraint_forces(lambda.data(), out.data());
   }
   void equations_of_motion(std::span<const double> a, std::span<const double> lambda, std::span<double> out) override {
-    expect(a, nv_), expect(lambda, nc_), expect(out, nv_);
-    mechanism_.residual(a.data(), lambda.data(), out.data(), nullptr, nullptr);
+    expect(a, nv_), expect(out, nv_);
+    if (!lambda.empty()) expect(lambda, nc_);
+    mechanism_.residual(a.data(), lambda.empty() ? nullptr : lambda.data(), out.data(), nullptr, nullptr);
   }
   void step_residual(const StepScale& scale, std::span<const double> a, std::span<const double> lambda,
                      std::span<double> out) override {
@@ -136,8 +137,8 @@ class MechanismProblem final : public Problem {
     Pattern pattern;
     const bool rows_only = kind == MatrixKind::kinematic || kind == MatrixKind::rates;
     pattern.n = rows_only ? std::max(nv_, nc_) : nv_ + nc_;
-    Recorder recorder{pattern.blocks};
-    Matrix(*mechanism_.c.elements).write(scratch.c, kind, {1, 1, 1}, nullptr, zeros.data(), zeros.data(), recorder);
+    Blocks blocks{&pattern.blocks, nullptr, nullptr};
+    Matrix(*mechanism_.c.elements).write(scratch.c, kind, {1, 1, 1}, nullptr, zeros.data(), zeros.data(), blocks);
     for (int k = 0; k < pattern.n; ++k) pattern.node.push_back(node_of(k));
     return pattern;
   }
@@ -145,9 +146,9 @@ class MechanismProblem final : public Problem {
   void assemble(MatrixKind kind, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
                 std::span<const double> lambda, std::span<const int> slots, std::span<double> values) override {
     std::fill(values.begin(), values.end(), 0.0);
-    Writer writer{slots.data(), values.data()};
-    matrix_.write(mechanism_.c, kind, scale, dq.empty() ? nullptr : dq.data(), a.data(), lambda.data(), writer);
-    check(writer.slot == slots.data() + slots.size(), "an assembled matrix has the blocks of its pattern");
+    Blocks blocks{nullptr, slots.data(), values.data()};
+    matrix_.write(mechanism_.c, kind, scale, dq.empty() ? nullptr : dq.data(), a.data(), lambda.data(), blocks);
+    check(blocks.slot == slots.data() + slots.size(), "an assembled matrix has the blocks of its pattern");
   }
   void lower(std::span<const double> dq, std::span<double> z) const override { M::lower(dq.data(), z.data(), bodies_); }
 
@@ -240,26 +241,24 @@ class MechanismProblem final : public Problem {
   using M = Mechanism<F, double>;
   using Matrix = MechanismMatrix<F, double>;
 
-  struct Recorder {
-    std::vector<Block>& blocks;
-    static constexpr bool places_only = true;
-    template <class Derived>
-    void block(int row, int col, const Eigen::MatrixBase<Derived>&) {
-      blocks.push_back(
-          {row, col, static_cast<int>(Derived::RowsAtCompileTime), static_cast<int>(Derived::ColsAtCompileTime)});
-    }
-  };
-  struct Writer {
+  // Records the places of a matrix's blocks, or adds their values. One sink for both, because what writes into it is
+  // most of what there is to compile of a formulation.
+  struct Blocks {
+    std::vector<Block>* places;  // null where values are written
     const int* slot;
     double* values;
-    static constexpr bool places_only = false;
+    bool places_only() const { return places != nullptr; }
     template <class Derived>
-    void block(int, int, const Eigen::MatrixBase<Derived>& m) {
-      for (Eigen::Index c = 0; c < Derived::ColsAtCompileTime; ++c) {
+    void block(int row, int col, const Eigen::MatrixBase<Derived>& m) {
+      constexpr int kRows = Derived::RowsAtCompileTime, kCols = Derived::ColsAtCompileTime;
+      if (places_only()) [[unlikely]]
+        return record({row, col, kRows, kCols});
+      for (Eigen::Index c = 0; c < kCols; ++c) {
         double* column = values + *slot++;
-        for (Eigen::Index r = 0; r < Derived::RowsAtCompileTime; ++r) column[r] += m(r, c);
+        for (Eigen::Index r = 0; r < kRows; ++r) column[r] += m(r, c);
       }
     }
+    [[gnu::noinline]] void record(const Block& place) { places->push_back(place); }
   };
 
   template <class T>

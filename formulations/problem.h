@@ -89,7 +89,7 @@ class Problem {
   virtual void momentum(std::span<const double> v_in, std::span<double> out) const = 0;
   // Gᵀλ.
   virtual void constraint_forces(std::span<const double> lambda, std::span<double> out) = 0;
-  // M a + Gᵀλ − Q.
+  // M a + Gᵀλ − Q; an empty λ stands for none.
   virtual void equations_of_motion(std::span<const double> a, std::span<const double> lambda,
                                    std::span<double> out) = 0;
   // A step's residual, nv + nc: M a + Gᵀλ − Q, then Φ/position by row, (Ψv − f)/velocity for velocity rows.

@@ -68,7 +68,7 @@ LinearStatus LinearSolver::solved(std::span<double> b, Work&& work) {
   check(b.size() == index(n_), "LinearSolver::solve gets one number for each unknown");
   ++statistics_.solves;
   LinearStatus status = guarded(work);
-  if (status.ok() && !all_finite(b))
+  if (status.ok() && picked().empty() && !all_finite(b))  // a pick has looked itself
     status = {LinearFailure::not_finite, -1, "the solution of the linear system is not finite"};
   if (!status.ok()) state_ = State::analyzed;
   return status;

@@ -1,11 +1,15 @@
-// What error control is made of: the times of samples, the length of the next step, and when a run does not get on.
+// What error control is made of: the times of samples, the length of the next step, and when a run does not get on; and
+// the clock of its phases.
 #include "integrators/stepping/step_control.h"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "core/input_error.h"
+#include "core/phase_clock.h"
 #include "integrators/stepping/sample_times.h"
 #include "tests/support/simulation.h"
 
@@ -121,6 +125,45 @@ TEST(StepController, FollowsTheTrend) {
   StepController steady({1, 0.25, 0.0, 0.2, 8, true});
   EXPECT_DOUBLE_EQ(steady.accepted(1, 1.0 / 16), 2);
   EXPECT_DOUBLE_EQ(steady.accepted(2, 1.0 / 16), 4);
+}
+
+double all_phases(const PhaseClock& clock) {
+  return clock.seconds(Phase::assembly) + clock.seconds(Phase::factor) + clock.seconds(Phase::solve) +
+         clock.seconds(Phase::other);
+}
+
+// Few laps are all looked at, of many some; phases that never pass take nothing.
+TEST(PhaseClock, DividesTheTotalAmongThePhasesThatPass) {
+  for (const int laps : {2, 1000, 100000}) {
+    PhaseClock clock;
+    clock.start();
+    for (int k = 0; k < laps; ++k) clock.lap(k % 2 == 0 ? Phase::assembly : Phase::solve);
+    clock.stop();
+    EXPECT_GT(clock.total(), 0);
+    EXPECT_NEAR(all_phases(clock), clock.total(), 1e-9 * clock.total()) << laps;
+    EXPECT_GT(clock.seconds(Phase::assembly), 0) << laps;
+    EXPECT_GT(clock.seconds(Phase::solve), 0) << laps;
+    EXPECT_EQ(clock.seconds(Phase::factor), 0) << laps;
+  }
+}
+
+TEST(PhaseClock, LeavesPausesOut) {
+  using Seconds = std::chrono::duration<double>;
+  constexpr Seconds kPause(0.02);
+  for (const int laps : {2, 2000}) {  // while every lap is looked at, and while none is
+    const auto before = std::chrono::steady_clock::now();
+    PhaseClock clock;
+    clock.start();
+    for (int k = 0; k < laps; ++k) clock.lap(Phase::solve);
+    clock.pause();
+    std::this_thread::sleep_for(kPause);
+    clock.resume();
+    clock.lap(Phase::solve);
+    clock.stop();
+    const Seconds elapsed = std::chrono::steady_clock::now() - before;
+    EXPECT_LE(clock.total(), (elapsed - 0.99 * kPause).count()) << laps;
+    EXPECT_NEAR(all_phases(clock), clock.total(), 1e-9 * clock.total()) << laps;
+  }
 }
 
 }  // namespace

@@ -279,9 +279,9 @@ class Session {
 
   void give_out() { give_out(at_.t); }
   void give_out(double t) {
-    clock_.lap(Phase::other);
+    clock_.pause();
     sample(run_.observe, problem_, at_, statistics_, t);
-    clock_.skip();
+    clock_.resume();
   }
 
   // IDA's callbacks: 0 done, 1 not possible here, try a smaller step.

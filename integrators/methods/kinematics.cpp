@@ -89,9 +89,9 @@ class Kinematics final : public FixedSteps {
 
   Status complete() override {
     if (!inverse_dynamics_) return {};
-    clock_.lap(Phase::other);
+    clock_.pause();
     Status status = inverse_dynamics_->accelerations(x_.t, span(x_.z));
-    clock_.skip();
+    clock_.resume();
     return status;
   }
 

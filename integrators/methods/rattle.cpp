@@ -72,7 +72,7 @@ class Rattle final : public FixedSteps {
   // (a, λ) at the accepted (q, v).
   Status complete() override {
     StepEnds::End& here = ends_.begin();
-    here.problem.equations_of_motion(span(zeros_, 0, nv_), span(zeros_, nv_, nc_), x_.a());
+    here.problem.equations_of_motion(span(zeros_, 0, nv_), {}, x_.a());
     x_.z.head(nv_) = -x_.z.head(nv_);
     here.problem.gamma(x_.lambda());
     return here.system.solve(x_.t, span(x_.z));
@@ -141,7 +141,7 @@ class Rattle final : public FixedSteps {
     end.set_velocity(span(u_));
     if (Status status = factor(ends_.end(), t); !status.ok()) return status;
     find_even_part(end);
-    end.equations_of_motion(span(zeros_, 0, nv_), span(zeros_, nv_, nc_), span(rhs_, 0, nv_));
+    end.equations_of_motion(span(zeros_, 0, nv_), {}, span(rhs_, 0, nv_));
     rhs_.head(nv_) = e_ - rhs_.head(nv_);
     end.velocity_residual(span(rhs_, nv_, nc_));
     rhs_.tail(nc_) *= -2 / h_;

@@ -62,7 +62,7 @@ Status Consistent::factor(double t) {
 Status Consistent::accelerations(double t, std::span<double> z) {
   if (Status status = factor(t); !status.ok()) return status;
   const std::span<const double> zeros = span(zeros_);
-  problem_.equations_of_motion(zeros.first(nv_), zeros.subspan(nv_), z.first(nv_));
+  problem_.equations_of_motion(zeros.first(nv_), {}, z.first(nv_));
   for (double& x : z.first(nv_)) x = -x;
   problem_.gamma(z.subspan(nv_));
   return system_.solve(t, z);
@@ -194,7 +194,7 @@ bool Consistent::leaves_branch(const State& at) {
   }
   if (!(jump > kOther * size + kExplained * calm_.usual * std::abs(at.t - calm_.t))) return false;
   const std::span<const double> none = span(zeros_);
-  problem_.equations_of_motion(none.first(nv_), none.subspan(nv_), moves());  // −Q
+  problem_.equations_of_motion(none.first(nv_), {}, moves());  // −Q
   problem_.gamma(rows());
   const double loads = largest(moves()), gamma = largest(rows());
   problem_.momentum(at.a(), moves());

@@ -33,9 +33,9 @@ class Course {
 
   void give_out(const State& at) { give_out(at, at.t); }
   void give_out(const State& at, double t) {
-    clock_.lap(Phase::other);
+    clock_.pause();
     sample(run_.observe, run_.problem, at, run_.statistics, t);
-    clock_.skip();
+    clock_.resume();
   }
   double turned(double h) const { return h * run_.problem.fastest_turn(); }  // rad, the fastest body at its speed now
   double end() const { return run_.settings.end; }

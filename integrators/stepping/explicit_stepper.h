@@ -80,6 +80,7 @@ class ExplicitStepper {
   bool project_stages_ = false;
 
   State state_, next_, sample_;
+  Vector zeros_;    // 2 nv
   Vector q_n_;      // where the step began; y_n_ = (0, v_n)
   Vector y_n_, y_;  // 2 nv
   Vector g_;        // where the last stage stands

@@ -27,7 +27,16 @@ double rounding_of(const Problem& problem, const Eigen::VectorXd& q) {
 }
 
 double max_norm(const auto& x) {
-  return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0;
+  double most = 0;
+  for (Eigen::Index k = 0; k < x.size(); ++k) most = std::max(most, std::abs(x[k]));
+  return most;
+}
+
+// |r|² + arm² |x|² of one body.
+double squared_size(const double* body, Eigen::Index turns, double arm_squared) {
+  double of_x = 0;
+  for (Eigen::Index k = 3; k < 3 + turns; ++k) of_x += body[k] * body[k];
+  return body[0] * body[0] + body[1] * body[1] + body[2] * body[2] + arm_squared * of_x;
 }
 
 }  // namespace
@@ -49,10 +58,10 @@ double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
   const double turn = arm_ * arm_;
   double most = 0, all = 0, sum = 0;
   for (Eigen::Index b = 0; b < nv; b += per_body) {
-    const double of = delta_.segment<3>(b).squaredNorm() + turn * delta_.segment(b + 3, turns).squaredNorm();
+    const double of = squared_size(delta_.data() + b, turns, turn);
     most = std::max(most, of);
     all += of;
-    sum += z.segment<3>(b).squaredNorm() + turn * z.segment(b + 3, turns).squaredNorm();
+    sum += squared_size(z.data() + b, turns, turn);
   }
   if (!std::isfinite(all)) return all;
   constexpr double kLeast = std::numeric_limits<double>::min();  // at rest without any load there is no size

@@ -18,6 +18,8 @@ Status TimedSystem::factor(double t) {
   LinearStatus status = linear_.factor();
   ++statistics_.factorizations;
   clock_.lap(Phase::factor);
+  if (status.ok()) [[likely]]
+    return {};
   return explained(t, std::move(status));
 }
 
@@ -26,6 +28,8 @@ Status TimedSystem::solve(double t, std::span<double> b) {
   LinearStatus status = linear_.solve(b);
   ++statistics_.solves;
   clock_.lap(Phase::solve);
+  if (status.ok()) [[likely]]
+    return {};
   return explained(t, std::move(status));
 }
 

@@ -25,6 +25,27 @@ inline void add(double* to, const double* from, int n) {
   if (i < n) to[i] += from[i];
 }
 
+// Rows × columns numbers, a child's columns `from_step` apart, the parent's `to_step`. Rows are few: most by far are
+// one to four, which are added without a loop.
+template <int Rows>
+inline void add_columns(double* to, int to_step, const double* from, int from_step, int columns) {
+  for (; columns > 0; --columns, to += to_step, from += from_step) add(to, from, Rows);
+}
+inline void add_block(double* to, int to_step, const double* from, int from_step, int rows, int columns) {
+  switch (rows) {
+    case 1:
+      return add_columns<1>(to, to_step, from, from_step, columns);
+    case 2:
+      return add_columns<2>(to, to_step, from, from_step, columns);
+    case 3:
+      return add_columns<3>(to, to_step, from, from_step, columns);
+    case 4:
+      return add_columns<4>(to, to_step, from, from_step, columns);
+    default:
+      for (; columns > 0; --columns, to += to_step, from += from_step) add(to, from, rows);
+  }
+}
+
 // Adds a child's update matrix to the parent's D, L, U and W.
 inline void extend_add(const Front& child, const double* update, const Stretch* stretches, const Front& parent,
                        double* D, double* W) {
@@ -36,10 +57,10 @@ inline void extend_add(const Front& child, const double* update, const Stretch* 
     double* top = (across < outer ? D : U) + across->to * p;
     double* bottom = (across < outer ? L : W) + across->to * rows;
     const double* from = update + across->from * child.rows;
-    for (int j = 0; j < across->length; ++j, top += p, bottom += rows, from += child.rows) {
-      for (const Stretch* down = first; down != outer; ++down) add(top + down->to, from + down->from, down->length);
-      for (const Stretch* down = outer; down != last; ++down) add(bottom + down->to, from + down->from, down->length);
-    }
+    for (const Stretch* down = first; down != outer; ++down)
+      add_block(top + down->to, p, from + down->from, child.rows, down->length, across->length);
+    for (const Stretch* down = outer; down != last; ++down)
+      add_block(bottom + down->to, rows, from + down->from, child.rows, down->length, across->length);
   }
 }
 

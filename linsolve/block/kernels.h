@@ -56,10 +56,10 @@ struct Drift {
 
 // D ← its factors, p × p, with its rows in the given order (null: as they are), in straight-line code. False, and D as
 // it was, where a candidate is more than `reluctance` times a pivot, in the units of rows given by `weight`. `then`
-// holds 1/|pivot| for Drift.
+// holds 1/|pivot| for Drift. Flattened, or the compiler leaves parts of it as calls, with all numbers through memory.
 template <int P>
-inline bool factor_in_order(double* D, const std::uint16_t* order, const float* weight, double reluctance,
-                            const float* then, Drift& drift) {
+[[gnu::flatten]] inline bool factor_in_order(double* D, const std::uint16_t* order, const float* weight,
+                                             double reluctance, const float* then, Drift& drift) {
   double a[P * P], unit[P];
   if (order) {
     unrolled<P>([&](auto i) {

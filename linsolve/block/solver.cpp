@@ -201,7 +201,14 @@ class Solver final : public LinearSolver {
     }
     b_.assign(b.begin(), b.end());
     factor_.solve(*schedule_, b);
-    if (residual(b_, b) <= kGoodResidual || refine(b, statistics_.refinements) <= kLargeResidual) return {};
+    const double size = residual(b_, b);
+    if (size <= kGoodResidual) return {};
+    if (size <= kLargeResidual) {  // factors that leave so little leave no more than rounding of a correction
+      correct(b);
+      ++statistics_.refinements;
+      return {};
+    }
+    if (refine(b, statistics_.refinements) <= kLargeResidual) return {};
     std::ranges::copy(b_, b.begin());
     if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
     return klu_->solve(b);
