@@ -111,5 +111,17 @@ TEST_F(Check, ConflictingConstraintsByName) {
                        "line 3): off by 1 m/s (velocity) where those hold\n"});
 }
 
+// What comes but once has lines, too.
+TEST_F(Check, LinesOfTheStandardInputAndOfPipes) {
+  write("off.json", rod(R"({"type": "D", "name": "tie", "bodies": ["ground", "rod"], "s_i": [-1,0,0], "s_j": [0,0,0],
+                             "f": "4 - t"})"));
+  const std::string expected = "constraint 'tie' (/constraints/0, line 3) by 1 m²/s";
+  for (const char* command : {"poinsot check - < off.json > said", "cat off.json | poinsot check - > said",
+                              "mkfifo pipe; (cat off.json > pipe & poinsot check pipe > said)"}) {
+    EXPECT_EQ(shell(command), 0) << command;
+    EXPECT_NE(read("said").find(expected), std::string::npos) << command << '\n' << read("said");
+  }
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -43,11 +43,6 @@ class CliStudy : public CommandLine {
     EXPECT_EQ(result.status, 0) << result.err;
     return read("reference/cases.csv");
   }
-  // A command line as a shell takes it, in the folder.
-  int shell(const std::string& command) const {
-    const int status = std::system(fmt::format("cd '{}' && {}", folder().string(), command).c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
 };
 
 TEST_F(CliStudy, OneRowForEachCaseWithWhatIsKept) {
@@ -218,11 +213,20 @@ TEST_F(CliStudy, AFailingCaseIsARow) {
   EXPECT_GE(read_json("out/cases.run.json")["cases"]["failed"], 2);
   // A parameter that makes no scene.
   write("bad.json", R"({"study": 1, "scenes": ["m.json"], "settings": {"end": 0.01},
-    "vary": [{"parameter": "m", "values": [1, -1]}], "keep": [{"column": "b.z"}]})");
+    "vary": [{"parameter": "m", "values": [1, -1, 2]}], "keep": [{"column": "b.z"}]})");
   write("m.json", R"({"scene": 1, "parameters": {"m": 1}, "gravity": [0, 0, -1],
-    "bodies": [{"name": "b", "mass": "m", "inertia": [1, 1, 1], "position": [0, 0, 0]}]})");
+    "bodies": [{"name": "b", "mass": "m", "inertia": [1, 1, 1], "position": [0, 0, 0]}],
+    "forces": [{"type": "force", "name": "pull", "body": "b", "point": [0, 0, 0], "force": ["2*sqrt(2.005 - m - t)*m", 0, 0]
+}]
+})");
   ASSERT_EQ(poinsot({"study", "bad.json", "--quiet", "--out", "bad"}).status, 0);
-  EXPECT_NE(lines(read("bad/cases.csv"))[2].find(",input_error,,"), std::string::npos) << read("bad/cases.csv");
+  const std::vector<std::string> bad = lines(read("bad/cases.csv"));
+  EXPECT_NE(bad[2].find(",input_error,,"), std::string::npos) << bad[2];
+  EXPECT_TRUE(bad[2].ends_with("expected a positive number (body 'b', line 2)\"")) << bad[2];
+  EXPECT_NE(bad[3].find("force 'pull' (/forces/0, line 3), component x"), std::string::npos) << bad[3];
+  // And what is wrong in the study itself.
+  write("bad.json", "{\"study\": 1, \"scenes\": [\"m.json\"],\n \"keep\": [{\"column\": \"c.z\"}]}");
+  EXPECT_TRUE(poinsot({"study", "bad.json"}).err.ends_with("line 2)\n")) << poinsot({"study", "bad.json"}).err;
 }
 
 TEST_F(CliStudy, TimesAreMeasuredAloneAndSaidToBe) {

@@ -112,6 +112,13 @@ class CommandLine : public testing::Test {
 
   Result poinsot(const std::vector<std::string>& arguments) const { return finish(start(arguments)); }
 
+  // A command line as a shell takes it, in the folder; `poinsot` is the program.
+  int shell(const std::string& command) const {
+    const int status =
+        std::system(("poinsot() { '" + program_ + "' \"$@\"; }; cd '" + folder_.string() + "' && " + command).c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
  private:
   static constexpr uid_t kNobody = 65534;
 

@@ -261,9 +261,11 @@ TEST(SceneValidation, answers_the_same_to_files) {
     ++in_files;
     Json document = everything();
     document[Json::json_pointer(c.pointer)] = c.value;
-    const std::string said = refusal([&] { (void)parse_scene(document.dump(), "case.json"); });
+    const std::string said = refusal([&] { (void)parse_scene(document.dump(1), "case.json"); });
     EXPECT_EQ(without_place(said), "case.json: " + c.message);
-    EXPECT_TRUE(said.ends_with("line 1)")) << said;
+    const std::size_t line = said.rfind("line ");
+    ASSERT_NE(line, said.npos) << said;
+    EXPECT_GT(std::stoi(said.substr(line + 5)), 1) << said;
   }
   EXPECT_GT(in_files, 25);
 }
