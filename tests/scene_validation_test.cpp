@@ -316,6 +316,8 @@ TEST(SceneValidation, names_are_given_key_paths_and_lines) {
             "'spherical1'");
   EXPECT_EQ(placed("at t = 1 s force 'motor', component y: '1/t' is not finite"),
             "at t = 1 s force 'motor' (/forces/0, line 7), component y: '1/t' is not finite");
+  EXPECT_EQ(placed(with_key_paths("of joint 'b'; its row", scene).c_str()),
+            "of joint 'b' (/joints/1, line 5); its row");
   EXPECT_EQ(placed("joint 'none', antibody 'b' and '/tmp (/x)'"), "joint 'none', antibody 'b' and '/tmp (/x)'");
   EXPECT_EQ(with_key_paths("/joints/0/axis: found 1 (joint 'b')", scene), "/joints/0/axis: found 1 (joint 'b')");
 }
