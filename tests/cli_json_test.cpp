@@ -136,6 +136,7 @@ TEST_F(Shell, BashCompletes) {
   EXPECT_EQ(completed("poinsot run pend"), "pendulum.json\n");
   EXPECT_EQ(completed("poinsot run pendulum.json --rea"), "--reactions\n");
   EXPECT_EQ(completed("poinsot make la"), "ladder\n");
+  EXPECT_EQ(completed("poinsot stability --family pul"), "pulse\n");
 }
 
 TEST_F(Shell, TheManualHasEveryCommandAndOption) {
