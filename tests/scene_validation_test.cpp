@@ -263,6 +263,8 @@ TEST(SceneValidation, answers_the_same_to_files) {
     document[Json::json_pointer(c.pointer)] = c.value;
     const std::string said = refusal([&] { (void)parse_scene(document.dump(1), "case.json"); });
     EXPECT_EQ(without_place(said), "case.json: " + c.message);
+    EXPECT_EQ(refusal([&] { (void)parse_scene(document.dump() + "\n", "case.json"); }).find("line "), said.npos)
+        << "of one line there is none to look for";
     const std::size_t line = said.rfind("line ");
     ASSERT_NE(line, said.npos) << said;
     EXPECT_GT(std::stoi(said.substr(line + 5)), 1) << said;
