@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "bench/paper/figure.h"
+#include "bench/stability/family.h"
 #include "bench/study/motion.h"
 #include "core/scene_generator.h"
 #include "integrators/settings_reader.h"
@@ -23,6 +24,7 @@ std::vector<std::string> words_of(const std::string& command, const std::string&
   if (command == "make" && option == "STRUCTURE") return names_of(scene_generators());
   if (command == "figures" && option == "NAME") return names_of(paper::figures());
   if (command == "completion") return {"bash", "zsh", "fish"};
+  if (option == "--family") return names_of(stability::families());
   if (option == "--of") return {study::kQuantities.begin(), study::kQuantities.end()};
   for (const SettingEntry& entry : setting_entries()) {
     const std::string name = option_name(entry);

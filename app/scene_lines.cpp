@@ -6,7 +6,7 @@
 namespace poinsot::app {
 
 std::string with_lines_of(const std::string& file, std::string_view message) {
-  if (file == "-" || message.find(" (/") == message.npos) return std::string(message);
+  if (message.find(" (/") == message.npos) return std::string(message);
   try {
     return with_lines(message, read_text(file));
   } catch (const InputError&) {  // it is gone

@@ -1,4 +1,4 @@
-// The lines of a scene's file in what is said of the scene. What came from the standard input has none to look up.
+// The lines of a scene's file in what is said of the scene.
 #pragma once
 
 #include <string>

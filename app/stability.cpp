@@ -87,7 +87,7 @@ int map(const StabilityOptions& options) {
   if (options.families.empty())
     if (const std::string none = write_plots({amplification_plot(options.quick)}, options.out, foot); why.empty())
       why = none;
-  if (!why.empty()) print_notice(why);
+  if (!why.empty()) print_error(why);
   Report report{"Where methods fail", "", tables(maps), foot};
   std::string pictures;
   for (const Mapped& one : maps)
@@ -96,13 +96,14 @@ int map(const StabilityOptions& options) {
   if (options.families.empty() && why.empty()) pictures += "![Spectral radius](amplification.svg)\n\n";
   report.tables.front().text = pictures + report.tables.front().text;
   const std::vector<fs::path> written = write_report(report, options.out, "stability");
-  if (options.quiet) return kDone;
+  const int status = why.empty() ? kDone : kNumericsFailed;
+  if (options.quiet) return status;
   for (const Mapped& one : maps)
     fmt::print("{:<24} {:>5} cells: {} accurate, {} coarse, {} told, {} stopped, {} wrong\n", one.family->name,
                one.cells.size(), count(one.cells, Verdict::accurate), count(one.cells, Verdict::coarse),
                count(one.cells, Verdict::told), count(one.cells, Verdict::stop), count(one.cells, Verdict::wrong));
   fmt::print("{}\n", written.front().string());
-  return kDone;
+  return status;
 }
 
 std::string families_text() {

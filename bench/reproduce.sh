@@ -12,4 +12,5 @@ build/native/app/poinsot tables --out results/
 build/native/app/poinsot figures --out results/
 build/native/app/poinsot chart models/{single_pendulum,double_pendulum,four_link,slider_crank}.json --quick --out results/
 build/native/app/poinsot scale --bodies 1000 --out results/
+build/native/app/poinsot study bench/studies/random_mechanisms.json --out results/random_mechanisms
 build/native/app/poinsot report results/

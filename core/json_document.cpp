@@ -7,6 +7,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <vector>
@@ -114,6 +116,14 @@ class Builder final : public nlohmann::json_sax<Json> {
   std::vector<Level> levels_;  // an open container does not move: nothing is added beside it before it is closed
 };
 
+std::string content_of(const std::string& file) {
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  if (!in || in.bad()) throw InputError(fmt::format("{}: cannot be read: {}", file, std::strerror(errno)));
+  return text;
+}
+
 }  // namespace
 
 JsonDocument::JsonDocument(std::string_view text, std::string_view file)
@@ -139,15 +149,17 @@ std::string shown_input(const std::string& file) {
 }
 
 std::string read_text(const std::string& file) {
+  namespace fs = std::filesystem;
   if (file == "-") return read_text("/dev/stdin");
   std::error_code error;
-  if (std::filesystem::is_directory(file, error))
-    throw InputError(fmt::format("{}: found a directory, expected a file", file));
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in || in.bad()) throw InputError(fmt::format("{}: cannot be read: {}", file, std::strerror(errno)));
-  return text;
+  const fs::file_status status = fs::status(file, error);
+  if (fs::is_directory(status)) throw InputError(fmt::format("{}: found a directory, expected a file", file));
+  if (!fs::exists(status) || fs::is_regular_file(status)) return content_of(file);
+  static std::mutex access;
+  static std::map<std::string, std::string> kept;
+  const std::lock_guard lock(access);
+  const auto found = kept.find(file);
+  return found != kept.end() ? found->second : kept.emplace(file, content_of(file)).first->second;
 }
 
 }  // namespace poinsot

@@ -28,7 +28,8 @@ class JsonDocument {
   std::unique_ptr<nlohmann::json> json_;
 };
 
-// The file's whole content; "-" is the standard input. Throws InputError.
+// The file's whole content; "-" is the standard input. What can be read but once, as that and pipes, is kept for
+// whoever asks again. Throws InputError.
 std::string read_text(const std::string& file);
 // As messages call it.
 std::string shown_input(const std::string& file);

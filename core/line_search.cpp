@@ -114,6 +114,7 @@ LineSearch::LineSearch(std::string_view text, const std::vector<std::string>& pa
   constexpr bool kWholeText = false, kComments = true;
   const Reading begin{text.data(), &lines}, end{text.data() + text.size(), &lines};
   Json::sax_parse(begin, end, &events, Json::input_format_t::json, kWholeText, kComments);
+  if (text.find('\n') >= text.find_last_not_of(" \t\r\n")) lines_.clear();
 }
 
 int LineSearch::line(std::string path) const {

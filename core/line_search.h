@@ -13,7 +13,8 @@ class LineSearch {
   // Goes through the text for these paths (JSON pointers), and for whatever they are in.
   LineSearch(std::string_view text, const std::vector<std::string>& paths);
 
-  // Of the path, or of the innermost there is around it: of what is missing. 0: there is none.
+  // Of the path, or of the innermost there is around it: of what is missing. 0: there is none, as in a text of one
+  // line.
   int line(std::string path) const;
   // The string "name" of the object at the path; empty where it has none.
   std::string name(const std::string& path) const;

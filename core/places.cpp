@@ -123,13 +123,17 @@ std::string with_key_paths(std::string_view message, const Scene& scene) {
     const std::string_view before = std::string_view(text).substr(0, at);
     for (std::size_t kind = 0; kind < std::size(kKinds); ++kind) {
       const std::string_view word = kKinds[kind].second;
-      if (!before.ends_with(word) || (before.size() > word.size() && before[before.size() - word.size() - 1] != ' ' &&
-                                      before[before.size() - word.size() - 1] != '('))
+      if (!before.ends_with(word) ||
+          (before.size() > word.size() &&
+           std::string_view(" (\n").find(before[before.size() - word.size() - 1]) == std::string_view::npos))
         continue;
       if (!elements) elements.emplace(scene);
       const auto [path, end] = elements->at(kind, text, at + 2);
       if (path.empty() || !told.insert(path).second) continue;
-      insert(text, end + 1, path);
+      const std::string there = fmt::format(" ({}", path);  // of a sentence that was given them before
+      if (text.compare(end + 1, there.size(), there) != 0 ||
+          text.find_first_of(",;)", end + 1) != end + 1 + there.size())
+        insert(text, end + 1, path);
       break;
     }
   }

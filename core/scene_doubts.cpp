@@ -138,7 +138,7 @@ void tell_axes(const Model& model, std::vector<std::string>& sentences) {
 
 }  // namespace
 
-std::string overflowing(const Model& model) {
+std::string overflowing(const Model& model, double t) {
   const double limit = std::sqrt(std::numeric_limits<double>::max());
   std::string found;
   const auto look = [&](const std::string& whose, std::string_view what, double size) {
@@ -155,14 +155,20 @@ std::string overflowing(const Model& model) {
   }
   for (std::size_t k = 0; k < model.rows.size(); ++k) {
     const Row& row = model.rows[k];
-    double size = std::max(row.s_i.cwiseAbs().maxCoeff(), row.s_j.cwiseAbs().maxCoeff());
-    if (row.f.is_constant()) size = std::max(size, std::abs(row.f.at(0.0).f));
+    const double size =
+        std::max({row.s_i.cwiseAbs().maxCoeff(), row.s_j.cwiseAbs().maxCoeff(), std::abs(row.f.at(t).f)});
     if (size > limit) look(describe_row(model, static_cast<int>(k)), "length", size);
   }
   for (const Spring& spring : model.springs) {
     look(fmt::format("force '{}'", spring.name), "stiffness", std::abs(spring.stiffness));
     look(fmt::format("force '{}'", spring.name), "length", spring.length);
   }
+  for (const PointForce& force : model.point_forces)
+    for (const Expression& component : force.force)
+      look(fmt::format("force '{}'", force.name), "component", std::abs(component.at(t).f));
+  for (const Torque& torque : model.torques)
+    for (const Expression& component : torque.torque)
+      look(fmt::format("force '{}'", torque.name), "component", std::abs(component.at(t).f));
   look("the scene", "gravity", model.gravity.cwiseAbs().maxCoeff());
   return found;
 }

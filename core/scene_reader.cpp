@@ -199,7 +199,7 @@ Scene with_parameters(const Scene& scene, const std::map<std::string, double>& v
 }
 
 VariedScene::VariedScene(const Scene& scene)
-    : name_(printable(scene.name)), document_((require_read(scene), scene.source), name_) {
+    : name_(printable(scene.name)), text_((require_read(scene), scene.source)), document_(text_, name_) {
   ParameterValues set;
   for (const Parameter& parameter : scene.parameters)
     if (parameter.set) set.emplace(parameter.name, "");
@@ -207,7 +207,7 @@ VariedScene::VariedScene(const Scene& scene)
 }
 
 const Scene& VariedScene::with(const std::map<std::string, double>& values) {
-  with_names_of_errors(scene_, [&] { vary(texts_of(values)); });
+  with_lines_of_errors(text_, [&] { vary(texts_of(values)); });
   return scene_;
 }
 

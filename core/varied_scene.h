@@ -34,7 +34,7 @@ class VariedScene {
  private:
   void vary(std::map<std::string, std::string> set);
 
-  std::string name_;
+  std::string name_, text_;
   JsonDocument document_;
   CallingItems calling_;
   Scene scene_;

@@ -2,8 +2,13 @@
 // whole mechanism.
 #pragma once
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,6 +16,7 @@
 #include "formulations/faults.h"
 #include "formulations/mechanism.h"
 #include "formulations/mechanism_matrix.h"
+#include "formulations/registry.h"
 #include "formulations/torsion.h"
 
 namespace poinsot {
@@ -232,7 +238,7 @@ class MechanismProblem final : public Problem {
 
   std::string describe_unknown(int k) const override {
     const Elements& e = *mechanism_.c.elements;
-    if (k < nv_) return body_name(k / M::kV);
+    if (k < nv_) return body_name(k / M::kV) + (k % M::kV < 3 ? "" : unfit_orientation(k / M::kV));
     if (k - nv_ >= e.rows) return body_name(k - nv_ - e.rows) + " (its normalization)";
     return describe_row(*e.model, e.model_row[static_cast<std::size_t>(k - nv_)]);
   }
@@ -271,6 +277,20 @@ class MechanismProblem final : public Problem {
     if (unknown < nv_) return unknown / M::kV;
     const int row = unknown - nv_;
     return row < e.rows ? bodies_ + e.row_node[static_cast<std::size_t>(row)] : row - e.rows;
+  }
+
+  // Where the chart of a body's orientation is all but singular, so is the matrix: Bᵀ J̄ B, the square of it.
+  std::string unfit_orientation(int b) const {
+    if constexpr (F::space == CoordinateSpace::charts) {
+      constexpr double kNear = 1e-4;
+      if (std::abs(mechanism_.c.at[static_cast<std::size_t>(b)].B.determinant()) > kNear) return {};
+      std::vector<std::string_view> fit;
+      for (const FormulationEntry& other : formulations())
+        if (other.space != CoordinateSpace::charts) fit.push_back(other.name);
+      return fmt::format(", whose orientation is singular in formulation {} there, but not in {}", F::name,
+                         fmt::join(fit, ", "));
+    }
+    return {};
   }
 
   std::string body_name(int b) const { return "body '" + model().bodies[static_cast<std::size_t>(b)].name + "'"; }

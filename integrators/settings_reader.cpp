@@ -12,6 +12,7 @@
 #include "core/expression.h"
 #include "core/input_error.h"
 #include "core/json_document.h"
+#include "core/places.h"
 #include "formulations/registry.h"
 #include "integrators/integrator.h"
 #include "integrators/jacobian_policy.h"
@@ -281,8 +282,10 @@ void read_settings(const std::filesystem::path& file, Settings& settings) {
 }
 
 void parse_settings(std::string_view text, std::string_view file, Settings& settings) {
-  const JsonDocument document(text, file);
-  read_settings(document.root(), settings);
+  with_lines_of_errors(text, [&] {
+    const JsonDocument document(text, file);
+    read_settings(document.root(), settings);
+  });
 }
 
 void read_settings(const JsonValue& object, Settings& settings) {

@@ -69,7 +69,7 @@ void explain(Status& status, const Problem& problem) {
   if (status.ok()) return;
   if (const std::string fault = problem.fault(); !fault.empty()) {
     status = no_value(status.time, fault);
-  } else if (const std::string why = overflowing(problem.model()); !why.empty()) {
+  } else if (const std::string why = overflowing(problem.model(), status.time); !why.empty()) {
     status = {Failure::not_finite, status.time,
               fmt::format("at t = {:.9g} s a number overflows: {}", status.time, why)};
   }

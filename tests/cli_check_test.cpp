@@ -76,8 +76,9 @@ TEST_F(Check, AStateOffTheConstraints) {
 TEST_F(Check, RedundantConstraintsByName) {
   const Result planar = check_model("double_four_bar");
   EXPECT_EQ(planar.status, 0);
-  expect_says(planar, {"degrees of freedom: 1\n", "redundant constraints: 6 rows\n", "joint 'revolute7' (/joints/",
-                       "; its row 3 of 5) follows from", "conflicting constraints: none\n"});
+  expect_says(planar, {"joint 'revolute7' (/joints/6, line 38) leaves free: turning about its axis\n",
+                       "degrees of freedom: 1\n", "redundant constraints: 6 rows\n",
+                       "joint 'revolute7' (its row 3 of 5) follows from", "conflicting constraints: none\n"});
 
   write("twice.json",
         rod(R"({"type": "D", "name": "first", "bodies": ["ground", "rod"], "s_i": [-1,0,0], "s_j": [0,0,0], "f": 4},
@@ -109,6 +110,87 @@ TEST_F(Check, ConflictingConstraintsByName) {
   EXPECT_EQ(pulled.status, 2);
   expect_says(pulled, {"constraint 'pull' (/constraints/1, line 4) contradicts constraint 'still' (/constraints/0, "
                        "line 3): off by 1 m/s (velocity) where those hold\n"});
+}
+
+// Sound, but nobody would mean it: told by check and by run, with what it is about, where it stands and by how much.
+TEST_F(Check, WhatNobodyWouldMean) {
+  const auto scene = [](const std::string& body, const std::string& more, const char* gravity = "[0, 0, -9.81]") {
+    return fmt::format(R"({{"scene": 1, "name": "odd", "gravity": {},
+"bodies": [{{"name": "rod", "mass": 1, "inertia": [1, 1, 1], "position": [0.35, 0, 0]}},
+{}],
+{}}})",
+                       gravity, body, more);
+  };
+  const std::string arm = R"({"name": "arm", "mass": 1, "inertia": [1, 1, 1], "position": [1, 0, 0]})";
+  const std::string held = R"("joints": [{"type": "spherical", "bodies": ["ground", "rod"], "point": [0, 0, 0]},
+{"type": "spherical", "name": "upper arm", "bodies": ["rod", "arm"], "point": [)";
+  std::string ungoverned = scene(arm, held + "0.7, 0, 0]}]");
+  ungoverned.erase(ungoverned.find("\"gravity\""), 25);
+  const std::pair<std::string, std::string> cases[] = {
+      {scene(R"({"name": "disk", "mass": 1, "inertia": [1, 1, 5], "position": [1, 0, 0]})", R"("forces": [])"),
+       "body 'disk' (/bodies/1, line 3) has the principal moments 1, 1 and 5, and no body has one that exceeds"},
+      {scene(R"({"name": "ship", "mass": 1e7, "inertia": [1, 1, 1], "position": [1, 0, 0]})", R"("forces": [])"),
+       "masses are six orders of magnitude apart: 1 kg of 'rod', 1e+07 kg of 'ship'"},
+      {scene(arm, R"("joints": [{"type": "spherical", "bodies": ["rod", "arm"], "point": [0.3500001, 0, 0]}])"),
+       "lengths are six orders of magnitude apart: 'rod' is held 1e-07 m from its centre of mass, 'arm' 0.65 m"},
+      {scene(arm, held + "7.0, 0, 0]}]"),
+       "joint 'upper arm' (/joints/1, line 5) is far from its bodies: 6.65 m from 'rod' and 6 m from 'arm', where the "
+       "mechanism without it measures 0.65 m; is its point meant?"},
+      {ungoverned, "the scene has joints and says nothing of gravity, so there is none"},
+      {scene(arm, R"("forces": [{"type": "force", "name": "push", "body": "rod", "point": [0, 0, 0],
+"force": ["1e200*t + 1e200", 0, 0]}])"),
+       "force 'push' (/forces/0, line 4) has a component of 1e+200, whose square is beyond the numbers of a computer"}};
+  for (const auto& [text, sentence] : cases) {
+    SCOPED_TRACE(sentence);
+    write("odd.json", text);
+    const Result checked = poinsot({"check", "odd.json"}), ran = poinsot({"run", "odd.json", "--end", "0.01"});
+    EXPECT_EQ(checked.status, 0);
+    EXPECT_NE((checked.err + checked.out).find(sentence), std::string::npos) << checked.err << checked.out;
+    EXPECT_NE(ran.err.find(sentence), std::string::npos) << ran.err;
+    EXPECT_EQ(ran.err.find("smaller step"), std::string::npos) << ran.err;
+  }
+  expect_says(poinsot({"check", "odd.json"}), {"mass: 2 kg; extent: 0.65 x 0 x 0 m; gravity: [0, 0, -9.81] m/s2\n"});
+  write("odd.json", scene(arm, held + "0.7, 0, 0]}]"));
+  expect_says(poinsot({"check", "odd.json"}),
+              {"joint 'upper arm' (/joints/1, line 5) leaves free: turning about every"});
+}
+
+TEST_F(Check, QuantitiesWithUnitsAndPlaces) {
+  write("tie.json", rod(R"({"type": "D", "name": "tie_rod", "bodies": ["ground", "rod"], "s_i": [0,0,0],
+    "s_j": [0,0,0], "f": 1.242})"));
+  const Result tie = poinsot({"check", "tie.json"});
+  EXPECT_EQ(tie.status, 2);
+  expect_says(tie, {"initial pose: violates constraint 'tie_rod' (/constraints/0, line 3) by 0.242 m², the most"});
+  EXPECT_EQ(tie.err,
+            "poinsot: tie.json: the initial pose violates constraint 'tie_rod' (/constraints/0, line 3) by 0.114 m, "
+            "more than the 0.01 m that is put right unasked; correct the scene, or have it projected onto the "
+            "constraints with --assemble\n");
+  // The eighteenth joint.
+  std::string joints, bodies;
+  for (int k = 0; k < 18; ++k) {
+    bodies += fmt::format("{}\n{{\"name\": \"b{}\", \"mass\": 1, \"inertia\": [1, 1, 1], \"position\": [{}, 0, 0]}}",
+                          k == 0 ? "" : ",", k, k);
+    joints += fmt::format("{}\n{{\"type\": \"spherical\", {}\"bodies\": [\"ground\", \"b{}\"], \"point\": [{}, 0, 0]}}",
+                          k == 0 ? "" : ",", k == 17 ? "\"name\": \"upper arm\", " : "", k, k == 17 ? 500 : k);
+  }
+  write("long.json",
+        fmt::format("{{\"scene\": 1, \"gravity\": [0, 0, 0], \"bodies\": [{}],\n\"joints\": [{}]}}", bodies, joints));
+  EXPECT_NE(poinsot({"run", "long.json", "--end", "0.01"}).err.find("joint 'upper arm' (/joints/17, line 38)"),
+            std::string::npos);
+  write("empty.json", "");
+  EXPECT_EQ(poinsot({"check", "empty.json"}).err, "poinsot: empty.json: the file is empty\n");
+}
+
+// What comes but once has lines, too.
+TEST_F(Check, LinesOfTheStandardInputAndOfPipes) {
+  write("off.json", rod(R"({"type": "D", "name": "tie", "bodies": ["ground", "rod"], "s_i": [-1,0,0], "s_j": [0,0,0],
+                             "f": "4 - t"})"));
+  const std::string expected = "constraint 'tie' (/constraints/0, line 3) by 1 m²/s";
+  for (const char* command : {"poinsot check - < off.json > said", "cat off.json | poinsot check - > said",
+                              "mkfifo pipe; (cat off.json > pipe & poinsot check pipe > said)"}) {
+    EXPECT_EQ(shell(command), 0) << command;
+    EXPECT_NE(read("said").find(expected), std::string::npos) << command << '\n' << read("said");
+  }
 }
 
 }  // namespace

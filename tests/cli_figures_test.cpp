@@ -96,17 +96,49 @@ TEST_F(Figures, OrdersOfErrorControlledMethods) {
   EXPECT_EQ(rows, 15);
 }
 
+// Of all commands that draw, told also with --quiet.
 TEST_F(Figures, WithoutMatplotlibTheNumbersAreThere) {
+  write("pendulum.json", kPendulum);
+  write("study.json", R"({"study": 1, "scenes": ["pendulum.json"], "settings": {"end": 0.1},
+    "vary": [{"setting": "formulation", "values": ["rA", "rp"]}], "keep": ["counts"],
+    "pictures": [{"file": "steps", "title": "steps", "histogram": "steps"}]})");
   write("matplotlib.py", "raise ImportError\n");
   setenv("PYTHONPATH", folder().c_str(), 1);
-  const Result result = poinsot({"figures", "solution_deltas", "--quick", "--out", "results"});
-  unsetenv("PYTHONPATH");
   const std::string sentence =
       "no picture was drawn: that needs Python 3 with matplotlib (Debian: python3-matplotlib); the CSV is there";
-  EXPECT_EQ(result.status, 3);
-  EXPECT_EQ(result.err, "poinsot: " + sentence + "\n");
+  const std::pair<std::vector<std::string>, const char*> commands[] = {
+      {{"figures", "solution_deltas"}, "solution_deltas.csv"},
+      {{"chart", "pendulum.json", "--end", "0.1", "--cache", "cache", "--formulations", "rA", "--integrators",
+        "dop853"},
+       "pendulum.csv"},
+      {{"stability", "--family", "pulse", "--formulations", "rA", "--integrators", "dop853"}, "pulse.csv"},
+      {{"study", "study.json"}, "cases.csv"}};
+  for (auto [command, csv] : commands) {
+    SCOPED_TRACE(command[0]);
+    command.insert(command.end(), {"--quick", "--quiet", "--out", "results"});
+    const Result result = poinsot(command);
+    EXPECT_EQ(result.status, 3);
+    EXPECT_EQ(result.err, "poinsot: " + sentence + "\n");
+    EXPECT_FALSE(read(std::string("results/") + csv).empty());
+  }
+  unsetenv("PYTHONPATH");
   EXPECT_NE(read("results/figures.md").find(sentence), std::string::npos);
-  EXPECT_FALSE(read("results/solution_deltas.csv").empty());
+}
+
+TEST_F(Figures, AFamilyOfTheSuiteIsMapped) {
+  const Result result = poinsot({"stability", "--family", "pulse", "--quick", "--formulations", "rA", "--integrators",
+                                 "dop853", "--out", "results"});
+  expect_drawn(result);
+  EXPECT_NE(result.out.find("cells: "), std::string::npos) << result.out;
+  const std::vector<std::string> names = fields(lines(read("results/stability_verdicts.csv"))[0]),
+                                 counts = fields(lines(read("results/stability_verdicts.csv"))[1]);
+  ASSERT_EQ(names.back(), "cells");
+  EXPECT_EQ(counts[0], "pulse");
+  int cells = 0;
+  for (const std::string& line : lines(read("results/pulse.csv"))) cells += !line.starts_with("#");
+  EXPECT_EQ(cells - 1, std::stoi(counts.back()));
+  EXPECT_EQ(
+      poinsot({"stability", "--family", "tides"}).err.find("poinsot: --family: found \"tides\", expected one of "), 0u);
 }
 
 TEST_F(Figures, SaysWhatItDoesNotKnow) {

@@ -136,6 +136,8 @@ TEST_F(WrongInput, Configuration) {
       "[]",
       "poinsot: config.json: /: found an array of 0 values, expected a solver configuration as "
       "an object");
+  expect_configuration_refused("{\"end\": 1,\n \"step\": 0}",
+                               "poinsot: config.json: /step: found 0, expected a number greater than 0 (line 2)");
   write("config.json", "{\"step\": 1,\n \"end\" 2}");
   const Result syntax = poinsot({"run", "pendulum.json", "--config", "config.json"});
   EXPECT_EQ(syntax.status, 2);

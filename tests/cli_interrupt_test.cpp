@@ -228,6 +228,38 @@ TEST_P(Interrupted, AChartSaysThatItIsNotFinishedAndGoesOn) {
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
 }
 
+// Cells and cases that were computed are not computed again.
+TEST_P(Interrupted, StabilityAndStudyGoOnWithWhatIsThere) {
+  write("parameters.json", R"({"scene": 1, "parameters": {"l": 1}, "gravity": [0, 0, -9.81],
+    "bodies": [{"name": "rod", "mass": 3, "inertia": [1, "1/100", 1], "position": [0, "l", 0]}],
+    "joints": [{"type": "revolute", "bodies": ["ground", "rod"], "point": [0, 0, 0], "axis": [1, 0, 0]}]})");
+  write("study.json", R"({"study": 1, "scenes": ["parameters.json"], "settings": {"end": 1},
+    "vary": [{"parameter": "l", "from": 1, "to": 2, "count": 400}], "keep": [{"column": "rod.y"}]})");
+  const std::pair<std::vector<std::string>, std::string> commands[] = {
+      {{"stability", "--family", "pulse", "--formulations", "rA", "--quick", "--threads", "1", "--out", "out"},
+       "out/pulse.part"},
+      {{"study", "study.json", "--threads", "1", "--out", "out"}, "out/cases.part"}};
+  for (const auto& [command, part] : commands) {
+    SCOPED_TRACE(command[0]);
+    fs::remove_all(folder() / "out");
+    for (const int signal : {SIGTERM, SIGKILL}) {
+      const auto before = size(part);
+      const pid_t child = start(command);
+      ASSERT_TRUE(wait_for([&] { return size(part) > before + 2000; }));
+      kill(child, signal);
+      const Result result = finish(child);
+      EXPECT_EQ(result.status, signal == SIGTERM ? 143 : -1);
+      EXPECT_EQ(result.err.starts_with("poinsot: interrupted by SIGTERM"), signal == SIGTERM) << result.err;
+      EXPECT_GT(size(part), before);
+      EXPECT_EQ(leftovers(), std::vector<std::string>{});
+    }
+    const auto before = size(part);
+    const Result whole = poinsot(command);
+    EXPECT_TRUE(whole.status == 0 || whole.err.find("matplotlib") != std::string::npos) << whole.err;
+    EXPECT_GT(size(part), before);
+  }
+}
+
 // Processes that work in the folder.
 std::size_t processes(const fs::path& folder) {
   std::size_t count = 0;

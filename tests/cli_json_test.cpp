@@ -12,11 +12,6 @@ class JsonOutput : public CommandLine {
  protected:
   JsonOutput() { write("pendulum.json", kPendulum); }
 
-  int shell(const std::string& commands) const {
-    const int status = std::system(fmt::format("cd '{}' && {}", folder().string(), commands).c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
   // What a command says as JSON, of the schema.
   nlohmann::json said(std::vector<std::string> arguments, const std::string& schema, int status = 0) const {
     arguments.push_back("--json");
@@ -141,6 +136,7 @@ TEST_F(Shell, BashCompletes) {
   EXPECT_EQ(completed("poinsot run pend"), "pendulum.json\n");
   EXPECT_EQ(completed("poinsot run pendulum.json --rea"), "--reactions\n");
   EXPECT_EQ(completed("poinsot make la"), "ladder\n");
+  EXPECT_EQ(completed("poinsot stability --family pul"), "pulse\n");
 }
 
 TEST_F(Shell, TheManualHasEveryCommandAndOption) {

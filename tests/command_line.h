@@ -112,6 +112,16 @@ class CommandLine : public testing::Test {
 
   Result poinsot(const std::vector<std::string>& arguments) const { return finish(start(arguments)); }
 
+  // A command line as a shell takes it, in the folder, as the user of the test; `poinsot` is the program.
+  int shell(const std::string& command) const {
+    const std::string script = ".said.commands", as = user_ == kNobody && geteuid() == 0
+                                                          ? "setpriv --reuid=65534 --regid=65534 --clear-groups "
+                                                          : "";
+    write(script, "poinsot() { '" + program_ + "' \"$@\"; }\n" + command + "\n");
+    const int status = std::system(("cd '" + folder_.string() + "' && " + as + "bash " + script).c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
  private:
   static constexpr uid_t kNobody = 65534;
 
@@ -123,6 +133,20 @@ class CommandLine : public testing::Test {
   std::string program_ = POINSOT_PROGRAM;
   uid_t user_ = geteuid();
 };
+
+// Whether pictures can be drawn. Where they cannot, commands that draw say so and end with 3; the numbers are there.
+inline bool pictures_are_drawn() {
+  static const bool drawn =
+      std::system(
+          "(for p in python3 /usr/bin/python3; do $p -c 'import matplotlib' && exit 0; done; exit 1) "
+          "2> /dev/null") == 0;
+  return drawn;
+}
+
+inline void expect_drawn(const Result& result) {
+  EXPECT_EQ(result.status, pictures_are_drawn() ? 0 : 3) << result.err;
+  EXPECT_TRUE(pictures_are_drawn() || result.err.find("matplotlib") != std::string::npos) << result.err;
+}
 
 // A rod of 2 m on a hinge at the origin, horizontal at rest, swinging about x.
 inline const char* const kPendulum = R"({

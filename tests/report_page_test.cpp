@@ -74,6 +74,36 @@ TEST(Findings, AreMadeOfTheNumbers) {
   EXPECT_THAT(found.missing, ::testing::Contains(HasSubstr("poinsot chart --all")));
 }
 
+// rp is slower than rA beyond chance, reps is not; names of a study are no markup.
+TEST(Findings, TellWhatStudiesOfFormulationsShow) {
+  Results r = results();
+  const study::CsvTable points{
+      "speed_up", {"panel", "series", "variant", "x", "y", "low", "high"}, {{"", "rp", "", "1", "1.4", "", ""}}, {}};
+  const study::CsvTable numbers{"speed_up_table",
+                                {"formulation", "cases", "ratio", "from", "to"},
+                                {{"rp", "50", "1.305", "1.243", "1.370"}, {"reps", "50", "1.011", "0.982", "1.041"}},
+                                {}};
+  r.studies.push_back({"random/",
+                       "many <b>",
+                       "about",
+                       false,
+                       {{"time over that of rA", "speed_up", "formulation", "rA", points, numbers}}});
+  const Findings found = findings(r);
+  const auto own = std::ranges::find(found.all, "studies", &Finding::id);
+  ASSERT_NE(own, found.all.end());
+  EXPECT_THAT(own->sentences, ::testing::ElementsAre(
+                                  "many <b>; time over that of rA: rp 1.305, 95 % interval 1.243 to 1.370 (geometric "
+                                  "mean of 50 cases), above one beyond chance.",
+                                  "many <b>; time over that of rA: reps 1.011, 95 % interval 0.982 to 1.041 "
+                                  "(geometric mean of 50 cases), not to be told from one."));
+  const std::string html = page(r).html;
+  EXPECT_THAT(html, HasSubstr("<h3>many &lt;b&gt;</h3>"));
+  EXPECT_THAT(html, HasSubstr("href=\"random/speed_up_table.csv\""));
+  EXPECT_THAT(html, Not(HasSubstr("many <b>")));
+  EXPECT_THAT(page(results()).html,
+              HasSubstr("poinsot study bench/studies/random_mechanisms.json --out results/random_mechanisms"));
+}
+
 // Words with a digit, as tests/report/report_test.js would read them.
 std::set<std::string> numbers(const std::string& text) {
   std::set<std::string> found;

@@ -98,6 +98,13 @@ TEST(SceneDoubts, are_numbers_whose_squares_overflow) {
   EXPECT_THAT(scene_doubts(model), ElementsAre(overflowing(model)));
   scene.gravity[2] = -1e150;
   EXPECT_EQ(overflowing(compile(scene)), "");
+  PointForce push;
+  push.name = "push", push.body = 0;
+  push.force[1] = Expression::parse("exp(500*t)");
+  scene.forces.emplace_back(push);
+  EXPECT_EQ(overflowing(compile(scene), 0.7), "");
+  EXPECT_EQ(overflowing(compile(scene), 0.8),
+            "force 'push' has a component of 5.22e+173, whose square is beyond the numbers of a computer");
 }
 
 }  // namespace

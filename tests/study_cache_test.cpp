@@ -1,6 +1,8 @@
-// Results kept from run to run: what is found, what is not, and what a reference is kept by.
+// Results kept from run to run: what is found, what is not, and what a reference is kept by. As the user of the tests,
+// and where that is root as nobody, too.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -14,14 +16,25 @@ namespace poinsot::test {
 namespace {
 namespace fs = std::filesystem;
 
-class Kept : public testing::Test {
+class Kept : public testing::TestWithParam<const char*> {
  protected:
   Kept() {
     std::string pattern = (fs::temp_directory_path() / "poinsot-cache-XXXXXX").string();
     check(mkdtemp(pattern.data()), "a folder for the test");
     folder_ = pattern;
   }
-  ~Kept() override { fs::remove_all(folder_); }
+  ~Kept() override {
+    if (nobody_) check(seteuid(0) == 0 && setegid(0) == 0, "root again");
+    fs::remove_all(folder_);
+  }
+  void SetUp() override {
+    constexpr uid_t kNobody = 65534;
+    if (std::string_view(GetParam()) != "nobody") return;
+    if (geteuid() != 0) GTEST_SKIP() << "the tests are not run by root: as whom they run is tested";
+    ASSERT_EQ(chown(folder_.c_str(), kNobody, kNobody), 0);
+    nobody_ = true;
+    ASSERT_TRUE(setegid(kNobody) == 0 && seteuid(kNobody) == 0);
+  }
 
   study::Cache cache() const { return study::Cache(folder_ / "kept"); }
   std::size_t files() const {
@@ -31,9 +44,10 @@ class Kept : public testing::Test {
 
   fs::path folder_;
   std::vector<std::string> notices_;
+  bool nobody_ = false;
 };
 
-TEST_F(Kept, what_was_kept_is_found) {
+TEST_P(Kept, what_was_kept_is_found) {
   EXPECT_EQ(cache().find("key", notices_), std::nullopt);
   cache().keep("key", "data\nof two lines", notices_);
   EXPECT_EQ(cache().find("key", notices_), "data\nof two lines");
@@ -44,7 +58,7 @@ TEST_F(Kept, what_was_kept_is_found) {
   EXPECT_TRUE(notices_.empty());
 }
 
-TEST_F(Kept, a_damaged_file_is_none_and_is_told) {
+TEST_P(Kept, a_damaged_file_is_none_and_is_told) {
   cache().keep("key", "data", notices_);
   const fs::path file = cache().file("key");
   std::string text;
@@ -58,14 +72,14 @@ TEST_F(Kept, a_damaged_file_is_none_and_is_told) {
   }
 }
 
-TEST_F(Kept, a_file_of_another_key_is_none) {
+TEST_P(Kept, a_file_of_another_key_is_none) {
   cache().keep("key", "data", notices_);
   fs::rename(cache().file("key"), cache().file("other key"));
   EXPECT_EQ(cache().find("other key", notices_), std::nullopt);
   EXPECT_EQ(notices_.size(), 1u);
 }
 
-TEST_F(Kept, what_is_no_file_is_not_waited_for) {
+TEST_P(Kept, what_is_no_file_is_not_waited_for) {
   fs::create_directories(folder_ / "kept");
   ASSERT_EQ(mkfifo(cache().file("key").c_str(), 0600), 0);
   EXPECT_EQ(cache().find("key", notices_), std::nullopt);
@@ -75,7 +89,7 @@ TEST_F(Kept, what_is_no_file_is_not_waited_for) {
 }
 
 // With the right key and checksum, as anybody can write them.
-TEST_F(Kept, a_forged_reference_is_computed_again) {
+TEST_P(Kept, a_forged_reference_is_computed_again) {
   Scene scene;
   scene.name = "falling";
   scene.gravity = {0, 0, -9.81};
@@ -108,17 +122,24 @@ TEST_F(Kept, a_forged_reference_is_computed_again) {
   }
 }
 
-TEST_F(Kept, without_a_folder_nothing_is_kept) {
+TEST_P(Kept, without_a_folder_nothing_is_kept) {
   const study::Cache none("");
   none.keep("key", "data", notices_);
   EXPECT_EQ(none.find("key", notices_), std::nullopt);
   EXPECT_TRUE(notices_.empty());
 }
 
-TEST_F(Kept, a_folder_that_cannot_be_made_is_told) {
+TEST_P(Kept, a_folder_that_cannot_be_made_is_told) {
   std::ofstream(folder_ / "file") << "";
   study::Cache(folder_ / "file" / "kept").keep("key", "data", notices_);
-  EXPECT_THAT(notices_, testing::ElementsAre(testing::HasSubstr("the result is not kept for the next time")));
+  const auto told = testing::ElementsAre(testing::HasSubstr("the result is not kept for the next time"));
+  EXPECT_THAT(notices_, told);
+  if (geteuid() == 0) return;  // may write everywhere
+  notices_.clear();
+  fs::permissions(folder_, fs::perms(0555));
+  cache().keep("key", "data", notices_);
+  EXPECT_THAT(notices_, told);
+  fs::permissions(folder_, fs::perms(0755));
 }
 
 TEST(ReferenceKey, differs_wherever_the_result_could) {
@@ -136,9 +157,7 @@ TEST(ReferenceKey, differs_wherever_the_result_could) {
       << "no code was read";
 }
 
-using KeptReference = Kept;
-
-TEST_F(KeptReference, is_computed_once) {
+TEST_P(Kept, a_reference_is_computed_once) {
   const Scene scene = scene_of("single_pendulum_free");
   const study::ReferenceSettings settings{0.5, 0.25, 5};
   const study::Reference first = study::reference(scene, settings, cache(), notices_);
@@ -172,12 +191,14 @@ TEST_F(KeptReference, is_computed_once) {
   EXPECT_EQ(files(), 2u);
 }
 
-TEST_F(KeptReference, of_a_scene_without_text_is_not_kept) {
+TEST_P(Kept, a_reference_of_a_scene_without_text_is_not) {
   Scene scene = scene_of("single_pendulum_free");
   scene.source.clear();
   EXPECT_GE(study::reference(scene, {0.5, 0.25, 5}, cache(), notices_).given, 0);
   EXPECT_FALSE(fs::exists(folder_ / "kept"));
 }
+
+INSTANTIATE_TEST_SUITE_P(As, Kept, testing::Values("tester", "nobody"));
 
 }  // namespace
 }  // namespace poinsot::test

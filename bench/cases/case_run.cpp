@@ -11,6 +11,7 @@
 #include "bench/study/output_file.h"
 #include "core/input_error.h"
 #include "core/interruption.h"
+#include "core/places.h"
 #include "core/scene_writer.h"
 #include "integrators/simulate.h"
 
@@ -31,7 +32,7 @@ std::string fields(const Study& study, const Case& one, const Result& result, st
     text.push_back(',');
     if (k < result.values.size() && std::isfinite(result.values[k])) fmt::format_to(out, "{}", result.values[k]);
   }
-  std::string message = result.message;
+  std::string message = with_lines(result.message, scene.scene.source);
   std::ranges::replace_if(
       message, [](char c) { return c == '\n' || c == '\r'; }, ' ');
   fmt::format_to(out, ",{}", study::csv_field(message));

@@ -63,7 +63,20 @@ std::int64_t Computation::there() const {
 }
 
 void Computation::compute(const std::function<void(const ComputationProgress&)>& told) {
-  if (!options_.merge.empty()) return;
+  if (!options_.merge.empty() || complete()) return;
+  write_record(State::running);
+  try {
+    compute_rest(told);
+  } catch (const study::OutputError& full) {
+    try {
+      write_record(State::ended, full.what());
+    } catch (const study::OutputError&) {  // that of the start stands
+    }
+    throw;
+  }
+}
+
+void Computation::compute_rest(const std::function<void(const ComputationProgress&)>& told) {
   using Clock = std::chrono::steady_clock;
   References references{study::Cache(options_.cache)};
   Undone undone(selection_, table_);
@@ -94,11 +107,12 @@ void Computation::compute(const std::function<void(const ComputationProgress&)>&
 }
 
 // Where the rows came from, beside them.
-void Computation::write_record() const {
+void Computation::write_record(State state, const std::string& why) const {
   const std::int64_t rows = there();
   nlohmann::ordered_json json;
-  json["status"] = complete() ? "ok" : "interrupted";
+  json["status"] = complete() ? "ok" : state == State::running ? "running" : "interrupted";
   json["incomplete"] = !complete();
+  if (!why.empty()) json["message"] = why;
   json["cases"] = {
       {"study", study_.size()}, {"selected", selected()}, {"computed", rows}, {"failed", table_.failures()}};
   json["quick"] = options_.quick;
@@ -117,7 +131,7 @@ void Computation::write_record() const {
 }
 
 std::string Computation::conclude(std::vector<fs::path>& written) const {
-  write_record();
+  write_record(State::ended);
   if (!complete()) return "";
   if (options_.shard.places > 1) {
     written = {options_.folder / (options_.shard.name() + ".part")};

@@ -5,7 +5,8 @@
 //   std::vector<std::filesystem::path> written;
 //   if (computation.complete()) computation.conclude(written);
 //
-// Computing goes on where an earlier one in the same folder stopped. An interruption (core/interruption.h) ends it
+// Computing goes on where an earlier one in the same folder stopped. The record beside the rows says from the start on
+// that they are incomplete, and why where they could not be written. An interruption (core/interruption.h) ends it
 // after the cases under way.
 #pragma once
 
@@ -64,7 +65,9 @@ class Computation {
   std::string conclude(std::vector<std::filesystem::path>& written) const;
 
  private:
-  void write_record() const;
+  void compute_rest(const std::function<void(const ComputationProgress&)>& told);
+  enum class State { running, ended };
+  void write_record(State state, const std::string& why = "") const;
 
   ComputationOptions options_;
   Study study_;

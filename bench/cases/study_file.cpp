@@ -13,6 +13,7 @@
 #include "bench/study/cache.h"
 #include "core/input_error.h"
 #include "core/json_document.h"
+#include "core/places.h"
 #include "core/scene_generator.h"
 #include "core/scene_writer.h"
 #include "integrators/settings_reader.h"
@@ -253,8 +254,7 @@ void find_columns(Study& study, const JsonValue& root) {
   }
 }
 
-Study parse(std::string_view text, std::string_view file, const SceneOf& scene_of) {
-  const JsonDocument document(text, file);
+Study parse_document(const JsonDocument& document, const SceneOf& scene_of) {
   const JsonValue root = document.root();
   root.keys("a study", {"$schema", "study", "name", "about", "seed", "scenes", "settings", "vary", "repetitions",
                         "keep", "pictures"});
@@ -289,6 +289,12 @@ Study parse(std::string_view text, std::string_view file, const SceneOf& scene_o
   columns.insert(columns.end(), varied.begin(), varied.end());
   columns.insert(columns.end(), {"case", "scene", "bodies"});
   study.pictures = read_pictures(root, columns, study.kept);
+  return study;
+}
+
+Study parse(std::string_view text, std::string_view file, const SceneOf& scene_of) {
+  Study study;
+  with_lines_of_errors(text, [&] { study = parse_document(JsonDocument(text, file), scene_of); });
   return study;
 }
 

@@ -126,6 +126,38 @@ Finding matched(const Table& table, Ledger& ledger) {
   return finding;
 }
 
+// Of studies that compare the formulations: geometric means over their cases, as bench/cases/pictures.h makes them.
+Finding studies(const std::vector<StudyResults>& all, Ledger& ledger) {
+  Finding finding{"studies", fmt::format("Beyond the paper's mechanisms: {} against the others", kSubject), {}};
+  ledger.begin(finding.id);
+  std::string confidence;
+  for (const StudyResults& study : all)
+    for (const StudyPicture& picture : study.pictures) {
+      if (picture.by != "formulation" || picture.to != kSubject) continue;
+      const CsvTable& t = picture.numbers;
+      const std::array columns{t.column(picture.by), t.column("cases"), t.column("ratio"), t.column("from"),
+                               t.column("to")};
+      if (std::ranges::min(columns) < 0) continue;
+      for (const auto& row : t.rows) {
+        const auto field = [&](std::size_t k) -> const std::string& {
+          return row[static_cast<std::size_t>(columns[k])];
+        };
+        if (confidence.empty()) confidence = ledger.text("confidence of the intervals, %", "95");
+        const auto said = [&](const char* what, std::size_t k) {
+          return ledger.text(fmt::format("{}, {}, {}: {}", study.name, picture.title, field(0), what), field(k));
+        };
+        finding.sentences.push_back(
+            fmt::format("{}; {}: {} {}, {} % interval {} to {} (geometric mean of {} cases{}), {}.", study.name,
+                        picture.title, field(0), said("ratio", 2), confidence, said("from", 3), said("to", 4),
+                        said("cases", 1), study.incomplete ? " of an incomplete study" : "",
+                        csv_number(field(3)) > 1   ? "above one beyond chance"
+                        : csv_number(field(4)) < 1 ? "below one beyond chance"
+                                                   : "not to be told from one"));
+      }
+    }
+  return finding;
+}
+
 Finding choices(const std::vector<const CsvTable*>& charts) {
   Finding finding{"choice", "Which method for which accuracy", {}};
   for (const CsvTable* chart : charts)
@@ -147,9 +179,10 @@ std::vector<std::string> other_formulations() {
 Findings findings(const Results& results) {
   Findings found;
   Ledger ledger;
-  const auto keep = [&](Finding finding, const char* command) {
+  const auto keep = [&](Finding finding, const char* command, const char* within = "") {
     if (finding.sentences.empty())
-      found.missing.push_back(fmt::format("{}: poinsot {} --out {}", finding.title, command, results.folder.string()));
+      found.missing.push_back(
+          fmt::format("{}: poinsot {} --out {}{}", finding.title, command, results.folder.string(), within));
     else
       found.all.push_back(std::move(finding));
   };
@@ -164,6 +197,7 @@ Findings findings(const Results& results) {
   const Table at_matched_error = matched_table(charts);
   keep(matched(at_matched_error, ledger), "chart --all --quick");
   keep(claims(results, all, ledger), "tables");
+  keep(studies(results.studies, ledger), "study bench/studies/random_mechanisms.json", "/random_mechanisms");
   keep(choices(charts), "chart --all --quick");
   if (!all.empty()) found.tables.push_back(ratios_table(all));
   if (!at_matched_error.rows.empty()) found.tables.push_back(at_matched_error);

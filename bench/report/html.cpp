@@ -39,7 +39,8 @@ std::string link(std::string_view file, std::string_view text) {
   std::string address;
   for (const char c : file) {
     const auto u = static_cast<unsigned char>(c);
-    address += std::isalnum(u) || c == '_' || c == '-' || c == '.' ? std::string(1, c) : fmt::format("%{:02X}", u);
+    address +=
+        std::isalnum(u) || c == '_' || c == '-' || c == '.' || c == '/' ? std::string(1, c) : fmt::format("%{:02X}", u);
   }
   return fmt::format("<a href=\"{}\">{}</a>", address, escape(text));
 }

@@ -9,7 +9,7 @@
 namespace poinsot::report {
 
 std::string escape(std::string_view text);
-// Of a file beside the page.
+// Of a file beside the page, or in a folder beside it.
 std::string link(std::string_view file, std::string_view text);
 
 // Columns of numbers are sorted as numbers; where `header` buttons do it is told by the page's script.

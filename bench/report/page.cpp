@@ -94,6 +94,29 @@ std::string charts_block(const Results& results, std::set<std::string>& used) {
   return html.empty() ? missing_block(results, "work-precision charts", "chart --all --quick") : html;
 }
 
+std::string studies_block(const Results& results, std::set<std::string>& used) {
+  std::string html;
+  for (const StudyResults& study : results.studies) {
+    html += fmt::format("<h3>{}</h3>\n<p>{}{}</p>\n", escape(study.name), escape(study.about),
+                        study.incomplete ? " The study is incomplete." : "");
+    for (const StudyPicture& picture : study.pictures) {
+      const std::string file = study.folder + picture.file;
+      for (const char* suffix : {"", "_table"}) used.insert(file + suffix);
+      html += fmt::format("<h4>{}</h4>\n", escape(picture.title)) + panels_html(picture.points, picture.title) +
+              fmt::format("<p class=\"source\">{}</p>\n", link(file + ".csv", file + ".csv")) +
+              table_block(picture.title, file + "_table.csv", picture.numbers.header, picture.numbers.rows, "");
+    }
+    used.insert(study.folder + "cases");
+    html += fmt::format("<p class=\"source\">Every case: {}</p>\n",
+                        link(study.folder + "cases.csv", study.folder + "cases.csv"));
+  }
+  return html.empty() ? fmt::format(
+                            "<p class=\"missing\">Missing: studies. <code>poinsot study FILE --out {}/NAME</code> "
+                            "makes one.</p>\n",
+                            escape(results.folder.string()))
+                      : html;
+}
+
 std::string findings_block(const Findings& found) {
   std::string html;
   for (const Finding& finding : found.all) {
@@ -180,7 +203,8 @@ Page page(const Results& results) {
     nav += fmt::format("<li><a href=\"#s-{}\">{}</a></li>", s.id, escape(s.title));
     body += section(s.id, s.title, own);
   }
-  nav += "<li><a href=\"#s-origin\">Origin</a></li>";
+  nav += "<li><a href=\"#s-studies\">Studies</a></li><li><a href=\"#s-origin\">Origin</a></li>";
+  body += section("studies", "Studies", studies_block(results, used));
   std::string origin = origin_block(results);
   if (results.find("raw"))
     origin += fmt::format("<p class=\"source\">Every repetition: {}</p>\n", link("raw.csv", "raw.csv"));
@@ -207,6 +231,7 @@ Page page(const Results& results) {
       nav, body, kScript);
   page.tables = found.tables;
   page.tables.push_back(contents_table());
+  if (!results.studies.empty()) page.tables.push_back(studies_table(results.studies));
   for (const auto& [key, value] : origins(results)) page.foot.push_back(fmt::format("{}: {}", key, value));
   return page;
 }

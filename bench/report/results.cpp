@@ -24,13 +24,13 @@ Results read_results(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error))
     throw InputError(fmt::format("{}: expected a folder of results", folder.string()));
-  Results results{folder, {}};
+  Results results{folder, {}, read_studies(folder)};
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().stem().string();
     if (entry.path().extension() == ".csv" && entry.is_regular_file() && !name.starts_with(kOwn))
       results.tables.emplace(name, study::read_csv(entry.path()));
   }
-  if (results.tables.empty())
+  if (results.tables.empty() && results.studies.empty())
     throw InputError(fmt::format("{}: found no CSV file, expected what `poinsot tables --out {}` writes",
                                  folder.string(), folder.string()));
   return results;

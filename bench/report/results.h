@@ -1,4 +1,4 @@
-// A folder of results: the tables that `poinsot tables`, `figures`, `scale` and `chart` left there.
+// A folder of results: the tables that `poinsot tables`, `figures`, `scale` and `chart` left there, and studies.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/report/studies.h"
 #include "bench/study/csv.h"
 
 namespace poinsot::report {
@@ -16,6 +17,7 @@ inline constexpr std::string_view kOwn = "report_";
 struct Results {
   std::filesystem::path folder;
   std::map<std::string, study::CsvTable> tables;  // by the name of the file, without extension
+  std::vector<StudyResults> studies = {};
 
   const study::CsvTable* find(const std::string& name) const;  // nullptr where there is none
   std::vector<const study::CsvTable*> charts() const;

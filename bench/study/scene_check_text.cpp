@@ -158,8 +158,7 @@ std::string check_text(const SceneCheck& found) {
   add_doubt(text, found);
   add_state(text, found);
   if (!found.rank.conflicts.empty() || !found.refusal.empty()) return text;
-  if (!found.consistent())
-    for (const std::string& notice : found.start.notices) add(text, "  {}\n", printable(notice));
+  for (const std::string& notice : found.start.notices) add(text, "  {}\n", printable(notice));
   add_derivatives(text, found);
   return text;
 }

@@ -25,6 +25,13 @@ function make() {
   poinsot("tables", "--quick", "--repetitions", "2", "--quiet", "--out", folder, "--models", join(source, "models"));
   poinsot("chart", evil, join(source, "models/single_pendulum.json"), "--quick", "--end", "0.5", "--quiet", "--out", folder,
           "--cache", join(folder, "../cache"), "--integrators", "implicit_euler,dop853");
+  const study = join(folder, "..", "study.json");
+  writeFileSync(study, JSON.stringify({ study: 1, name: EVIL, about: "two mechanisms", repetitions: 2,
+    scenes: ["single_pendulum", "double_pendulum"].map((name) => join(source, `models/${name}.json`)),
+    settings: { integrator: "implicit_euler", step: 1e-3, end: 0.02 }, vary: [{ setting: "formulation", values: ["rA", "rp"] }],
+    keep: ["seconds"], pictures: [{ file: "speed_up", title: "time over that of rA",
+                                    ratio: { of: "seconds", by: "formulation", to: "rA", over: "bodies" } }] }));
+  poinsot("study", study, "--quiet", "--out", join(folder, "small"));
 }
 
 // Fields of a CSV file, and all its text.
@@ -51,7 +58,7 @@ async function holdsTheTables(page) {
 // Every word with a digit that the page shows, but for the ticks of axes, stands in a file beside it.
 async function saysNothingOfItsOwn(page) {
   const words = (text) => new Set((text.match(/[\w.+\-−]*\d[\w.+\-]*/g) ?? []).map((word) => word.replace(/[.-]+$/, "")));
-  const known = words(readdirSync(folder).filter((file) => file.endsWith(".csv")).map((file) => `${readFileSync(join(folder, file), "utf8")}\n${file}`).join("\n"));
+  const known = words(readdirSync(folder, { recursive: true }).filter((file) => file.endsWith(".csv")).map((file) => `${readFileSync(join(folder, file), "utf8")}\n${file}`).join("\n"));
   const shown = words(await page.evaluate(() => {
     const copy = document.body.cloneNode(true), words = [];
     for (const one of copy.querySelectorAll("script, .tick")) one.remove();
@@ -96,7 +103,10 @@ try {
         await holdsTheTables(page);
         await saysNothingOfItsOwn(page);
         expect(await page.evaluate(() => window.hacked === undefined && document.querySelectorAll("img").length === 0), "no name becomes markup");
-        if (!given) expect((await page.locator("h3").allTextContents()).includes(EVIL), "a scene's name stands as it is");
+        if (!given) {
+          expect((await page.locator("h3").allTextContents()).filter((text) => text === EVIL).length === 2, "the names of a scene and of a study stand as they are");
+          expect((await page.locator("section[aria-labelledby=studies] li").count()) === 1, "what a study of formulations shows is a finding");
+        }
         expect(await page.locator("svg[role=img]:not([aria-label])").count() === 0, "every picture has a text");
         await works(page);
       }
@@ -106,8 +116,9 @@ try {
       }
       await close(what);
     }
-  const { page, close } = await openPage(browser, report, { width: 1000 });
+  const { page, close } = await openPage(browser, report, { width: 1000, dark: true });
   await page.emulateMedia({ media: "print" });
+  expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor) === "rgb(255, 255, 255)", "paper is light");
   expect(await page.locator("nav").isHidden(), "navigation is not printed");
   if (shots) await page.pdf({ path: join(shots, "report.pdf"), format: "A4" });
   await close("print");

@@ -146,6 +146,10 @@ async function keys(looker) {
     seen.add(await page.evaluate(() => document.activeElement.id || document.activeElement.textContent));
   }
   for (const id of ["canvas", "play", "time", "speed", "repeat", "bodies", "point", "trace"]) expect(seen.has(id), `Tab reaches ${id}`);
+  await page.emulateMedia({ media: "print", colorScheme: "dark" });
+  expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor) === "rgb(255, 255, 255)", "paper is light");
+  for (const id of ["play", "views", "trace"]) expect(await page.locator(`#${id}`).isHidden(), `${id} is not printed`);
+  for (const id of ["canvas", "clock", "bodies"]) expect(await page.locator(`#${id}`).isVisible(), `${id} is printed`);
   return looker.close("the page at 800 pixels");
 }
 

@@ -160,7 +160,7 @@ function start() {
     transport.seek(time);
   });
 
-  const scheme = matchMedia("(prefers-color-scheme: dark)");
+  const scheme = matchMedia("screen and (prefers-color-scheme: dark)");
   const paint = () => {
     const colours = stage.theme(scheme.matches);
     for (const mechanism of mechanisms) mechanism.paint(colours);

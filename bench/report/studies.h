@@ -1,0 +1,32 @@
+// Studies among the results (bench/cases): in the folder itself, or in folders of it, as `poinsot study FILE --out
+// FOLDER/NAME` leaves them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bench/study/csv.h"
+#include "bench/study/report.h"
+
+namespace poinsot::report {
+
+struct StudyPicture {
+  std::string title, file;          // the file within the study's folder, without extension
+  std::string by, to;               // of a ratio: the setting, and the value of it that the others are compared with
+  study::CsvTable points, numbers;  // what is drawn, and the table beside it
+};
+
+struct StudyResults {
+  std::string folder;  // within that of the results: "", "random_mechanisms/"
+  std::string name, about;
+  bool incomplete = false;
+  std::vector<StudyPicture> pictures;  // those that are there
+};
+
+// Throws InputError where a record or a table cannot be read.
+std::vector<StudyResults> read_studies(const std::filesystem::path& folder);
+// report_studies.csv
+study::Table studies_table(const std::vector<StudyResults>& studies);
+
+}  // namespace poinsot::report
