@@ -103,9 +103,17 @@ class Expression {
   }
   void switches(double t, std::span<double> values) const { switches({t, 0, 0}, values); }
 
-  // Whether a switch may change its sign between these times; where not, none does.
-  bool may_switch(double from, double to) const {
-    return switch_count() > 0 && tape_may_switch(parsed_->tape, from, to);
+  // Whether f jumps at the switch k, or has a kink.
+  bool switch_jumps(int k) const { return !constant_ && tape_switch_jumps(parsed_->tape, k); }
+  // Bounds of the switch k over a stretch of time; see core/expression_range.h.
+  Bounds switch_range(int k, const Arguments<Bounds>& at) const {
+    return constant_ ? Bounds::unknown() : tape_switch_range(parsed_->tape, at, k);
+  }
+  // Bounds of f, ḟ and f̈ likewise. Of a function of the program nothing is known.
+  Jet2<Bounds> range(const Arguments<Bounds>& at) const {
+    if (constant_) return {{value_, value_}, {}, {}};
+    if (parsed_->function) return {Bounds::unknown(), Bounds::unknown(), Bounds::unknown()};
+    return tape_range(parsed_->tape, at);
   }
 
   // Why f, or one of its first `derivatives` derivatives with time, is not finite at t, as a sentence's part:

@@ -2,170 +2,195 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace poinsot {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // of a function, relative
+using Jet = Jet2<Bounds>;
 
-struct Range {
-  double least, most;
+// φ, φ' and φ'' of a function of one argument.
+struct Taylor {
+  Bounds value, first, second;
 };
-constexpr Range kAll{-kInfinity, kInfinity};
 
-// Exact results are rounded; those of functions by more. What is not a number could be anything.
-Range widened(double least, double most) {
-  if (!(least <= most)) return kAll;
-  return {least - kRounding * std::abs(least), most + kRounding * std::abs(most)};
-}
+constexpr Taylor kUnbounded{Bounds::all(), Bounds::all(), Bounds::all()};
 
-template <class F>
-Range rising(Range x, F f) {
-  return widened(f(x.least), f(x.most));
-}
-
-Range product(Range x, Range y) {
-  double least = kInfinity, most = -kInfinity;
-  for (const double a : {x.least, x.most}) {
-    for (const double b : {y.least, y.most}) {
-      const double ab = a == 0 || b == 0 ? 0 : a * b;
-      least = std::min(least, ab), most = std::max(most, ab);
-    }
-  }
-  return widened(least, most);
-}
-
-Range reciprocal(Range x) {
-  return x.least > 0 || x.most < 0 ? widened(1 / x.most, 1 / x.least) : kAll;
-}
-
-// sin, or cos as sin a quarter turn on.
-Range sine(Range x) {
-  constexpr double turn = 2 * std::numbers::pi;
-  if (!(x.most - x.least < turn) || !(std::abs(x.least) < 1e8)) return {-1, 1};
-  const auto passes = [&](double peak) {  // up to rounding
-    const double slack = kRounding * (1 + std::abs(x.least) + std::abs(x.most));
-    return peak + turn * std::ceil((x.least - slack - peak) / turn) <= x.most + slack;
-  };
-  const auto [least, most] = std::minmax({std::sin(x.least), std::sin(x.most)});
-  const double slack = kRounding * (1 + std::abs(x.least) + std::abs(x.most));
-  return {passes(-std::numbers::pi / 2) ? -1 : least - slack, passes(std::numbers::pi / 2) ? 1 : most + slack};
-}
-
-Range magnitude(Range x) {
-  const double most = std::max(std::abs(x.least), std::abs(x.most));
-  return {x.least <= 0 && x.most >= 0 ? 0 : std::min(std::abs(x.least), std::abs(x.most)), most};
-}
-
-Range constant_power(Range x, double n) {
-  if (n < 0) return reciprocal(constant_power(x, -n));
-  const auto power = [n](double a) { return std::pow(a, n); };
-  if (n != std::floor(n)) return x.most < 0 ? kAll : rising({std::max(x.least, 0.0), x.most}, power);
-  return std::fmod(n, 2) == 0 ? rising(magnitude(x), power) : rising(x, power);
-}
-
-Range power(Range x, Range y) {  // exp(y log x)
-  if (!(x.least > 0)) return kAll;
-  const Range exponent = product(y, rising(x, [](double a) { return std::log(a); }));
-  return rising(exponent, [](double a) { return std::exp(a); });
-}
-
-// Taylor's formula about the middle.
-Range of_table(const Spline& table, Range x) {
+// The cubic's value and slope in the middle, its second derivative throughout.
+Taylor of_table(const Spline& table, Bounds x) {
   const double middle = x.least + (x.most - x.least) / 2, r = (x.most - x.least) / 2;
   const Jet2<double> f = table.at(Jet2<double>{middle, 1, 0});
-  const double off = std::abs(f.fd) * r + table.largest_second_derivative() * r * r / 2;
-  return widened(f.f - off, f.f + off);
+  const Bounds M = table.second_derivative(x.least, x.most);
+  const double bend = std::max(std::abs(M.least), std::abs(M.most)), off = std::abs(f.fd) * r + bend * r * r / 2;
+  return {widened(f.f - off, f.f + off), widened(f.fd - bend * r, f.fd + bend * r), widened(M.least, M.most)};
 }
 
-Range function(const TapeInstruction& instruction, Range x) {
+Taylor of_arc(Bounds x, bool sine) {
+  const Bounds inside{std::clamp(x.least, -1.0, 1.0), std::clamp(x.most, -1.0, 1.0)};
+  const Bounds rest = (Bounds{1, 1} - inside) * (Bounds{1, 1} + inside);
+  const Bounds first =
+      reciprocal(rising({std::max(rest.least, 0.0), rest.most}, [](double a) { return std::sqrt(a); }));
+  const Bounds second = inside * first * reciprocal(rest);
+  if (sine) return {rising(inside, [](double a) { return std::asin(a); }), first, second};
+  return {rising(-inside, [](double a) { return std::acos(-a); }), -first, -second};
+}
+
+Taylor function(const TapeInstruction& instruction, Bounds x) {
+  constexpr Bounds one{1, 1}, level{0, 0};
   switch (instruction.op) {
     case TapeOp::negate:
-      return {-x.most, -x.least};
+      return {-x, -one, level};
     case TapeOp::sin:
-      return sine(x);
+      return {sine(x), cosine(x), -sine(x)};
     case TapeOp::cos:
-      return sine({x.least + std::numbers::pi / 2, x.most + std::numbers::pi / 2});
+      return {cosine(x), -sine(x), -cosine(x)};
+    case TapeOp::tan: {
+      const Bounds c = cosine(x);
+      if (c.least <= 0 && c.most >= 0) return kUnbounded;
+      const Bounds f = rising(x, [](double a) { return std::tan(a); }), first = one + square(f);
+      return {f, first, 2 * (f * first)};
+    }
     case TapeOp::asin:
-      return rising({std::max(x.least, -1.0), std::min(x.most, 1.0)}, [](double a) { return std::asin(a); });
     case TapeOp::acos:
-      return rising({-std::min(x.most, 1.0), -std::max(x.least, -1.0)}, [](double a) { return std::acos(-a); });
-    case TapeOp::atan:
-      return rising(x, [](double a) { return std::atan(a); });
+      return of_arc(x, instruction.op == TapeOp::asin);
+    case TapeOp::atan: {
+      const Bounds first = reciprocal(one + square(x));
+      return {rising(x, [](double a) { return std::atan(a); }), first, -2 * (x * square(first))};
+    }
     case TapeOp::sinh:
-      return rising(x, [](double a) { return std::sinh(a); });
-    case TapeOp::cosh:
-      return rising(magnitude(x), [](double a) { return std::cosh(a); });
-    case TapeOp::tanh:
-      return rising(x, [](double a) { return std::tanh(a); });
-    case TapeOp::exp:
-      return rising(x, [](double a) { return std::exp(a); });
-    case TapeOp::log:
-      return x.least > 0 ? rising(x, [](double a) { return std::log(a); }) : kAll;
-    case TapeOp::sqrt:
-      return rising({std::max(x.least, 0.0), x.most}, [](double a) { return std::sqrt(a); });
+    case TapeOp::cosh: {
+      const Bounds s = rising(x, [](double a) { return std::sinh(a); });
+      const Bounds c = rising(magnitude(x), [](double a) { return std::cosh(a); });
+      return instruction.op == TapeOp::sinh ? Taylor{s, c, s} : Taylor{c, s, c};
+    }
+    case TapeOp::tanh: {
+      const Bounds f = rising(x, [](double a) { return std::tanh(a); });
+      const Bounds first = reciprocal(square(rising(magnitude(x), [](double a) { return std::cosh(a); })));
+      return {f, first, -2 * (f * first)};
+    }
+    case TapeOp::exp: {
+      const Bounds f = rising(x, [](double a) { return std::exp(a); });
+      return {f, f, f};
+    }
+    case TapeOp::log: {
+      const Bounds first = reciprocal(x);
+      return x.least > 0 ? Taylor{rising(x, [](double a) { return std::log(a); }), first, -square(first)} : kUnbounded;
+    }
+    case TapeOp::sqrt: {
+      const Bounds f = rising({std::max(x.least, 0.0), x.most}, [](double a) { return std::sqrt(a); });
+      const Bounds first = reciprocal(2 * f);
+      return {f, first, -(first * reciprocal(2 * x))};
+    }
     case TapeOp::abs:
-      return magnitude(x);
+      return {magnitude(x), x.least >= 0 ? one : x.most <= 0 ? -one : Bounds{-1, 1}, level};
     case TapeOp::sign:
-      return {x.least < 0 ? -1.0 : x.least > 0 ? 1.0 : 0.0, x.most > 0 ? 1.0 : x.most < 0 ? -1.0 : 0.0};
+      return {{x.least < 0 ? -1.0 : x.least > 0 ? 1.0 : 0.0, x.most > 0 ? 1.0 : x.most < 0 ? -1.0 : 0.0}, level, level};
     case TapeOp::step:
-      return {x.least >= 0 ? 1.0 : 0.0, x.most >= 0 ? 1.0 : 0.0};
+      return {{x.least >= 0 ? 1.0 : 0.0, x.most >= 0 ? 1.0 : 0.0}, level, level};
     case TapeOp::table:
       return of_table(*instruction.table, x);
-    case TapeOp::power_constant:
-      return constant_power(x, instruction.value);
-    default:  // tan
-      return kAll;
+    default: {  // a constant exponent
+      const double n = instruction.value;
+      const Bounds second = n == 1 ? level : (n * (n - 1)) * power(x, n - 2);
+      return {power(x, n), n == 0 ? level : n * power(x, n - 1), n == 0 ? level : second};
+    }
   }
 }
 
-Range operation(TapeOp op, Range x, Range y) {
+Jet after(const Jet& x, const Taylor& f) {
+  return {f.value, f.first * x.fd, f.second * square(x.fd) + f.first * x.fdd};
+}
+
+Jet operator*(const Jet& x, const Jet& y) {
+  return {x.f * y.f, x.fd * y.f + x.f * y.fd, x.fdd * y.f + 2 * (x.fd * y.fd) + x.f * y.fdd};
+}
+
+// f = atan2(y, x): ḟ (x² + y²) = ẏ x − y ẋ, and that differentiated.
+Jet angle(const Jet& y, const Jet& x) {
+  const Bounds per_square = reciprocal(square(x.f) + square(y.f));
+  const Bounds first = (x.f * y.fd - y.f * x.fd) * per_square, half = x.f * x.fd + y.f * y.fd;
+  return {{-std::numbers::pi, std::numbers::pi}, first, (x.f * y.fdd - y.f * x.fdd - 2 * (first * half)) * per_square};
+}
+
+Bounds lesser(Bounds x, Bounds y) {
+  return {std::min(x.least, y.least), std::min(x.most, y.most)};
+}
+
+Jet operation(TapeOp op, const Jet& x, const Jet& y) {
   switch (op) {
     case TapeOp::add:
-      return widened(x.least + y.least, x.most + y.most);
+      return {x.f + y.f, x.fd + y.fd, x.fdd + y.fdd};
     case TapeOp::subtract:
-      return widened(x.least - y.most, x.most - y.least);
+      return {x.f - y.f, x.fd - y.fd, x.fdd - y.fdd};
     case TapeOp::multiply:
-      return product(x, y);
-    case TapeOp::divide:
-      return product(x, reciprocal(y));
-    case TapeOp::power:
-      return power(x, y);
+      return x * y;
+    case TapeOp::divide: {
+      const Bounds per = reciprocal(y.f);
+      return x * after(y, {per, -square(per), 2 * (per * square(per))});
+    }
+    case TapeOp::power: {  // exp(y log x)
+      if (!(x.f.least > 0)) return {Bounds::all(), Bounds::all(), Bounds::all()};
+      const Bounds first = reciprocal(x.f);
+      const Jet g = y * after(x, {rising(x.f, [](double a) { return std::log(a); }), first, -square(first)});
+      const Bounds f = power(x.f, y.f);
+      return after(g, {f, f, f});
+    }
     case TapeOp::atan2:
-      return widened(-std::numbers::pi, std::numbers::pi);
-    case TapeOp::min:
-      return {std::min(x.least, y.least), std::min(x.most, y.most)};
-    default:
-      return {std::max(x.least, y.least), std::max(x.most, y.most)};
+      return angle(x, y);
+    default: {  // min, max
+      const bool least = op == TapeOp::min;
+      if (x.f.most < y.f.least) return least ? x : y;
+      if (y.f.most < x.f.least) return least ? y : x;
+      return {least ? lesser(x.f, y.f) : -lesser(-x.f, -y.f), hull(x.fd, y.fd), hull(x.fdd, y.fdd)};
+    }
   }
 }
 
-bool may_change_sign(Range x) {
-  return x.least <= 0 && x.most >= 0 && !(x.least == 0 && x.most == 0);
+// watch(instruction, x, y) sees every function and operator before it is applied, until it returns true.
+template <class Watch>
+Jet run(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, Watch watch) {
+  constexpr Jet unknown{Bounds::unknown(), Bounds::unknown(), Bounds::unknown()};
+  Jet stack[kTapeStack];
+  Jet* top = stack;  // one past the topmost value
+  for (const TapeInstruction& instruction : tape) {
+    if (instruction.op == TapeOp::constant) {
+      *top++ = {{instruction.value, instruction.value}, {}, {}};
+    } else if (arity(instruction.op) == 0) {
+      const bool time = instruction.op == TapeOp::time;
+      *top++ = {time ? at.t : instruction.op == TapeOp::rate ? at.v : at.x, time ? Bounds{1, 1} : Bounds{}, {}};
+    } else if (arity(instruction.op) == 1) {
+      if (watch(instruction, top[-1].f, Bounds{})) break;
+      top[-1] = top[-1].f.is_unknown() ? unknown : after(top[-1], function(instruction, top[-1].f));
+    } else {
+      if (watch(instruction, top[-2].f, top[-1].f)) break;
+      const bool known = !top[-2].f.is_unknown() && !top[-1].f.is_unknown();
+      top[-2] = known ? operation(instruction.op, top[-2], top[-1]) : unknown;
+      --top;
+    }
+  }
+  return stack[0];
 }
 
 }  // namespace
 
-bool tape_may_switch(std::span<const TapeInstruction> tape, double from, double to) {
-  Range stack[kTapeStack];
-  Range* top = stack;  // one past the topmost value
-  for (const TapeInstruction& instruction : tape) {
-    if (instruction.op == TapeOp::constant) {
-      *top++ = {instruction.value, instruction.value};
-    } else if (arity(instruction.op) == 0) {
-      *top++ = instruction.op == TapeOp::time ? Range{from, to} : kAll;
-    } else if (arity(instruction.op) == 1) {
-      if (has_switch(instruction.op) && may_change_sign(top[-1])) return true;
-      top[-1] = function(instruction, top[-1]);
-    } else {
-      if (has_switch(instruction.op) && may_change_sign(operation(TapeOp::subtract, top[-2], top[-1]))) return true;
-      top[-2] = operation(instruction.op, top[-2], top[-1]);
-      --top;
-    }
-  }
+Jet2<Bounds> tape_range(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at) {
+  return run(tape, at, [](const TapeInstruction&, Bounds, Bounds) { return false; });
+}
+
+Bounds tape_switch_range(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, int k) {
+  Bounds found = Bounds::unknown();
+  run(tape, at, [&](const TapeInstruction& instruction, Bounds x, Bounds y) {
+    if (!has_switch(instruction.op) || k-- > 0) return false;
+    const bool known = !x.is_unknown() && !y.is_unknown();
+    if (known) found = arity(instruction.op) == 1 ? x : x - y;
+    return true;
+  });
+  return found;
+}
+
+bool tape_switch_jumps(std::span<const TapeInstruction> tape, int k) {
+  for (const TapeInstruction& instruction : tape)
+    if (has_switch(instruction.op) && k-- == 0) return instruction.op == TapeOp::sign || instruction.op == TapeOp::step;
   return false;
 }
 

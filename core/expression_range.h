@@ -1,16 +1,24 @@
-// Where an expression's switches can change sign: its tape evaluated on intervals of time.
+// Bounds of an expression over a stretch of time, with its first two derivatives, and of its switches: its tape
+// evaluated on intervals (core/bounds.h).
 //
-// Every value of the stack machine is an interval that holds all the values taken over the stretch of time, widened by
-// what rounding adds. A switch whose interval is on one side of zero, or is zero throughout, does not change sign
-// there.
+// The variables are intervals, x and v of a law unknown where nothing is said of them; what depends on them is unknown
+// then. A switch whose interval is on one side of zero, or is zero throughout, does not change sign there. The
+// interval of a single time is as wide as rounding leaves a value uncertain.
 #pragma once
 
 #include <span>
 
+#include "core/bounds.h"
 #include "core/expression_tape.h"
 
 namespace poinsot {
 
-bool tape_may_switch(std::span<const TapeInstruction> tape, double from, double to);
+Jet2<Bounds> tape_range(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at);
+
+// Of the switch k, in the order of the tape.
+Bounds tape_switch_range(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, int k);
+
+// Whether f jumps there: a sign or a step.
+bool tape_switch_jumps(std::span<const TapeInstruction> tape, int k);
 
 }  // namespace poinsot

@@ -35,7 +35,6 @@ Spline::Spline(std::string name, std::vector<double> x, const std::vector<double
   for (std::size_t k = 0; k + 1 < x_.size(); ++k) {
     const double h = x_[k + 1] - x_[k];
     check(h > 0, "the points of a table are in order");
-    largest_second_derivative_ = std::max({largest_second_derivative_, std::abs(M[k]), std::abs(M[k + 1])});
     intervals_.push_back(
         {y[k], (y[k + 1] - y[k]) / h - h * (2 * M[k] + M[k + 1]) / 6, M[k] / 2, (M[k + 1] - M[k]) / (6 * h)});
   }
@@ -45,6 +44,21 @@ bool Spline::covers(double x) const {
   constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
   const double slack = kRounding * std::max(std::abs(first()), std::abs(last()));
   return x >= first() - slack && x <= last() + slack;
+}
+
+// Linear between the points.
+Bounds Spline::second_derivative(double from, double to) const {
+  const auto interval = [this](double x) {
+    return static_cast<std::size_t>(std::upper_bound(x_.begin() + 1, x_.end() - 1, x) - x_.begin()) - 1;
+  };
+  Bounds bounds{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (std::size_t k = interval(from), last = interval(to); k <= last; ++k) {
+    for (const double x : {std::max(from, x_[k]), std::min(to, x_[k + 1])}) {
+      const double M = 6 * intervals_[k].d * (x - x_[k]) + 2 * intervals_[k].c;
+      bounds = {std::min(bounds.least, M), std::max(bounds.most, M)};
+    }
+  }
+  return bounds;
 }
 
 template <class T>

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bounds.h"
 #include "core/jet.h"
 
 namespace poinsot {
@@ -24,7 +25,7 @@ class Spline {
   double last() const { return x_.back(); }
   // To within rounding, as the times of a run are that end where the table does.
   bool covers(double x) const;
-  double largest_second_derivative() const { return largest_second_derivative_; }
+  Bounds second_derivative(double from, double to) const;
 
   template <class T>  // double, long double
   Jet2<T> at(const Jet2<T>& x) const;
@@ -36,7 +37,6 @@ class Spline {
   std::string name_;
   std::vector<double> x_;
   std::vector<Interval> intervals_;
-  double largest_second_derivative_ = 0;  // in size
 };
 
 }  // namespace poinsot

@@ -21,6 +21,7 @@
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
 #include "integrators/start/singular_position.h"
+#include "integrators/stepping/pulses.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
 #include "integrators/stopping_test.h"
@@ -75,18 +76,24 @@ void explain(Status& status, const Problem& problem) {
   }
 }
 
-// Steps of fixed length go over the switches of the data; error control steps onto them.
-std::string switch_notice(const Model& model, const IntegratorEntry& integrator, const Settings& settings) {
-  if (integrator.controls_error || integrator.analysis == Analysis::kinematics) return "";
-  SwitchTimes times(model, settings.end);
-  SwitchTimes::Switch first = times.first(0, settings.end);
-  if (first.before <= 0) first = times.first(first.after, settings.end);  // no step goes over the start
-  const double at = first.before;
-  if (!(at < settings.end)) return "";
-  return fmt::format(
-      "a driver or a force has a kink or a jump at t = {:.6g} s: steps of fixed length go over it, which costs {} its "
-      "order there and misses what is shorter than a step; an integrator with error control steps onto it",
-      at, integrator.name);
+// Steps of fixed length go over switches and pulses of the data; error control does not.
+void tell_of_switches(const Model& model, const IntegratorEntry& integrator, const Settings& settings,
+                      const Tell& notice) {
+  if (integrator.controls_error || integrator.analysis == Analysis::kinematics) return;
+  const double end = settings.end;
+  SwitchTimes times(model, end, notice);
+  SwitchTimes::Switch first = times.first(0, end);
+  if (first.before <= 0) first = times.first(first.after, end);  // no step goes over the start
+  if (first.before < end)
+    notice(fmt::format(
+        "a driver or a force has a kink or a jump at t = {:.6g} s: steps of fixed length go over it, which costs {} "
+        "its order there and misses what is shorter than a step; an integrator with error control steps onto it",
+        first.before, integrator.name));
+  if (const auto pulse = pulse_within(model, settings.step, end))
+    notice(
+        fmt::format("'{}' varies within less than a step at t = {:.6g} s: steps of fixed length go over that, "
+                    "whatever it does to the motion; take a shorter step, or an integrator with error control",
+                    pulse->function, pulse->t));
 }
 
 Outcome run(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
@@ -130,7 +137,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     outcome.status = check_driven_pose(*problem, state.a());
     if (!outcome.status.ok()) return outcome;
   }
-  if (const std::string sentence = switch_notice(*model, integrator, settings); !sentence.empty()) notice(sentence);
+  tell_of_switches(*model, integrator, settings, notice);
   const Eigen::VectorXd q_start = state.q;
   const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
   outcome.status =

@@ -158,6 +158,27 @@ TEST(Branches, a_direction_driven_past_its_turning_point) {
     }
 }
 
+// Likewise where the turning point is a time of the grid itself, and nothing is given out there.
+TEST(Branches, a_direction_driven_to_its_turning_point_by_a_step) {
+  Scene scene;
+  Body rod;
+  rod.name = "rod", rod.mass = 1, rod.inertia = Matrix3::Identity(), rod.angular_velocity = {0, 0, 1};
+  scene.bodies.push_back(rod);
+  add_joint(scene, JointType::revolute, kGround, 0, Vector3::Zero());
+  Constraint sine;
+  sine.type = ConstraintType::DP1, sine.j = 0;
+  sine.a_i = {0, 1, 0}, sine.a_j = {1, 0, 0}, sine.f = Expression::parse("sin(t)");
+  scene.constraints.push_back(sine);
+  for (const char* formulation : kFormulations) {
+    for (const int steps : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 16, 33, 100}) {
+      SCOPED_TRACE(::testing::Message() << formulation << ", a quarter turn in " << steps);
+      const Recorded r = run(scene, kinematics(formulation, pi / 2 / steps, pi));
+      EXPECT_EQ(r.outcome.status.failure, Failure::singular_position) << r.outcome.status.message;
+      for (const Snapshot& s : r.samples) EXPECT_NEAR(s.bodies[0].w.z(), 1, 1e-6) << s.t;
+    }
+  }
+}
+
 // Six legs from a hexagon to the platform in its plane at t = pi/2, where it may go on up or down.
 TEST(Branches, a_platform_driven_through_its_flat_pose_stops) {
   Scene scene;

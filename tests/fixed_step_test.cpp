@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 
 #include "core/input_error.h"
+#include "integrators/start/first_state.h"
+#include "integrators/start/initial_state.h"
+#include "integrators/stepping/fixed_steps.h"
 #include "tests/support/fixed_step_cases.h"
 
 namespace poinsot::test {
@@ -113,6 +116,96 @@ TEST_P(FixedStep, DoesAStepThatFailsInParts) {
     }
   }
   EXPECT_GE(divided, 3);
+}
+
+// A step that fails is done in parts where the method allows it; where it does not a smaller step is what to try.
+TEST_P(FixedStep, OffersASmallerStepWhereStepsAreNotDivided) {
+  const Scene scene = scene_of("double_pendulum");
+  for (const std::string integrator : {"generalized_alpha", "generalized_alpha_i2"}) {
+    Settings settings = settings_of(integrator, GetParam(), 0.01, 1, 0);
+    settings.max_iterations = 1;
+    const Recorded r = run(scene, settings);
+    ASSERT_EQ(r.outcome.status.failure, Failure::not_converged) << integrator;
+    const bool divides = integrator == "generalized_alpha";
+    EXPECT_THAT(r.outcome.status.message,
+                HasSubstr(divides ? "try an integrator with error control" : "try a smaller step"));
+    settings.max_iterations = 20;
+    EXPECT_TRUE(run(scene, settings).outcome.status.ok());
+  }
+}
+
+// At rest without any load nothing has a size that corrections could be relative to.
+TEST_P(FixedStep, RestsWithoutALoad) {
+  Scene scene = scene_of("double_pendulum");
+  scene.gravity.setZero();
+  scene.forces.clear();
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;
+    SCOPED_TRACE(integrator.name);
+    Settings settings = settings_of(integrator.name, GetParam(), 0.01, 0.1, 0.1);
+    settings.stopping = Settings{}.stopping;
+    for (const bool free : {false, true}) {
+      if (free) {
+        scene.constraints.clear();
+        scene.joints.clear();
+      }
+      const Recorded r = run(scene, settings);
+      ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+      for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+        EXPECT_LT((r.samples.back().bodies[b].r - scene.bodies[b].position).norm(), 1e-14);
+        EXPECT_LT(r.samples.back().bodies[b].rdd.norm(), 1e-9);
+      }
+    }
+  }
+}
+
+// A step that fails as a whole, and whose halves change the velocity by a factor each.
+class Creeps final : public FixedSteps {
+ public:
+  Creeps(const Run& run, double factor) : FixedSteps(run), factor_(factor) {}
+
+  Status prepare() override { return {}; }
+  Status step(double t) override {
+    if (h_ > 0.6 * grid_.step()) return {Failure::not_converged, t, "as a whole"};
+    x_.v = factor_ * v_n_;
+    const Vector way = h_ * x_.v;
+    problem_.retract(span(q_n_), span(way), span(x_.q));
+    return {};
+  }
+
+ private:
+  double factor_;
+};
+
+// Where parts of a step creep up to a singular position velocities jump to where rounding leads: such a step is refused
+// as it failed, and nothing of it stays.
+TEST_P(FixedStep, RefusesADividedStepThatJumps) {
+  Scene scene;
+  Body body;
+  body.name = "body", body.mass = 1, body.inertia = Matrix3::Identity(), body.velocity = {1, 0, 0};
+  scene.bodies.push_back(body);
+  const auto model = std::make_shared<const Model>(compile(scene));
+  for (const double factor : {1.2, 1.3}) {
+    Settings settings = settings_of("implicit_euler", GetParam(), 0.1, 0.1, 0);
+    const InitialState start = find_initial_state(model, settings);
+    const auto problem = formulations().require(GetParam()).make(model, start.rank.aside);
+    State state(*problem);
+    ASSERT_TRUE(find_first_state(start, settings, *problem, state).ok());
+    LinearSystems systems(settings.linear());
+    Statistics statistics;
+    const Tell tell = [](const std::string&) {};
+    const Observer observe = [](const Sample&) {};
+    const Status status = Creeps({*problem, systems, settings, state, observe, statistics, tell}, factor).march();
+    if (factor * factor < 1.5) {
+      EXPECT_TRUE(status.ok()) << status.message;
+      EXPECT_NEAR(state.v[0], factor * factor, 1e-15);
+    } else {
+      EXPECT_EQ(status.message, "as a whole");
+      EXPECT_EQ(state.t, 0);
+      EXPECT_EQ(state.v[0], 1);
+      EXPECT_EQ(state.q[0], 0);
+    }
+  }
 }
 
 // What stabilized index 2 is for: rounding of Φ over h² reaches the multipliers of index 3, not its own.

@@ -2,6 +2,9 @@
 // and wherever the hinge axes turn to, moves them as it moves the same mechanism written without redundancy.
 #include <gmock/gmock.h>
 
+#include <map>
+#include <numbers>
+
 #include "integrators/start/rank.h"
 #include "integrators/start/reactions.h"
 #include "tests/support/loops.h"
@@ -90,6 +93,100 @@ TEST_P(Loops, OfManyLinks) {
       EXPECT_LT(apart(with, without), 2e-5) << links << carried;
       EXPECT_LE(with.outcome.statistics.rejected_steps, without.outcome.statistics.rejected_steps + 1) << links;
     }
+  }
+}
+
+// A loop of revolutes in space, the last link the ground, by lengths, twists and angles (Denavit and Hartenberg): each
+// body's frame is that at its far end, z the next hinge and x along the link.
+Scene linkage(const std::vector<double>& length, const std::vector<double>& twist, const std::vector<double>& angle) {
+  Scene scene;
+  scene.name = "linkage";
+  scene.gravity = {1, -9.81, -2};
+  Matrix3 A = Matrix3::Identity();
+  Vector3 at = Vector3::Zero();
+  const int links = static_cast<int>(length.size());
+  for (int k = 0; k < links; ++k) {
+    const auto n = static_cast<std::size_t>(k);
+    const bool ground = k + 1 == links;
+    Joint& hinge = scene.joints.emplace_back();
+    hinge.name = fmt::format("hinge{}", k + 1);
+    hinge.i = k - 1, hinge.j = ground ? kGround : k;
+    hinge.point = at;
+    hinge.axis = A.col(2);
+    A = A * Eigen::AngleAxisd(angle[n], Vector3::UnitZ()) * Eigen::AngleAxisd(twist[n], Vector3::UnitX());
+    at += length[n] * A.col(0);
+    if (ground) break;
+    Body& body = scene.bodies.emplace_back();
+    body.name = fmt::format("link{}", k + 1);
+    body.mass = 1 + 0.1 * k;
+    body.inertia = Vector3(0.02, 0.1, 0.11).asDiagonal();
+    body.position = at - 0.5 * length[n] * A.col(0);
+    body.orientation = A;
+  }
+  check(at.norm() < 1e-12 && (A - Matrix3::Identity()).norm() < 1e-12, "the linkage closes");
+  return scene;
+}
+
+// The angle of joint 1 and of joint 2.
+std::pair<double, double> first_angles(const std::vector<BodyState>& bodies) {
+  const Matrix3 &A = bodies[0].A, &B = bodies[1].A;
+  return {std::atan2(A(1, 0), A(0, 0)), std::atan2(A.col(2).dot(A.col(0).cross(B.col(0))), A.col(0).dot(B.col(0)))};
+}
+
+// Bennett's linkage, four hinges, and Bricard's orthogonal one, six: no count of rows lets them move. In closed form
+// tan(θ₁/2) tan(θ₂/2) and cosθ₁ + cosθ₂ + cosθ₁ cosθ₂ stay what they are.
+TEST_P(Loops, ThatMoveByTheirDimensionsAlone) {
+  const double alpha = 0.7, beta = 1.2, product = std::sin((beta + alpha) / 2) / std::sin((beta - alpha) / 2);
+  const double b = std::sin(beta) / std::sin(alpha), t1 = 1.0, t2 = 2 * std::atan(product / std::tan(t1 / 2));
+  const double q = std::numbers::pi / 2, u1 = 1.2, u2 = std::acos(-std::cos(u1) / (1 + std::cos(u1)));
+  const std::vector<double> ones(6, 1.0);
+  const Scene bennett = linkage({1, b, 1, b}, {alpha, beta, alpha, beta}, {t1, t2, -t1, -t2});
+  const Scene bricard = linkage(ones, {q, -q, q, -q, q, -q}, {u1, u2, u1, u2, u1, u2});
+  for (const bool four : {true, false}) {
+    const Scene& scene = four ? bennett : bricard;
+    static std::map<bool, std::vector<BodyState>> exact;
+    if (!exact.contains(four)) exact[four] = move(scene, controlled("dop853", "rA", 1e-11, 1)).end;
+    for (const char* integrator : {"dop853", "radau5", "rattle", "generalized_alpha", "implicit_euler"}) {
+      SCOPED_TRACE(fmt::format("{} {}", four ? "Bennett" : "Bricard", integrator));
+      Settings settings = dynamics(GetParam(), 1e-3, 1, 0.25);
+      settings.integrator = integrator;
+      settings.rtol = 1e-8;
+      const Recorded r = run(scene, settings);
+      ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+      ASSERT_EQ(r.samples.size(), 5u);
+      double turned = 0;
+      for (const Snapshot& sample : r.samples) {
+        const auto [one, two] = first_angles(sample.bodies);
+        const double c = std::cos(one), d = std::cos(two);
+        EXPECT_NEAR(four ? std::tan(one / 2) * std::tan(two / 2) - product : c + d + c * d, 0, 1e-6);
+        turned = std::max(turned, std::abs(one - (four ? t1 : u1)));
+      }
+      EXPECT_GT(turned, 0.3);
+      double apart = 0;
+      for (std::size_t k = 0; k < exact[four].size(); ++k)
+        apart = std::max(apart, (r.samples.back().bodies[k].r - exact[four][k].r).norm());
+      const int order = integrators().require(integrator).order;
+      EXPECT_LT(apart, order == 1 ? 3e-2 : order == 2 ? 1e-4 : 1e-6);
+    }
+  }
+}
+
+// A hinge that the scene has twice is that hinge.
+TEST_P(Loops, OfAHingeGivenTwice) {
+  const Scene once = scene_of("double_pendulum_joints");
+  Scene twice = once;
+  for (const Joint& joint : once.joints) {
+    twice.joints.push_back(joint);
+    twice.joints.back().name = fmt::format("again{}", twice.joints.size());
+  }
+  for (const char* integrator : {"dop853", "radau5", "rattle", "half_implicit", "generalized_alpha_i2"}) {
+    SCOPED_TRACE(integrator);
+    Settings settings = dynamics(GetParam(), 1e-3, 1, 1);
+    settings.integrator = integrator;
+    settings.rtol = 1e-8;
+    const Course with = move(twice, settings), without = move(once, settings);
+    ASSERT_TRUE(with.outcome.status.ok()) << with.outcome.status.message;
+    EXPECT_LT(apart(with, without), 1e-9);
   }
 }
 

@@ -59,6 +59,33 @@ TEST(SwitchTimes, AreNotWhereNothingChanges) {
     EXPECT_THAT(switches(smooth, 1), IsEmpty()) << smooth;
 }
 
+// Zero up to rounding is on no side, and hides no switch elsewhere.
+TEST(SwitchTimes, AreNotMadeByRounding) {
+  using ::testing::DoubleNear;
+  using ::testing::ElementsAre;
+  for (const char* zero : {"sin(t)^2 + cos(t)^2 - 1", "(t + 0.1) - t - 0.1", "3*t - t - 2*t"}) {
+    for (const char* of : {"abs({})", "sign({})", "max(0, {})", "100*step({})"})
+      EXPECT_THAT(switches(fmt::format(fmt::runtime(of), zero).c_str(), 7), IsEmpty()) << of << zero;
+    EXPECT_THAT(switches(fmt::format("abs({}) + step(t - 4) - step(t - 4.002)", zero).c_str(), 7),
+                ElementsAre(DoubleNear(4, 1e-14), DoubleNear(4.002, 1e-14)))
+        << zero;
+  }
+  // Flat at its zero: a kink, not a swarm of them.
+  EXPECT_THAT(switches("abs(t^3 - 1.5*t^2 + 0.75*t - 0.125)", 1), ElementsAre(DoubleNear(0.5, 1e-4)));
+}
+
+TEST(SwitchTimes, TellOfASignThatRoundingDecides) {
+  for (const IntegratorEntry& entry : integrators()) {
+    if (entry.analysis != Analysis::dynamics || refusal_of(entry, "rp")) continue;
+    Settings settings = controlled(entry.name, "rp", 1e-6, 0.02);
+    settings.step = 0.01;
+    const auto notices = [&](const char* force) { return simulate(pushed(force), settings, {}).notices; };
+    ASSERT_EQ(notices("1e-6*sign(sin(t)^2 + cos(t)^2 - 1)").size(), 1u) << entry.name;
+    EXPECT_THAT(notices("1e-6*sign(sin(t)^2 + cos(t)^2 - 1)")[0], HasSubstr("zero up to rounding")) << entry.name;
+    EXPECT_THAT(notices("abs(sin(t)^2 + cos(t)^2 - 1)"), IsEmpty()) << entry.name;
+  }
+}
+
 struct SwitchMethod {
   std::string integrator, formulation;
 };
@@ -95,6 +122,59 @@ TEST_P(Switches, ImpulsesAreNotSteppedOver) {
     EXPECT_EQ(r.samples[1].bodies[0].rd.x(), 0) << impulse;
     EXPECT_NEAR(r.samples[4].bodies[0].rd.x(), integral, 1e-7) << impulse;
     EXPECT_LT(r.outcome.statistics.steps, 3000) << impulse;
+  }
+}
+
+// Nor are smooth ones, alone, on a slope, beside a wave, to and fro, or cut out of one.
+TEST_P(Switches, SmoothPulsesAreNotSteppedOver) {
+  const double gauss = std::sqrt(M_PI);
+  const std::pair<const char*, double> pulses[] = {
+      {"1e4*exp(-((t - 0.5)/1e-4)^2)", gauss},
+      {"1e6*exp(-((t - 0.77)/1e-6)^2)", gauss},
+      {"3*t + 1e3*exp(-((t - 0.3)/1e-3)^2)", 1.5 + gauss},
+      {"3*sin(5*t) + 1e3*exp(-((t - 0.3)/1e-3)^2)", 0.6 * (1 - std::cos(5)) + gauss},
+      {"1e8*(t - 0.5)*exp(-((t - 0.5)/1e-4)^2) + 2", 2},
+      {"500*(1 - cos(2*pi*(t - 0.4)/0.002))*step(t - 0.4)*step(0.402 - t)", 1},
+      {"1e3*max(0, 1 - ((t - 0.6)/1e-3)^2)^4", 256.0 / 315},
+      {"1e5/(1 + ((t - 0.7)/1e-5)^2)", std::atan(3e4) + std::atan(7e4)}};
+  for (const auto& [pulse, integral] : pulses) {
+    const Recorded r = run(pushed(pulse), settings(1e-8, 1, 1));
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    EXPECT_NEAR(r.samples[1].bodies[0].rd.x(), integral, 1e-6) << pulse;
+    EXPECT_LT(r.outcome.statistics.steps, 3000) << pulse;
+    EXPECT_THAT(r.outcome.notices, IsEmpty()) << pulse;
+  }
+}
+
+// Laws of springs may vary with time as forces do.
+TEST_P(Switches, PulsesOfLawsAreNotSteppedOver) {
+  const std::pair<const char*, double> laws[] = {{"1e3*exp(-((t - 0.5)/1e-3)^2)", std::sqrt(M_PI)},
+                                                 {"500*(step(t - 0.4) - step(t - 0.402)) + 0*abs(x - v)", 1}};
+  for (const auto& [law, integral] : laws) {
+    Scene scene = pushed("0");
+    Spring spring;
+    spring.j = 0;
+    spring.s_i = {5, 0, 0};
+    spring.law = Expression::parse_law(law);
+    scene.forces.push_back(spring);
+    const Recorded r = run(scene, settings(1e-8, 1, 1));
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    EXPECT_NEAR(r.samples[1].bodies[0].rd.x(), integral, 1e-6) << law;
+  }
+}
+
+TEST(Pulses, AreTakenFromFixedStepsBySayingSo) {
+  const auto told = ::testing::Contains(HasSubstr("varies within less than a step"));
+  for (const IntegratorEntry& entry : integrators()) {
+    if (entry.analysis != Analysis::dynamics || entry.controls_error) continue;
+    Settings s;
+    s.integrator = entry.name;
+    s.end = s.every = 1;
+    s.step = 0.01;
+    for (const char* pulse : {"1e4*exp(-((t - 0.5034)/1e-4)^2)", "t + exp(-((t - 0.5034)/1e-3)^2)", "sin(400*t)"})
+      EXPECT_THAT(simulate(pushed(pulse), s, {}).notices, told) << entry.name << ' ' << pulse;
+    for (const char* smooth : {"10*exp(-((t - 0.5034)/0.1)^2)", "sin(20*t)", "exp(-5*t)*t^3", "1/(1 + t)", "7"})
+      EXPECT_THAT(simulate(pushed(smooth), s, {}).notices, ::testing::Not(told)) << entry.name << ' ' << smooth;
   }
 }
 
@@ -148,6 +228,20 @@ TEST_P(Switches, OfDriversCostNoDigits) {
   const auto found = motion(scene, settings(1e-8, 1, 0.1));
   const Distance d = distance(found, exact);
   EXPECT_LT(std::max({d.r, d.A, d.rd, d.w}), GetParam().integrator == "ida" ? 2e-6 : 1e-7) << d;
+}
+
+// A driver that goes and comes back between two steps.
+TEST_P(Switches, PulsesOfDriversAreNotSteppedOver) {
+  const char* angle = "0.2*t + 0.1*exp(-((t - 0.3)/1e-4)^2)";
+  static const auto exact = motion(driven(angle), controlled("radau5", "rA", 1e-11, 0.5, 0.25));
+  const Recorded r = run(driven(angle), settings(1e-8, 0.5, 0.25));
+  if (!r.outcome.status.ok()) {
+    EXPECT_EQ(GetParam().integrator, "ida") << r.outcome.status.message;
+    return;
+  }
+  const Distance d = distance(r.samples, exact);
+  EXPECT_LT(std::max(d.r, d.w), 1e-4) << d;
+  EXPECT_GT(r.outcome.statistics.steps, 20);
 }
 
 // Where the rate jumps, bodies are struck: the rod's momentum about its hinge with the crank stays.

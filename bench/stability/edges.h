@@ -8,6 +8,7 @@ namespace poinsot::stability {
 // Rotation.
 Family euler_angles();
 Family spin();
+Family top();
 // Drivers and loops.
 Family dp1_driver();
 Family flat_redundant();
@@ -16,6 +17,7 @@ Family misalignment();
 // Numbers of very different size.
 Family far_away();
 Family mass_ratio();
+Family skew_chain();
 Family stiffness();
 Family rounding_positions();
 Family rounding_accelerations();
@@ -23,6 +25,8 @@ Family rounding_reactions();
 // Starts, forces, long runs.
 Family inconsistent();
 Family pulse();
+Family smooth_pulse();
+Family kinks();
 Family drift();
 
 }  // namespace poinsot::stability

@@ -1,7 +1,9 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "bench/stability/edges.h"
+#include "bench/stability/truths.h"
 
 namespace poinsot::stability {
 
@@ -62,6 +64,36 @@ Family spin() {
     return {{r.x(), r.y(), r.z()}};
   };
   f.rate = [](const Place& at) { return at.x; };
+  return f;
+}
+
+// Heavy symmetric top, J about its tip across and J₃ along its axis: w₃ and J φ̇ sin²θ + J₃ w₃ cosθ stay.
+Family top() {
+  Family f;
+  f.name = "top";
+  f.title = "steps and tolerances against the spin of a heavy top";
+  f.about =
+      "a symmetric top on a spherical joint, 1 rad from upright, let go with a spin of w rad/s about its axis: it "
+      "nutates and precesses. Truth: one angle, Runge-Kutta";
+  f.scenes = {R"json({"scene": 1, "name": "top", "gravity": [0, 0, -9.81], "parameters": {"w": 10},
+    "bodies": [{"name": "top", "mass": 1, "inertia": [0.2, 0.2, 0.3], "position": [0, "-sin(1)", "cos(1)"],
+      "orientation": {"axis": [1, 0, 0], "angle": 1}, "angular_velocity": [0, 0, "w"]}],
+    "joints": [{"type": "spherical", "bodies": ["ground", "top"], "point": [0, 0, 0]}]})json"};
+  f.x = {Axis::parameter, "spin w, rad/s", "w", {1, 10, 30, 100, 300, 1000}, {10, 100}, {}, {}, 10};
+  f.y = accuracy();
+  f.columns = {"top.x", "top.y", "top.z"};
+  f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
+    constexpr double J = 1.2, J3 = 0.3, mgl = 9.81;
+    constexpr int kSteps = 10000;
+    const double spin = J3 * at.x * (1 + at.nudge), along = spin * std::cos(1.0);
+    const Eigen::Vector3d y = runge_kutta<3>(Eigen::Vector3d(1, 0, 0), t, kSteps, [&](const Eigen::Vector3d& s) {
+      const double sine = std::sin(s[0]), rate = (along - spin * std::cos(s[0])) / (J * sine * sine);  // φ̇
+      return Eigen::Vector3d(s[1], sine * (J * rate * rate * std::cos(s[0]) - spin * rate + mgl) / J, rate);
+    });
+    const double sine = std::sin(y[0]);
+    return {{sine * std::sin(y[2]), -sine * std::cos(y[2]), std::cos(y[0])}};
+  };
+  f.rate = [](const Place& at) { return std::max(at.x, 3.0); };
   return f;
 }
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -76,6 +78,93 @@ Family pulse() {
     const double into = std::clamp(t - 0.3, 0.0, at.x);
     const double s = (1 + at.nudge) * (into * into / (2 * at.x) + std::max(0.0, t - 0.3 - at.x));
     return {{0.48 * s, 0.6 * s, 0.64 * s}};
+  };
+  f.warning = "has a kink or a jump";
+  return f;
+}
+
+Family smooth_pulse() {
+  Family f;
+  f.name = "smooth_pulse";
+  f.title = "a smooth force of short duration";
+  f.about =
+      "a mass of 1 kg on a slide, at rest until a force exp(-((t - 0.3)/x)^2)/(x sqrt(pi)) N passes: from then on it "
+      "moves with 1 m/s. Truth: closed form";
+  f.scenes = {R"json({"scene": 1, "name": "slide", "parameters": {"x": 0.1}, "gravity": [0, 0, 0],
+    "bodies": [{"name": "mass", "mass": 1, "inertia": [0.1, 0.2, 0.3], "position": [0, 0, 0]}],
+    "joints": [{"type": "translational", "bodies": ["ground", "mass"], "point": [0, 0, 0], "axis": [0.48, 0.6, 0.64]}],
+    "forces": [{"type": "force", "body": "mass", "point": [0, 0, 0],
+      "force": ["0.48*exp(-((t - 0.3)/x)^2)/(x*sqrt(pi))", "0.6*exp(-((t - 0.3)/x)^2)/(x*sqrt(pi))",
+                "0.64*exp(-((t - 0.3)/x)^2)/(x*sqrt(pi))"]}]})json"};
+  f.x = {Axis::parameter,
+         "duration of the force, s",
+         "x",
+         {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8},
+         {1e-1, 1e-3, 1e-6},
+         {},
+         {},
+         1e-1};
+  f.y = accuracy();
+  f.columns = {"mass.x", "mass.y", "mass.z"};
+  f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
+    // The integral of (1 + erf u)/2 is (u (1 + erf u) + exp(-u^2)/sqrt(pi))/2.
+    const auto twice = [&](double u) {
+      return at.x / 2 * (u * (1 + std::erf(u)) + std::exp(-u * u) / std::sqrt(std::numbers::pi));
+    };
+    const double begin = -0.3 / at.x, before = (1 + std::erf(begin)) / 2;
+    const double s = (1 + at.nudge) * (twice((t - 0.3) / at.x) - twice(begin) - before * t);
+    return {{0.48 * s, 0.6 * s, 0.64 * s}};
+  };
+  f.warning = "varies within less than a step";
+  return f;
+}
+
+// A force with a kink at 0.305 s, or none: its integrals from 0, piece by piece.
+Family kinks() {
+  constexpr auto scene = [](const char* force) {
+    return fmt::format(R"json({{"scene": 1, "name": "slide", "gravity": [0, 0, 0],
+    "tables": {{"bend": {{"points": [[0, 0], [0.305, 1], [1, 0]]}}}},
+    "bodies": [{{"name": "mass", "mass": 1, "inertia": [0.1, 0.2, 0.3], "position": [0, 0, 0]}}],
+    "joints": [{{"type": "translational", "bodies": ["ground", "mass"], "point": [0, 0, 0], "axis": [1, 0, 0]}}],
+    "forces": [{{"type": "force", "body": "mass", "point": [0, 0, 0], "force": ["8*({0}) + 0*bend(t)", 0, 0]}}]}})json",
+                       force);
+  };
+  Family f;
+  f.name = "kinks";
+  f.title = "kinks and jumps of a force";
+  f.about =
+      "a mass of 1 kg on a slide, at rest, under a force with a kink or a jump at 0.305 s, no time of a grid. Truth: "
+      "closed form";
+  f.scenes = {scene("t - 0.305"),     scene("abs(t - 0.305)"),  scene("max(0, t - 0.305)"),
+              scene("min(t, 0.305)"), scene("sign(t - 0.305)"), scene("bend(t)")};
+  f.x = {Axis::variant,
+         "force (0: smooth, 1: abs, 2: max, 3: min, 4: sign, 5: table)",
+         "",
+         {0, 1, 2, 3, 4, 5},
+         {0, 1, 2, 3, 4, 5},
+         {},
+         {},
+         0};
+  f.y = accuracy();
+  f.columns = {"mass.x"};
+  f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
+    constexpr double k = 0.305;
+    const double beyond = std::max(0.0, t - k), ramp = beyond * beyond * beyond / 6;  // of max(0, t − k)
+    const double line = t * t * t / 6 - k * t * t / 2;
+    double s = line;
+    if (at.x == 1) s = 2 * ramp - line;
+    if (at.x == 2) s = ramp;
+    if (at.x == 3) s = t * t * t / 6 - ramp;
+    if (at.x == 4) s = beyond * beyond - t * t / 2;
+    if (at.x == 5) {  // natural spline of two pieces: M in the middle, each slope for itself
+      const double d = 1 - k, M = 3 * (-1 / d - 1 / k), first = 1 / k - k * M / 6;
+      const auto integral = [&](double u) { return first * u * u * u / 6 + M / (6 * k) * std::pow(u, 5) / 20; };
+      const auto speed = [&](double u) { return first * u * u / 2 + M / (6 * k) * std::pow(u, 4) / 4; };
+      const double u = std::min(t, k), b = -1 / d - d * M / 3, x = beyond;
+      s = integral(u) + speed(u) * x + x * x / 2 + b * x * x * x / 6 + M * std::pow(x, 4) / 24 -
+          M / (6 * d) * std::pow(x, 5) / 20;
+    }
+    return {{8 * (1 + at.nudge) * s}};
   };
   f.warning = "has a kink or a jump";
   return f;

@@ -1,6 +1,10 @@
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "bench/stability/edges.h"
 #include "bench/stability/truths.h"
@@ -40,8 +44,12 @@ Rod rod(double a, double g, double t) {
   return {r * n, -r * c, ay, az, ay, az + kGravity * g};
 }
 
-Family rounding() {
+// What of the rod is looked at: two of its numbers, by the columns that hold them.
+template <double Rod::*first, double Rod::*second>
+Family rounding(std::string_view name, std::string_view title, std::vector<std::string_view> columns) {
   Family f;
+  f.name = name;
+  f.title = title;
   f.about =
       "a rod on a hinge, from rest at an angle from below, over 200 steps however short they are: what rounding "
       "leaves. "
@@ -60,7 +68,36 @@ Family rounding() {
          0};
   f.y = {Axis::parameter, "angle at the start, rad", "a", {0.5, 1.5, 3}, {1.5}, {}, {}, 1.5};
   f.steps = 200;
+  f.columns = std::move(columns);
+  f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
+    const Rod r = rod(at.y, 1 + at.nudge, t);
+    return {{r.*first, r.*second}};
+  };
   return f;
+}
+
+// Accelerations, and forces of as many newtons.
+Family of_index1(Family f) {
+  f.size = [](const Place&) { return kGravity; };
+  f.floor = [](const Place&) { return kIndex3; };
+  return f;
+}
+
+// Bodies in a row on parallel hinges along x, their frames turned by s about (1, 1, 1): the row turns as one.
+std::string turning_chain(int bodies) {
+  std::string list, joints;
+  for (int k = 0; k < bodies; ++k) {
+    list += fmt::format(R"json({0}{{"name": "link{1}", "mass": 1, "inertia": [0.1, 0.1, 0.1],
+      "position": [0, {1}.5, 0], "velocity": [0, 0, {1}.5], "orientation": {{"axis": [1, 1, 1], "angle": "s"}},
+      "angular_velocity": ["(1 + 2*cos(s))/3", "(1 - cos(s))/3 - sin(s)/sqrt(3)", "(1 - cos(s))/3 + sin(s)/sqrt(3)"]}})json",
+                        k > 0 ? ",\n" : "", k);
+    joints += fmt::format(R"json({0}{{"type": "revolute", "bodies": ["{1}", "link{2}"], "point": [0, {2}, 0],
+      "axis": [1, 0, 0]}})json",
+                          k > 0 ? ",\n" : "", k > 0 ? fmt::format("link{}", k - 1) : "ground", k);
+  }
+  return fmt::format(R"json({{"scene": 1, "name": "{} links", "gravity": [0, 0, 0], "parameters": {{"s": 0}},
+    "bodies": [{}], "joints": [{}]}})json",
+                     bodies, list, joints);
 }
 
 }  // namespace
@@ -116,6 +153,29 @@ Family mass_ratio() {
   return f;
 }
 
+Family skew_chain() {
+  static constexpr int kBodies[] = {3, 10, 50};
+  Family f;
+  f.name = "skew_chain";
+  f.title = "length of a chain against the skewness of its frames";
+  f.about =
+      "a straight chain of 3, 10 and 50 links without gravity turns about its hinge at 1 rad/s; the links' frames are "
+      "turned from the hinges' axis by an angle: how badly conditioned a chain is shows in skew frames. Truth: a "
+      "circle";
+  for (const int bodies : kBodies) f.scenes.push_back(turning_chain(bodies));
+  f.x = {Axis::variant, "links (0: 3, 1: 10, 2: 50)", "", {0, 1, 2}, {0, 1, 2}, {}, {}, 0};
+  f.y = {Axis::parameter, "frames turned by, rad", "s", {0, 1e-12, 1e-9, 1e-6, 1e-3, 1}, {0, 1}, {}, {}, 0};
+  f.end = 0.5;
+  f.steps = 20;
+  f.columns = {"link2.y", "link2.z"};
+  f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
+    return {{2.5 * std::cos((1 + at.nudge) * t), 2.5 * std::sin((1 + at.nudge) * t)}};
+  };
+  f.size = [](const Place&) { return 2.5; };
+  f.reach = [](const Place& at) { return kBodies[static_cast<int>(at.x)] / 2.5; };
+  return f;
+}
+
 // On the slow solution ξ = 0.1 k/(k − 1) cos t of ξ̈ = −k ξ + 0.1 k cos t.
 Family stiffness() {
   Family f;
@@ -146,43 +206,17 @@ Family stiffness() {
 }
 
 Family rounding_positions() {
-  Family f = rounding();
-  f.name = "rounding_positions";
-  f.title = "rounding at short steps: positions";
-  f.columns = {"rod.y", "rod.z"};
-  f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
-    const Rod r = rod(at.y, 1 + at.nudge, t);
-    return {{r.y, r.z}};
-  };
-  return f;
+  return rounding<&Rod::y, &Rod::z>("rounding_positions", "rounding at short steps: positions", {"rod.y", "rod.z"});
 }
 
 Family rounding_accelerations() {
-  Family f = rounding();
-  f.name = "rounding_accelerations";
-  f.title = "rounding at short steps: accelerations";
-  f.columns = {"rod.ay", "rod.az"};
-  f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
-    const Rod r = rod(at.y, 1 + at.nudge, t);
-    return {{r.ay, r.az}};
-  };
-  f.size = [](const Place&) { return kGravity; };
-  f.floor = [](const Place&) { return kIndex3; };
-  return f;
+  return of_index1(rounding<&Rod::ay, &Rod::az>("rounding_accelerations", "rounding at short steps: accelerations",
+                                                {"rod.ay", "rod.az"}));
 }
 
 Family rounding_reactions() {
-  Family f = rounding();
-  f.name = "rounding_reactions";
-  f.title = "rounding at short steps: reactions";
-  f.columns = {"hinge.fy", "hinge.fz"};
-  f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
-    const Rod r = rod(at.y, 1 + at.nudge, t);
-    return {{r.fy, r.fz}};
-  };
-  f.size = [](const Place&) { return kGravity; };
-  f.floor = [](const Place&) { return kIndex3; };
-  return f;
+  return of_index1(rounding<&Rod::fy, &Rod::fz>("rounding_reactions", "rounding at short steps: reactions",
+                                                {"hinge.fy", "hinge.fz"}));
 }
 
 }  // namespace poinsot::stability

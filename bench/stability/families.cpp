@@ -11,18 +11,22 @@ std::span<const Family> families() {
   static const std::vector<Family> all{
       euler_angles(),
       spin(),
+      top(),
       dp1_driver(),
       flat_redundant(),
       flat_planar(),
       misalignment(),
       far_away(),
       mass_ratio(),
+      skew_chain(),
       stiffness(),
       rounding_positions(),
       rounding_accelerations(),
       rounding_reactions(),
       inconsistent(),
       pulse(),
+      smooth_pulse(),
+      kinks(),
       drift(),
   };
   return all;

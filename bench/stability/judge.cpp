@@ -21,6 +21,8 @@ constexpr double kNudge = 1e-6;                   // relative
 constexpr double kAtol = 0.01;                    // over rtol: the default
 constexpr double kPerBody = 12;                   // numbers of a state
 constexpr double kHuge = 1e300;                   // an error without a number
+constexpr double kLinear = 0.1, kApart = 2;       // of the motion: a promise above the one says the other at most
+constexpr std::size_t kBetween = 8;               // times the sensitivity is asked for to each that is compared
 
 bool fixed(const Axis& axis) {
   return axis.along == Axis::parameter || axis.along == Axis::variant;
@@ -65,11 +67,11 @@ class Truths {
   Motion compute(Place place, std::size_t times) const {
     Motion motion{motions(place, times), 0};
     const double scale = size(place);
+    const std::vector<double> along = motions(place, kBetween * times).front();
     place.nudge = kNudge;
-    const std::vector<double> nudged = motions(place, times).front();
+    const std::vector<double> nudged = motions(place, kBetween * times).front();
     for (std::size_t k = 0; k < nudged.size(); ++k)
-      motion.sensitivity =
-          std::max(motion.sensitivity, std::abs(nudged[k] - motion.values.front()[k]) / (kNudge * scale));
+      motion.sensitivity = std::max(motion.sensitivity, std::abs(nudged[k] - along[k]) / (kNudge * scale));
     return motion;
   }
 
@@ -155,6 +157,7 @@ void judge(const Family& family, std::vector<Cell>& cells) {
                         : kSlack * (method.constant * order_bound(cell) + sensitivity * kNewton);
     const double open = family.floor ? family.floor(place) : 0;
     cell.promised += kSlack * sensitivity * (std::numeric_limits<double>::epsilon() * reach + open);
+    if (cell.promised > kLinear) cell.promised = std::max(cell.promised, kApart);
     const bool warned = !family.warning.empty() && cell.message.find(family.warning) != std::string::npos;
     const bool said = !cell.message.empty() && !method.said.contains(without_numbers(cell.message));
     if (cell.error <= cell.promised)

@@ -1,7 +1,8 @@
 // What a result is worth that came out of a run, by what was promised.
 //
 // E is the largest error of the family's columns at four times, relative to the size L of the motion; S the motion's
-// own sensitivity: by what factor a small relative change of its initial velocity comes out changed. Promised is
+// own sensitivity: by what factor a small relative change of its initial velocity comes out changed, the largest on the
+// way (what a motion lost where it was sensitive it does not get back where it is not). Promised is
 //
 //   error control   √n N S (rtol l + atol/L): each of N steps is held to rtol and atol in a norm over n numbers of the
 //                   state, and what it leaves is carried on by the motion; positions are l L from the origin; S >= 1
@@ -11,7 +12,8 @@
 //                   1e-7 < E < 0.1 (where there is none: at the finest); 1e-9 is what Newton's test leaves
 //                   (integrators/README.md)
 //
-// each with 10 S (ε l + what the family's data leave open) beside. Then a result is
+// each with 10 S (ε l + what the family's data leave open) beside. That is the linear part of an error: above 0.1 it
+// says no more than that two motions of one size are no further apart than twice that, E <= 2. Then a result is
 //
 //   accurate   E <= promised, and E <= 0.01
 //   coarse     E <= promised, more than 0.01: the order promises no better with this step

@@ -38,7 +38,7 @@ class GeneralizedAlpha : public FixedSteps {
         scale_(scale()),
         policy_(jacobians().require(settings_.jacobian)),
         system_(problem_, run.systems.add(policy_.workload()), policy_.matrix, run.statistics, clock_),
-        newton_(problem_, system_, settings_, policy_.refresh, run.statistics),
+        newton_(problem_, system_, settings_, policy_.refresh, run.statistics, form == Form::index3),
         consistent_(problem_, settings_.linear()),
         velocity_rows_(velocity_rows(problem_)),
         a_(nv_),

@@ -1,5 +1,6 @@
 #include "integrators/methods/ida.h"
 
+#include <fmt/format.h>
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_linearsolver.h>
@@ -14,6 +15,7 @@
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
+#include "integrators/stepping/pulses.h"
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/stabilized_index2.h"
 #include "integrators/stepping/step_control.h"
@@ -82,7 +84,8 @@ class Session {
         sizes_now_(sizes_.size()),
         at_(run.state),
         next_(problem_),
-        switches_(problem_.model(), run.settings.end) {
+        switches_(problem_.model(), run.settings.end, run.tell),
+        pulses_(problem_.model(), run.settings.end, run.settings.rtol, run.tell) {
     SUNContext context = nullptr;
     check(SUNContext_Create(nullptr, &context) == 0, "SUNDIALS gives a context");
     context_.reset(context);
@@ -141,7 +144,7 @@ class Session {
     double t = 0;
     while (t < settings_.end) {
       if (interruption_requested) return interrupted(t);
-      const SwitchTimes::Switch turn = next_switch(t);
+      const SwitchTimes::Switch turn = next_switch(t, creeping);
       if (turn.before <= t) {
         if (Status status = cross(std::min(turn.after, settings_.end)); !status.ok()) return status;
         t = at_.t;
@@ -187,14 +190,22 @@ class Session {
     if (rate > 0) IDASetMaxStep(ida_.get(), 0.5 * kMostCounted / rate);
   }
 
-  // The next switch of the data within reach of IDA's next step, which it then does not step over.
-  SwitchTimes::Switch next_switch(double t) {
+  // The next switch of the data within reach of IDA's next step, which it then does not step over, nor a pulse.
+  SwitchTimes::Switch next_switch(double t, Creeping& creeping) {
     double h = 0;
     IDAGetCurrentStep(ida_.get(), &h);
     const double reach = h > 0 ? 2 * h : 0.01 * (settings_.end - t);  // its first step is a tenth of that, or less
-    const SwitchTimes::Switch turn = switches_.first(t, std::min(t + reach, settings_.end));
-    if (turn.before > t)
-      check(IDASetStopTime(ida_.get(), std::min(turn.before, settings_.end)) == IDA_SUCCESS, "IDA stops at a switch");
+    const double ahead = std::min(t + reach, settings_.end);
+    const SwitchTimes::Switch turn = switches_.first(t, ahead);
+    if (turn.before > t) {
+      // It looks at forces once a step, one-step methods at so many stages.
+      constexpr double kStages = 8;
+      const double wanted = std::min({turn.before, t + kStages * reach, settings_.end});
+      const double seen = pulses_.reach(t, wanted);
+      if (seen < wanted) creeping.limited();
+      const double stop = seen < wanted ? t + (seen - t) / kStages : std::min(turn.before, settings_.end);
+      check(IDASetStopTime(ida_.get(), stop) == IDA_SUCCESS, "IDA stops at a switch");
+    }
     return turn;
   }
 
@@ -338,6 +349,7 @@ class Session {
   std::vector<double> sizes_, sizes_now_;
   State at_, next_;  // the last point given out, and the next one while it is made
   SwitchTimes switches_;
+  Pulses pulses_;
   Status linear_status_;
   double share_ = kShare;  // of the tolerance
 

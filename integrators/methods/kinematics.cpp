@@ -112,10 +112,24 @@ class Kinematics final : public FixedSteps {
     if (contraction_ > kContraction) return false;
     const CountedTurn turn = problem_.counted_turn();
     if (turn.driver >= 0 && h * turn.rate > kFullTurn) return false;
+    if (comes_to_singular_position(h, t)) return false;
     const std::uint64_t here = system_.orientation();
     if (here != orientation_ && !(rows_change_ && here == orientation_before(t))) return false;
     orientation_ = here;
     return true;
+  }
+
+  // At a singular position itself rates are rounding over rounding, and the determinant has no sign to compare: there
+  // accelerations are out of all proportion to velocities, and those jump.
+  bool comes_to_singular_position(double h, double t) {
+    constexpr double kSudden = 100, kJump = 0.5;
+    const double speed = x_.v.norm() + v_from_.norm();
+    const bool jumps = careful_ && (x_.v - v_from_).norm() > kJump * speed;
+    if (!jumps && !(h * x_.z.head(nv_).norm() > kSudden * speed)) return false;
+    const int rows = static_cast<int>(problem_.model_rows().size());
+    const double share = most_dependent_row(problem_, rows, t, span(x_.q)).share;
+    problem_.set_velocity(span(x_.v));
+    return share < kSingular;
   }
 
   // Where rows stand in for others at t: the orientation of the position before with the rows of now.

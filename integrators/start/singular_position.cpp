@@ -23,9 +23,9 @@ Eigen::VectorXd independent_parts(Problem& problem, double t, std::span<const do
   Eigen::MatrixXd G = sparse;
   G.rowwise().normalize();
   Eigen::MatrixXd square = G * G.transpose();
-  square.diagonal().array() += std::numeric_limits<double>::epsilon();  // regular where a row depends altogether
+  square.diagonal().array() += 8 * std::numeric_limits<double>::epsilon();  // regular where a row depends altogether
   const Eigen::MatrixXd inverse = square.ldlt().solve(Eigen::MatrixXd::Identity(problem.nc(), problem.nc()));
-  return inverse.diagonal().cwiseSqrt().cwiseInverse();
+  return inverse.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();  // rounding may make such a row's negative
 }
 
 constexpr int kLargest = 600;  // of G: a second's work

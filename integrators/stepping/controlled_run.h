@@ -1,5 +1,5 @@
 // A run of a one-step method under error control: steps tried, refused and accepted, samples between them, kinks and
-// jumps of the data stepped onto, an exact end.
+// jumps of the data stepped onto, pulses not stepped over, an exact end.
 //
 // A Method is a stepper with: Status attempt(to, rejections, error), Status complete(error), Status interpolate(t),
 // interpolated(), settle(), cross(t), state(); double first_step(end, singular_for), Run's; double retry(h, rejections,
@@ -14,6 +14,7 @@
 #include "core/interruption.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
+#include "integrators/stepping/pulses.h"
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/step_control.h"
 #include "integrators/stepping/switch_times.h"
@@ -27,7 +28,8 @@ class Course {
   Course(const Run& run, PhaseClock& clock)
       : every_step(run.settings.every == 0),
         times(run.settings.every, run.settings.end),
-        switches(run.problem.model(), run.settings.end),
+        switches(run.problem.model(), run.settings.end, run.tell),
+        pulses(run.problem.model(), run.settings.end, run.settings.rtol, run.tell),
         run_(run),
         clock_(clock) {}
 
@@ -46,6 +48,7 @@ class Course {
   const bool every_step;
   SampleTimes times;
   SwitchTimes switches;
+  Pulses pulses;
 
  private:
   const Run& run_;
@@ -69,7 +72,8 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
     if (interruption_requested) return interrupted(t);
     const SwitchTimes::Switch turn = course.switches.first(t, std::min(t + 1.01 * h, end));
     const double stop = std::min(turn.before, end);
-    const double to = t + 1.01 * h >= stop ? stop : t + h;
+    const double wanted = t + 1.01 * h >= stop ? stop : t + h, to = course.pulses.reach(t, wanted);
+    if (to < wanted) creeping.limited();
     if (to > t) {
       h = to - t;
       if (creeping.tries(t, h)) return step_too_small(t, h, {});

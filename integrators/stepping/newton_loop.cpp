@@ -42,13 +42,14 @@ double squared_size(const double* body, Eigen::Index turns, double arm_squared) 
 }  // namespace
 
 NewtonLoop::NewtonLoop(Problem& problem, StepSystem& system, const Settings& settings, Refresh refresh,
-                       Statistics& statistics)
+                       Statistics& statistics, bool divides)
     : problem_(problem),
       system_(system),
       settings_(settings),
       refresh_(refresh),
       stopping_(stopping_tests().require(settings.stopping).test),
       statistics_(statistics),
+      divided_(divides && settings.retry),
       arm_(longest_arm(problem.model())),
       delta_(problem.nv() + problem.nc()),
       momentum_(problem.nv()) {}
@@ -92,11 +93,10 @@ bool NewtonLoop::balanced(double position, const Vector& z, const Vector& q) {
 }
 
 Status NewtonLoop::not_converged(double t, double correction) const {
-  const bool divided = settings_.retry;  // to where it does not help
+  const char* try_first = divided_ ? "an integrator with error control" : "a smaller step";
   if (!std::isfinite(correction)) {
     return {Failure::not_finite, t,
-            fmt::format("at t = {:.9g} s Newton's correction is not finite; try {}", t,
-                        divided ? "an integrator with error control" : "a smaller step")};
+            fmt::format("at t = {:.9g} s Newton's correction is not finite; try {}", t, try_first)};
   }
   Eigen::Index largest = 0;
   delta_.cwiseAbs().maxCoeff(&largest);
@@ -105,8 +105,7 @@ Status NewtonLoop::not_converged(double t, double correction) const {
                       "the tolerance {:.3g}; the largest correction is that of {}; try {}, the exact jacobian or a "
                       "larger tolerance",
                       t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
-                      problem_.describe_unknown(static_cast<int>(largest)),
-                      divided ? "an integrator with error control" : "a smaller step")};
+                      problem_.describe_unknown(static_cast<int>(largest)), try_first)};
 }
 
 }  // namespace poinsot

@@ -33,7 +33,9 @@ class NewtonLoop {
  public:
   using Vector = Eigen::VectorXd;
 
-  NewtonLoop(Problem& problem, StepSystem& system, const Settings& settings, Refresh refresh, Statistics& statistics);
+  // divides: a step that fails is done in parts, unless the settings want none.
+  NewtonLoop(Problem& problem, StepSystem& system, const Settings& settings, Refresh refresh, Statistics& statistics,
+             bool divides = true);
 
   // The step to t, for the unknowns z, from what they are. `position` is δq/δa of the step, `q` the vector that
   // positions' rounding is measured by.
@@ -104,7 +106,8 @@ class NewtonLoop {
   Refresh refresh_;
   Stopping stopping_;
   Statistics& statistics_;
-  double arm_;  // m, the longest of a body to a constraint
+  bool divided_;  // a step that failed was done in parts to where that does not help
+  double arm_;    // m, the longest of a body to a constraint
   Vector delta_, momentum_;
   double gradient_ = -1;  // |Gᵀ|, of the first step: directions and arms stay what they are
   bool slow_ = false;     // the last corrections did not shrink as they should

@@ -71,6 +71,11 @@ class Creeping {
     noisy_.tries(t);
     return tiny_ > kMostTiny || slow_.tried > kMost || (noisy_.tried > kMost && noisy_.rejected() > noisy_.tried / 4);
   }
+  // Steps are kept short for another reason.
+  void limited() {
+    longest_ = 0;
+    tiny_ = 0;
+  }
   void completed(double h) {
     longest_ = std::max(longest_, h);
     ++noisy_.completed;

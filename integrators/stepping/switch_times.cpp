@@ -1,40 +1,31 @@
 #include "integrators/stepping/switch_times.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "integrators/stepping/functions_of_time.h"
 
 namespace poinsot {
 namespace {
 
-constexpr int kBudget = 4000;  // stretches looked at in one search: functions that rounding makes noise are left then
+constexpr int kBudget = 4000;  // stretches looked at in one search of one switch
 
-int side(double x) {
-  return (x > 0) - (x < 0);
-}
-
-bool on_a_switch(std::span<const double> x) {
-  return std::ranges::find(x, 0.0) != x.end();
-}
-
-bool same_sides(std::span<const double> x, std::span<const double> y) {
-  return std::ranges::equal(x, y, [](double a, double b) { return side(a) == side(b); });
+Arguments<Bounds> over(double from, double to) {
+  return {{from, to}, Bounds::unknown(), Bounds::unknown()};
 }
 
 }  // namespace
 
-SwitchTimes::SwitchTimes(const Model& model, double end) : resolution_(kResolved * end), instant_(kInstant * end) {
-  const auto add = [&](const Expression& f) {
-    const auto count = static_cast<std::size_t>(f.switch_count());
-    if (count > 0) switching_.push_back({&f, std::vector<double>(count), std::vector<double>(count)});
-  };
-  for (const Row& row : model.rows) {
-    add(row.f);
-    if (row.alternate) add(row.alternate->f);
+SwitchTimes::SwitchTimes(const Model& model, double end, Tell tell)
+    : resolution_(kResolved * end), instant_(kInstant * end), tell_(std::move(tell)) {
+  for (const Expression* f : functions_of_time(model)) {
+    const int count = f->switch_count();
+    for (int k = 0; k < count; ++k) switching_.push_back({f, k, kBudget, false});
+    values_.resize(std::max(values_.size(), static_cast<std::size_t>(count)));
   }
-  for (const PointForce& force : model.point_forces)
-    for (const Expression& f : force.force) add(f);
-  for (const Torque& torque : model.torques)
-    for (const Expression& f : torque.torque) add(f);
 }
 
 SwitchTimes::Switch SwitchTimes::first(double t, double to) {
@@ -45,44 +36,71 @@ SwitchTimes::Switch SwitchTimes::first(double t, double to) {
   }
   if (found_.before > to && clear_to_ < to) {
     const double from = std::max(t, clear_to_);
-    int budget = kBudget;
     for (Switching& of : switching_) {
-      const Switch sooner = find(of, from, std::min(to, found_.before), budget);
-      if (sooner.before < found_.before) found_ = sooner;
+      of.budget = kBudget;
+      const Switch sooner = find(of, from, std::min(to, found_.before));
+      if (sooner.before < found_.before && sooner.before <= to) found_ = sooner;
     }
     clear_to_ = std::min(to, found_.before);
   }
   return found_.before <= to ? found_ : Switch{};
 }
 
-SwitchTimes::Switch SwitchTimes::find(Switching& of, double from, double to, int& budget) {
-  if (!(from < to) || !of.f->may_switch(from, to)) return {};
+SwitchTimes::Switch SwitchTimes::find(Switching& of, double from, double to) {
+  if (!(from < to) || !of.f->switch_range(of.k, over(from, to)).straddles_zero()) return {};
   const double middle = from + (to - from) / 2;
-  if (to - from <= resolution_ || --budget < 0 || !(from < middle && middle < to)) return between(of, from, to);
-  const Switch sooner = find(of, from, middle, budget);
-  return sooner.before <= to ? sooner : find(of, middle, to, budget);
+  if (to - from <= resolution_ || !(from < middle && middle < to)) return between(of, from, to);
+  if (rests(of, from, to)) {
+    if (of.f->switch_jumps(of.k))
+      say(of, "has a sign or a step of what is zero up to rounding, which decides its value; move it off zero", from);
+    return {};
+  }
+  if (--of.budget < 0) {
+    say(of, "is searched for kinks and jumps at some times only, since its bounds are too wide to tell more", from);
+    return between(of, from, to);
+  }
+  const Switch sooner = find(of, from, middle);
+  return sooner.before <= to ? sooner : find(of, middle, to);
 }
 
-// By bisection, down to neighbouring times; none where both ends are on the same sides.
-SwitchTimes::Switch SwitchTimes::between(Switching& of, double from, double to) {
-  of.f->switches(from, of.at_start);
-  if (from > 0 && on_a_switch(of.at_start)) {
-    from = std::nextafter(from, 0);
-    of.f->switches(from, of.at_start);
-  }
-  of.f->switches(to, of.at_end);
-  if (same_sides(of.at_start, of.at_end)) return {};
-  for (double middle; middle = from + (to - from) / 2, from < middle && middle < to && to - from > instant_;) {
-    of.f->switches(middle, of.at_end);
-    (same_sides(of.at_start, of.at_end) ? from : to) = middle;
-  }
-  of.f->switches(to, of.at_end);
-  if (on_a_switch(of.at_end)) {  // neither side: one further is beyond
-    to = std::nextafter(to, HUGE_VAL);
-    of.f->switches(to, of.at_end);
-    if (same_sides(of.at_start, of.at_end)) return {};  // touched
-  }
+// By bisection, down to neighbouring times; none where it is on the same side a little before and a little beyond.
+SwitchTimes::Switch SwitchTimes::between(const Switching& of, double from, double to) {
+  const auto on_a_side = [](Side x) { return x == Side::below || x == Side::above; };
+  const double begin = from;
+  if (from > 0 && !on_a_side(side(of, from))) from = std::max(from - resolution_, 0.0);
+  if (!on_a_side(side(of, to))) to += resolution_;
+  const Side one = side(of, from), other = side(of, to);
+  if (one == other || other == Side::undecided) return {};
+  const auto beyond = [&](double t) {  // of what rests, where rounding does not reach any more
+    return one == Side::undecided ? side(of, t) == other : computed_side(of, t) != one;
+  };
+  for (double middle; middle = from + (to - from) / 2, from < middle && middle < to && to - from > instant_;)
+    (beyond(middle) ? to : from) = middle;
+  if (computed_side(of, to) == Side::on) to = std::nextafter(to, HUGE_VAL);  // neither: one further is beyond
+  if (to <= begin) return {};                                                // behind
   return {from, to};
+}
+
+SwitchTimes::Side SwitchTimes::side(const Switching& of, double t) const {
+  const Bounds x = of.f->switch_range(of.k, over(t, t));
+  if (x.straddles_zero()) return Side::undecided;
+  return x.least > 0 ? Side::above : x.most < 0 ? Side::below : Side::on;
+}
+
+SwitchTimes::Side SwitchTimes::computed_side(const Switching& of, double t) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  of.f->switches({t, unknown, unknown}, values_);
+  const double x = values_[static_cast<std::size_t>(of.k)];
+  return x > 0 ? Side::above : x < 0 ? Side::below : Side::on;
+}
+
+bool SwitchTimes::rests(const Switching& of, double from, double to) const {
+  return std::ranges::all_of(std::initializer_list<double>{0.07, 0.31, 0.53, 0.79, 0.94},
+                             [&](double share) { return side(of, from + share * (to - from)) == Side::undecided; });
+}
+
+void SwitchTimes::say(Switching& of, const char* what, double t) const {
+  if (tell_ && !std::exchange(of.told, true)) tell_(fmt::format("about t = {:.6g} s '{}' {}", t, of.f->text(), what));
 }
 
 }  // namespace poinsot

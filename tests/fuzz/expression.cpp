@@ -16,7 +16,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       (void)f.law_fault({0.3, 0.1, -0.2});
       std::vector<double> at(static_cast<std::size_t>(f.switch_count()));
       f.switches({0.3, 0.1, -0.2}, at);
-      (void)f.may_switch(0, 1);
+      for (const Bounds state : {Bounds{-0.2, 0.1}, Bounds::unknown()}) {
+        (void)f.range({{0, 1}, state, state});
+        for (int k = 0; k < f.switch_count(); ++k) (void)f.switch_range(k, {{0, 1}, state, state});
+      }
     } catch (const ExpressionError&) {
     }
   }

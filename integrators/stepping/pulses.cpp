@@ -1,0 +1,142 @@
+#include "integrators/stepping/pulses.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "integrators/stepping/functions_of_time.h"
+
+namespace poinsot {
+namespace {
+
+constexpr double kAhead = 8;         // steps
+constexpr double kResolved = 1e-10;  // of the run
+constexpr double kNear = 1.0 / 8;    // of the bound
+constexpr int kPlaces = 5;           // at which f̈ comes that near
+constexpr double kUnseen = 0.1;      // of rtol
+constexpr double kUntold = 1e-6;     // of a function, in steps of fixed length
+constexpr int kPartings = 6;         // of a stretch, for its bounds
+constexpr int kMostUnbounded = 20;   // stretches, each as short as is resolved
+constexpr int kMostStretches = 500;  // of one function
+constexpr double kNodes[] = {0, 0.11, 0.23, 0.36, 0.49, 0.63, 0.77, 0.89, 1};  // no period goes with them
+
+// A law of a spring at elongation 1 and rate 1.
+Jet2<double> value(const Expression& f, double t) {
+  return f.along(Arguments<Jet2<double>>{{t, 1, 0}, {1, 0, 0}, {1, 0, 0}});
+}
+
+Jet2<Bounds> bounds(const Expression& f, double from, double to) {
+  return f.range({{from, to}, {1, 1}, {1, 1}});
+}
+
+double size(const Expression& f, double end) {
+  const double most = bounds(f, 0, end).f.size();
+  return std::isfinite(most) ? most : 0;
+}
+
+// f̈ at the nodes of a stretch.
+struct Bend {
+  double largest = 0, at = 0;
+  double usual = 0;  // in so many places it is as large, or larger
+
+  Bend(const Expression& f, double from, double to) {
+    std::array<double, std::size(kNodes)> sizes;
+    for (std::size_t k = 0; k < sizes.size(); ++k) {
+      const double t = from + kNodes[k] * (to - from);
+      const double bend = std::abs(value(f, t).fdd);
+      sizes[k] = std::isnan(bend) ? 0 : bend;
+      if (sizes[k] > largest) largest = sizes[k], at = t;
+    }
+    std::ranges::nth_element(sizes, sizes.begin() + kPlaces - 1, std::greater());
+    usual = sizes[kPlaces - 1];
+  }
+};
+
+// Whether |f̈| <= most throughout. Bounds are wide where terms cancel, and less so over parts of a stretch.
+bool bends_less(const Expression& f, double from, double to, double most, int halvings) {
+  const double bound = bounds(f, from, to).fdd.size();
+  if (bound <= most) return true;
+  if (halvings == 0) return false;
+  const double middle = from + (to - from) / 2;
+  return bends_less(f, from, middle, most, halvings - 1) && bends_less(f, middle, to, most, halvings - 1);
+}
+
+bool shows(const Expression& f, double nothing, double from, double to) {
+  const double flat = 8 * nothing / ((to - from) * (to - from));
+  if (bounds(f, from, to).fdd.size() <= flat) return true;
+  return bends_less(f, from, to, std::max(flat, Bend(f, from, to).usual / kNear), kPartings);
+}
+
+// Half of what f changes by over eight steps about t.
+double change_about(const Expression& f, double t, double h, double end) {
+  constexpr int kSamples = 64;
+  double least = value(f, t).f, most = least;
+  for (int k = 0; k <= kSamples; ++k) {
+    const double x = value(f, std::clamp(t + (8.0 * k / kSamples - 4) * h, 0.0, end)).f;
+    least = std::min(least, x), most = std::max(most, x);
+  }
+  return (most - least) / 2;
+}
+
+std::optional<double> first_pulse(const Expression& f, double from, double to, double h, double end, double nothing,
+                                  int& budget) {
+  if (to - from <= kResolved * end || --budget < 0) return {};
+  const double bound = bounds(f, from, to).fdd.size();
+  if (bound * h * h <= nothing) return {};
+  const Bend bend(f, from, to);
+  if (bend.largest > 0) {
+    const double change = change_about(f, bend.at, h, end);
+    if (bend.largest * h * h > std::max(change, nothing)) return bend.at;
+    if (bound * h * h <= change && bound * kNear <= bend.usual) return {};
+  }
+  const double middle = from + (to - from) / 2;
+  const auto sooner = first_pulse(f, from, middle, h, end, nothing, budget);
+  return sooner ? sooner : first_pulse(f, middle, to, h, end, nothing, budget);
+}
+
+}  // namespace
+
+Pulses::Pulses(const Model& model, double end, double rtol, Tell tell) : end_(end), tell_(std::move(tell)) {
+  for (const Expression* f : functions_of_time(model)) functions_.push_back({f, kUnseen * rtol * size(*f, end), 0});
+}
+
+double Pulses::search(double t, double to) {
+  double ahead = std::min(kAhead * (to - t), end_ - t);
+  while (!std::ranges::all_of(functions_, [&](const Function& of) { return shows(*of.f, of.nothing, t, t + ahead); })) {
+    if (ahead <= kResolved * end_) {
+      leave_unbounded(t, t + ahead);
+      break;
+    }
+    ahead /= 2;
+  }
+  seen_to_ = t + ahead;
+  return std::min(seen_to_, to);
+}
+
+// Where arithmetic on intervals says nothing of a function, stretch after stretch, it goes unwatched from then on.
+void Pulses::leave_unbounded(double t, double to) {
+  std::erase_if(functions_, [&](Function& of) {
+    if (std::isfinite(bounds(*of.f, t, to).fdd.size()) || ++of.unbounded < kMostUnbounded) return false;
+    tell_(
+        fmt::format("from t = {:.6g} s on '{}' is not watched for pulses that are shorter than a step, since its "
+                    "second derivative has no bounds there",
+                    t, of.f->text()));
+    return true;
+  });
+}
+
+std::optional<Pulse> pulse_within(const Model& model, double h, double end) {
+  std::optional<Pulse> first;
+  for (const Expression* f : functions_of_time(model)) {
+    int budget = kMostStretches;
+    const auto t = first_pulse(*f, 0, end, h, end, kUntold * size(*f, end), budget);
+    if (t && (!first || *t < first->t)) first = Pulse{f->text(), *t};
+  }
+  return first;
+}
+
+}  // namespace poinsot
