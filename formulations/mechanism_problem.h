@@ -247,8 +247,8 @@ class MechanismProblem final : public Problem {
   using M = Mechanism<F, double>;
   using Matrix = MechanismMatrix<F, double>;
 
-  // Records the places of a matrix's blocks, or adds their values. One sink for both, because what writes into it is
-  // most of what there is to compile of a formulation.
+  // Records the places of a matrix's blocks, or adds their values. One sink for both, so that what writes into it is
+  // compiled once.
   struct Blocks {
     std::vector<Block>* places;  // null where values are written
     const int* slot;
