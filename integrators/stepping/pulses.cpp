@@ -13,7 +13,7 @@
 namespace poinsot {
 namespace {
 
-constexpr double kAhead = 8;         // steps
+constexpr double kAhead = 32;        // steps
 constexpr double kResolved = 1e-10;  // of the run
 constexpr double kNear = 1.0 / 8;    // of the bound
 constexpr int kPlaces = 5;           // at which f̈ comes that near
