@@ -26,9 +26,15 @@ double rounding_of(const Problem& problem, const Eigen::VectorXd& q) {
   return 16 * kEpsilon * std::sqrt(problem.bodies()) * std::max(1.0, q.cwiseAbs().maxCoeff());
 }
 
+// NaN where one of them is, which passes no comparison with a bound.
 double max_norm(const auto& x) {
   double most = 0;
-  for (Eigen::Index k = 0; k < x.size(); ++k) most = std::max(most, std::abs(x[k]));
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    const double size = std::abs(x[k]);
+    if (size <= most) continue;
+    if (std::isnan(size)) return size;
+    most = size;
+  }
   return most;
 }
 
