@@ -185,23 +185,26 @@ class GeneralizedAlpha : public FixedSteps {
     return {};
   }
 
-  // Accelerations that change by more than their size within a step, step after step, are not those of the motion.
+  // Accelerations that turn round and change by more than their size within a step, step after step, are not those of
+  // the motion. Those of an oscillation that the steps resolve turn round now and then.
   void watch(double t) {
     constexpr int kRinging = 10;
     constexpr double kRounding = 1e4 * std::numeric_limits<double>::epsilon();
     if (ringing_ >= kRinging) return;
-    double change = 0, before = 0;
+    double change = 0, before = 0, along = 0;
     for (Eigen::Index k = 0; k < nv_; ++k) {
       change += std::pow(x_.z[k] - z_n_[k], 2);
       before += std::pow(z_n_[k], 2);
+      along += x_.z[k] * z_n_[k];
     }
-    if (change < before || h_ * h_ * std::sqrt(change) < kRounding * x_.q.norm()) return;
-    if (++ringing_ < kRinging) return;
+    const bool rings = along < 0 && change >= before && h_ * h_ * std::sqrt(change) >= kRounding * x_.q.norm();
+    ringing_ = rings ? ringing_ + 1 : std::max(ringing_ - 1, 0);
+    if (ringing_ < kRinging) return;
     run_.tell(fmt::format(
-        "at t = {:.6g} s accelerations change by more than their size within a step, the {}th time: a stiff damper or "
-        "spring moves that h = {:g} s does not resolve, and what is made of it here dies out by the factor "
-        "spectral_radius a step; try integrator radau5 or a step that resolves it",
-        t, kRinging, h_));
+        "up to t = {:.6g} s accelerations turn round and change by more than their size within a step, step after "
+        "step: a stiff damper or spring moves that h = {:g} s does not resolve, and what is made of it here dies out "
+        "by the factor spectral_radius a step; try integrator radau5 or a step that resolves it",
+        t, h_));
   }
 
   void advance() {  // v and q that belong to the acceleration in z
@@ -241,7 +244,7 @@ class GeneralizedAlpha : public FixedSteps {
   Vector y_;                          // displacement of stabilized index 2
   Vector held_dq_, held_v_, held_a_;  // what does not depend on the step's unknowns
   Vector residual_, aside_, there_;
-  int ringing_ = 0;  // steps, see watch()
+  int ringing_ = 0;  // steps in a row, but for a few; see watch()
 };
 
 struct Index3 final : GeneralizedAlpha {
