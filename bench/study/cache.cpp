@@ -21,7 +21,8 @@ constexpr std::uintmax_t kLargest = 4'000'000'000;  // bytes of a file that is r
 // Empty where nothing can be read; only files are: a pipe would be waited for.
 std::string content(const fs::path& file) {
   std::error_code none;
-  const std::uintmax_t size = fs::is_regular_file(file, none) ? fs::file_size(file, none) : 0;
+  if (!fs::is_regular_file(file, none)) return {};
+  const std::uintmax_t size = fs::file_size(file, none);
   if (none || size > kLargest) return {};
   std::string text(size, '\0');
   std::ifstream in(file, std::ios::binary);

@@ -20,7 +20,7 @@ constexpr int kPlaces = 5;           // at which f̈ comes that near
 constexpr double kUnseen = 0.1;      // of rtol
 constexpr double kUntold = 1e-6;     // of a function, in steps of fixed length
 constexpr int kPartings = 6;         // of a stretch, for its bounds
-constexpr int kMostUnbounded = 20;   // stretches, each as short as is resolved
+constexpr int kMostUnknown = 20;     // stretches, each as short as is resolved
 constexpr int kMostStretches = 500;  // of one function
 constexpr double kNodes[] = {0, 0.11, 0.23, 0.36, 0.49, 0.63, 0.77, 0.89, 1};  // no period goes with them
 
@@ -34,8 +34,12 @@ Jet2<Bounds> bounds(const Expression& f, double from, double to) {
 }
 
 double size(const Expression& f, double end) {
-  const double most = bounds(f, 0, end).f.size();
-  return std::isfinite(most) ? most : 0;
+  if (const double most = bounds(f, 0, end).f.size(); std::isfinite(most)) return most;
+  constexpr int kSamples = 64;
+  double largest = 0;
+  for (int k = 0; k <= kSamples; ++k)
+    if (const double x = std::abs(value(f, end * k / kSamples).f); std::isfinite(x)) largest = std::max(largest, x);
+  return largest;
 }
 
 // f̈ at the nodes of a stretch.
@@ -108,7 +112,7 @@ double Pulses::search(double t, double to) {
   double ahead = std::min(kAhead * (to - t), end_ - t);
   while (!std::ranges::all_of(functions_, [&](const Function& of) { return shows(*of.f, of.nothing, t, t + ahead); })) {
     if (ahead <= kResolved * end_) {
-      leave_unbounded(t, t + ahead);
+      leave_unknown(t, t + ahead);
       break;
     }
     ahead /= 2;
@@ -117,10 +121,11 @@ double Pulses::search(double t, double to) {
   return std::min(seen_to_, to);
 }
 
-// Where arithmetic on intervals says nothing of a function, stretch after stretch, it goes unwatched from then on.
-void Pulses::leave_unbounded(double t, double to) {
+// Where arithmetic on intervals does not say how a function bends, stretch after stretch, it goes unwatched from then
+// on.
+void Pulses::leave_unknown(double t, double to) {
   std::erase_if(functions_, [&](Function& of) {
-    if (std::isfinite(bounds(*of.f, t, to).fdd.size()) || ++of.unbounded < kMostUnbounded) return false;
+    if (shows(*of.f, of.nothing, t, to) || ++of.unknown < kMostUnknown) return false;
     tell_(
         fmt::format("from t = {:.6g} s on '{}' is not watched for pulses that are shorter than a step, since its "
                     "second derivative has no bounds there",

@@ -29,11 +29,11 @@ class Pulses {
   struct Function {
     const Expression* f;
     double nothing;  // what of it does not matter
-    int unbounded;   // stretches so far
+    int unknown;     // stretches so far
   };
 
   double search(double t, double to);
-  void leave_unbounded(double t, double to);
+  void leave_unknown(double t, double to);
 
   std::vector<Function> functions_;
   const double end_;
