@@ -239,7 +239,9 @@ TEST_P(Interrupted, StabilityAndStudyGoOnWithWhatIsThere) {
       {{"stability", "--family", "pulse", "--formulations", "rA", "--quick", "--threads", "1", "--out", "out"},
        "out/pulse.part"},
       {{"study", "study.json", "--threads", "1", "--out", "out"}, "out/cases.part"}};
-  for (const auto& [command, part] : commands) {
+  for (const auto& each : commands) {
+    const auto& command = each.first;
+    const std::string& part = each.second;
     SCOPED_TRACE(command[0]);
     fs::remove_all(folder() / "out");
     for (const int signal : {SIGTERM, SIGKILL}) {

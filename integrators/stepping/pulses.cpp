@@ -14,13 +14,13 @@ namespace poinsot {
 namespace {
 
 constexpr double kAhead = 32;        // steps
-constexpr double kResolved = 1e-10;  // of the run
+constexpr double kResolved = 1e-9;   // of the run
 constexpr double kNear = 1.0 / 8;    // of the bound
 constexpr int kPlaces = 5;           // at which f̈ comes that near
 constexpr double kUnseen = 0.1;      // of rtol
 constexpr double kUntold = 1e-6;     // of a function, in steps of fixed length
 constexpr int kPartings = 6;         // of a stretch, for its bounds
-constexpr int kMostUnknown = 20;     // stretches, each as short as is resolved
+constexpr int kMostUnknown = 100;    // stretches of a function
 constexpr int kMostStretches = 500;  // of one function
 constexpr double kNodes[] = {0, 0.11, 0.23, 0.36, 0.49, 0.63, 0.77, 0.89, 1};  // no period goes with them
 
@@ -105,30 +105,37 @@ std::optional<double> first_pulse(const Expression& f, double from, double to, d
 }  // namespace
 
 Pulses::Pulses(const Model& model, double end, double rtol, Tell tell) : end_(end), tell_(std::move(tell)) {
-  for (const Expression* f : functions_of_time(model)) functions_.push_back({f, kUnseen * rtol * size(*f, end), 0});
+  for (const Expression* f : functions_of_time(model)) functions_.push_back({f, kUnseen * rtol * size(*f, end)});
 }
 
 double Pulses::search(double t, double to) {
+  const double least = kResolved * end_;
   double ahead = std::min(kAhead * (to - t), end_ - t);
-  while (!std::ranges::all_of(functions_, [&](const Function& of) { return shows(*of.f, of.nothing, t, t + ahead); })) {
-    if (ahead <= kResolved * end_) {
-      leave_unknown(t, t + ahead);
-      break;
+  for (Function& of : functions_) {
+    of.limits = false;
+    for (; !shows(*of.f, of.nothing, t, t + ahead); ahead /= 2) {
+      of.limits = true;
+      if (ahead <= least) break;
     }
-    ahead /= 2;
   }
   seen_to_ = t + ahead;
+  leave_unknown(t, ahead <= least);
   return std::min(seen_to_, to);
 }
 
-// Where arithmetic on intervals does not say how a function bends, stretch after stretch, it goes unwatched from then
-// on.
-void Pulses::leave_unknown(double t, double to) {
+// Arithmetic on intervals may not say how a function bends: where it has no bounds, or bounds far from the truth
+// because terms cancel. One that holds up stretch after stretch, as short as is resolved or with nothing in them, goes
+// unwatched from then on. To a pulse a few dozen stretches lead.
+void Pulses::leave_unknown(double t, bool shortest) {
   std::erase_if(functions_, [&](Function& of) {
-    if (shows(*of.f, of.nothing, t, to) || ++of.unknown < kMostUnknown) return false;
+    if (!of.limits) return false;
+    const double ahead = seen_to_ - t;
+    const bool bends = Bend(*of.f, t, seen_to_).largest * ahead * ahead > 8 * of.nothing;
+    of.unknown = bends && !shortest ? 0 : of.unknown + 1;
+    if (of.unknown < kMostUnknown) return false;
     tell_(
         fmt::format("from t = {:.6g} s on '{}' is not watched for pulses that are shorter than a step, since its "
-                    "second derivative has no bounds there",
+                    "second derivative has no close bounds there",
                     t, of.f->text()));
     return true;
   });

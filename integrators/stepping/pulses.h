@@ -28,12 +28,13 @@ class Pulses {
  private:
   struct Function {
     const Expression* f;
-    double nothing;  // what of it does not matter
-    int unknown;     // stretches so far
+    double nothing;       // what of it does not matter
+    int unknown = 0;      // stretches on end that it held up for nothing
+    bool limits = false;  // the last one
   };
 
   double search(double t, double to);
-  void leave_unknown(double t, double to);
+  void leave_unknown(double t, bool shortest);
 
   std::vector<Function> functions_;
   const double end_;

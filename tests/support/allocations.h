@@ -15,7 +15,12 @@ inline long allocations() {
 }
 }  // namespace poinsot::test
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__has_feature)  // clang's way to say it
+#define POINSOT_HAS_FEATURE(x) __has_feature(x)
+#else
+#define POINSOT_HAS_FEATURE(x) 0
+#endif
+#if defined(__SANITIZE_ADDRESS__) || POINSOT_HAS_FEATURE(address_sanitizer)
 
 // of <sanitizer/allocator_interface.h>, which not every compiler brings along
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*, std::size_t),
