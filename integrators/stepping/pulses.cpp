@@ -20,7 +20,7 @@ constexpr int kPlaces = 5;           // at which f̈ comes that near
 constexpr double kUnseen = 0.1;      // of rtol
 constexpr double kUntold = 1e-6;     // of a function, in steps of fixed length
 constexpr int kPartings = 6;         // of a stretch, for its bounds
-constexpr int kMostUnknown = 100;    // stretches of a function
+constexpr int kMostUnknown = 400;    // stretches of a function
 constexpr int kMostStretches = 500;  // of one function
 constexpr double kNodes[] = {0, 0.11, 0.23, 0.36, 0.49, 0.63, 0.77, 0.89, 1};  // no period goes with them
 
@@ -125,7 +125,8 @@ double Pulses::search(double t, double to) {
 
 // Arithmetic on intervals may not say how a function bends: where it has no bounds, or bounds far from the truth
 // because terms cancel. One that holds up stretch after stretch, as short as is resolved or with nothing in them, goes
-// unwatched from then on. To a pulse a few dozen stretches lead.
+// unwatched from then on. To a pulse some thirty stretches lead, or three hundred where a method goes an eighth of
+// each.
 void Pulses::leave_unknown(double t, bool shortest) {
   std::erase_if(functions_, [&](Function& of) {
     if (!of.limits) return false;
