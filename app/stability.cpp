@@ -10,10 +10,8 @@
 #include "app/progress_line.h"
 #include "app/signals.h"
 #include "app/terminal.h"
-#include "bench/cases/executor.h"
 #include "bench/stability/amplification.h"
-#include "bench/stability/maps.h"
-#include "bench/stability/suite.h"
+#include "bench/stability/mapping.h"
 #include "bench/study/report.h"
 #include "core/input_error.h"
 #include "core/interruption.h"
@@ -31,51 +29,22 @@ struct StabilityOptions {
   bool quick = false, full = false, fresh = false, quiet = false;
 };
 
-std::vector<const Family*> chosen(const StabilityOptions& options) {
-  std::vector<const Family*> all;
-  if (options.families.empty())
-    for (const Family& family : families()) all.push_back(&family);
-  for (const std::string& name : options.families) all.push_back(&require_family(name));
-  return all;
-}
-
-// The cells of a family: those that the folder holds, and the rest.
-std::vector<stability::Cell> cells_of(const Family& family, const Extent& extent, const StabilityOptions& options,
-                                      ProgressLine& progress, double& done, double all) {
-  const FamilyStudy study(family, extent);
-  cases::CaseTable table(study.study());
-  const fs::path part = fs::path(options.out) / fmt::format("{}.part", family.name);
-  if (options.fresh) fs::remove(part);
-  table.open(part);
-  table.read(part, false);
-  const auto there = [&] {
-    double count = 0;
-    for (std::int64_t k = 0; k < study.study().size(); ++k) count += table.has(k);
-    return count;
-  };
-  compute(study, table, options.threads > 0 ? options.threads : cases::processors(), [&] {
-    progress.at({done + there(), all, 0}, fmt::format(", {}", family.name));
-  });
-  done += static_cast<double>(study.study().size());
-  return interruption_requested ? std::vector<stability::Cell>{} : study.cells(table);
-}
-
 int map(const StabilityOptions& options) {
   if (options.threads < 0) require_positive("--threads", options.threads);
   if (options.quick && options.full) throw InputError("--quick, --full: expected one of the two");
-  const std::vector<const Family*> all = chosen(options);
+  const std::vector<const Family*> all = require_families(options.families);
   const Extent extent{options.quick, names_given("formulation", options.formulations),
                       names_given("integrator", options.integrators)};
   make_folder(options.out);
-  double cells = 0, done = 0;
-  for (const Family* family : all) cells += static_cast<double>(FamilyStudy(*family, extent).study().size());
   std::vector<Mapped> maps;
   {
     const Deferred deferred;
     ProgressLine progress("cells", !options.quiet);
-    for (const Family* family : all) {
-      maps.push_back({family, cells_of(*family, extent, options, progress, done, cells)});
-      if (!interruption_requested) continue;
+    maps = map_families(all, extent, {options.out, options.fresh, options.threads},
+                        [&](double there, double cells, const Family& family) {
+                          progress.at({there, cells, 0}, fmt::format(", {}", family.name));
+                        });
+    if (interruption_requested) {
       progress.clear();
       print_error(fmt::format("{}; the same command goes on with what is there", signal_text()));
       return signal_status();
@@ -88,14 +57,8 @@ int map(const StabilityOptions& options) {
     if (const std::string none = write_plots({amplification_plot(options.quick)}, options.out, foot); why.empty())
       why = none;
   if (!why.empty()) print_error(why);
-  Report report{"Where methods fail", "", tables(maps), foot};
-  std::string pictures;
-  for (const Mapped& one : maps)
-    pictures += fmt::format("**{}**: {}.\n\n{}", one.family->title, one.family->about,
-                            why.empty() ? fmt::format("![{}]({}.svg)\n\n", one.family->title, one.family->name) : "");
-  if (options.families.empty() && why.empty()) pictures += "![Spectral radius](amplification.svg)\n\n";
-  report.tables.front().text = pictures + report.tables.front().text;
-  const std::vector<fs::path> written = write_report(report, options.out, "stability");
+  const std::vector<fs::path> written =
+      write_report(stability_report(maps, why.empty(), options.families.empty(), foot), options.out, "stability");
   const int status = why.empty() ? kDone : kNumericsFailed;
   if (options.quiet) return status;
   for (const Mapped& one : maps)

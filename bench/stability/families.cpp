@@ -41,6 +41,14 @@ const Family& require_family(std::string_view name) {
   throw InputError(fmt::format("--family: found \"{}\", expected one of {}", name, known));
 }
 
+std::vector<const Family*> require_families(const std::vector<std::string>& names) {
+  std::vector<const Family*> all;
+  if (names.empty())
+    for (const Family& family : families()) all.push_back(&family);
+  for (const std::string& name : names) all.push_back(&require_family(name));
+  return all;
+}
+
 Axis accuracy() {
   return {Axis::accuracy, "step, s | rtol",          "",           {40, 160, 640, 2560},
           {40, 640},      {1e-4, 1e-6, 1e-8, 1e-10}, {1e-4, 1e-8}, 0};

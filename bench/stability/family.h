@@ -64,6 +64,8 @@ struct Family {
 std::span<const Family> families();
 // Throws InputError where there is none of the name, and says which there are.
 const Family& require_family(std::string_view name);
+// These, or all where none is named.
+std::vector<const Family*> require_families(const std::vector<std::string>& names);
 
 // The axis of accuracy that most families have: 40 to 2560 steps, rtol 1e-4 to 1e-10.
 Axis accuracy();

@@ -151,4 +151,16 @@ std::vector<Table> tables(const std::vector<Mapped>& maps) {
   return {verdicts, use, doubtful};
 }
 
+study::Report stability_report(const std::vector<Mapped>& maps, bool pictures, bool amplification,
+                               const std::vector<std::string>& foot) {
+  study::Report report{"Where methods fail", "", tables(maps), foot};
+  std::string text;
+  for (const Mapped& one : maps)
+    text += fmt::format("**{}**: {}.\n\n{}", one.family->title, one.family->about,
+                        pictures ? fmt::format("![{}]({}.svg)\n\n", one.family->title, one.family->name) : "");
+  if (pictures && amplification) text += "![Spectral radius](amplification.svg)\n\n";
+  report.tables.front().text = text + report.tables.front().text;
+  return report;
+}
+
 }  // namespace poinsot::stability

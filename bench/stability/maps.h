@@ -26,5 +26,8 @@ std::string write_maps(const std::vector<Mapped>& maps, const std::filesystem::p
 // Verdicts by family; which methods are accurate over all of a family, and what the others come to; results that were
 // wrong or told, each.
 std::vector<study::Table> tables(const std::vector<Mapped>& maps);
+// These tables under what the families are and, where there are pictures, those of the maps; with the amplification's.
+study::Report stability_report(const std::vector<Mapped>& maps, bool pictures, bool amplification,
+                               const std::vector<std::string>& foot);
 
 }  // namespace poinsot::stability
