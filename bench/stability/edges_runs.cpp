@@ -84,7 +84,7 @@ Family pulse() {
 }
 
 Family smooth_pulse() {
-  Family f;
+  Family f = pulse();
   f.name = "smooth_pulse";
   f.title = "a smooth force of short duration";
   f.about =
@@ -96,16 +96,6 @@ Family smooth_pulse() {
     "forces": [{"type": "force", "body": "mass", "point": [0, 0, 0],
       "force": ["0.48*exp(-((t - 0.3)/x)^2)/(x*sqrt(pi))", "0.6*exp(-((t - 0.3)/x)^2)/(x*sqrt(pi))",
                 "0.64*exp(-((t - 0.3)/x)^2)/(x*sqrt(pi))"]}]})json"};
-  f.x = {Axis::parameter,
-         "duration of the force, s",
-         "x",
-         {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8},
-         {1e-1, 1e-3, 1e-6},
-         {},
-         {},
-         1e-1};
-  f.y = accuracy();
-  f.columns = {"mass.x", "mass.y", "mass.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     // The integral of (1 + erf u)/2 is (u (1 + erf u) + exp(-u^2)/sqrt(pi))/2.
     const auto twice = [&](double u) {

@@ -9,8 +9,7 @@
 namespace poinsot::block {
 namespace {
 
-// Ten times as many unknowns as the paper's largest mechanism has: some 100 kB each. Three formulations of a scene have
-// three patterns each.
+// Unknowns of a matrix that is kept: some forty bodies. Three formulations of a scene have three patterns each.
 constexpr int kSmall = 500;
 constexpr std::size_t kKept = 9;
 

@@ -1,9 +1,9 @@
 // Schedules by structure: what was found for one matrix serves the next of the same pattern.
 //
 // A run has several systems of few patterns, and the cases of a study have those of one mechanism over and over; of a
-// small mechanism's ten steps a third of the time goes into the order of elimination. A schedule is a function of its
-// pattern alone, so nothing depends on whether it was known. Each thread keeps a few small ones; a large one lives as
-// long as those who solve by it.
+// pendulum's ten steps the order of elimination takes more than a quarter of the instructions. A schedule is a function
+// of its pattern alone, so nothing depends on whether it was known. Each thread keeps a few small ones; a large one
+// lives as long as those who solve by it.
 #pragma once
 
 #include <memory>
