@@ -302,7 +302,8 @@ TEST_P(Interrupted, AnExistingFileKeepsItsModeAndIsReplacedAtOnce) {
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
 }
 
-INSTANTIATE_TEST_SUITE_P(As, Interrupted, testing::Values("tester", "nobody"));
+INSTANTIATE_TEST_SUITE_P(As, Interrupted, testing::Values("tester", "nobody"),
+                         [](const auto& test) { return std::string(test.param); });
 
 }  // namespace
 }  // namespace poinsot::test
