@@ -18,14 +18,20 @@ install(TARGETS poinsot EXPORT poinsot)
 install(DIRECTORY core linsolve formulations integrators DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/poinsot
         FILES_MATCHING PATTERN "*.h")
 
-# A further library of the package, poinsot::NAME, of the sources given: its headers are those of the folder.
+# A further library of the package, poinsot::NAME, of the sources given: its headers are those of the folder. OPTIMIZED
+# is one whose loops are met row by row of a long output.
 function(poinsot_add_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 given OPTIMIZED "" "")
   set(library poinsot_${name})
-  add_library(${library} ${ARGN})
+  add_library(${library} ${given_UNPARSED_ARGUMENTS})
   add_library(poinsot::${name} ALIAS ${library})
   target_link_libraries(${library} PRIVATE fmt::fmt $<BUILD_INTERFACE:poinsot_warnings>)
-  target_compile_options(${library} PRIVATE ${poinsot_outer_options})
-  target_precompile_headers(${library} REUSE_FROM poinsot_outer_headers)
+  if(given_OPTIMIZED)
+    target_precompile_headers(${library} REUSE_FROM poinsot_headers)
+  else()
+    target_compile_options(${library} PRIVATE ${poinsot_outer_options})
+    target_precompile_headers(${library} REUSE_FROM poinsot_outer_headers)
+  endif()
   set_target_properties(${library} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
                                               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   install(TARGETS ${library} EXPORT poinsot)
