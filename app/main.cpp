@@ -20,6 +20,7 @@
 #include "app/signals.h"
 #include "app/terminal.h"
 #include "bench/study/output_file.h"
+#include "bench/study/temporary_file.h"
 #include "core/blas.h"
 #include "core/input_error.h"
 #include "core/provenance.h"

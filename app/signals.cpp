@@ -9,7 +9,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "bench/study/output_file.h"
+#include "bench/study/temporary_file.h"
 #include "core/interruption.h"
 
 namespace poinsot::app {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "bench/study/csv.h"
 #include "bench/study/fit.h"
 #include "bench/study/measure.h"
 #include "bench/study/output_file.h"

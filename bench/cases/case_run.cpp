@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "bench/cases/watch.h"
+#include "bench/study/csv.h"
 #include "bench/study/measure.h"
-#include "bench/study/output_file.h"
 #include "core/input_error.h"
 #include "core/interruption.h"
 #include "core/places.h"

@@ -11,6 +11,28 @@
 #include "core/input_error.h"
 
 namespace poinsot::study {
+namespace {
+
+// What a spreadsheet would compute: no sign of a number, nor a dash alone.
+bool is_formula(std::string_view text) {
+  if (text.starts_with('=') || text.starts_with('@')) return true;
+  const bool sign = text.starts_with('+') || text.starts_with('-');
+  double number = 0;
+  return sign && text.size() > 1 &&
+         std::from_chars(text.data() + 1, text.data() + text.size(), number).ptr != text.data() + text.size();
+}
+
+}  // namespace
+
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos && !is_formula(text)) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c;
+    if (c == '"') quoted += c;
+  }
+  return quoted + '"';
+}
 
 std::vector<std::string> csv_fields(std::string_view line) {
   std::vector<std::string> result(1);

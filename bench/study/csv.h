@@ -1,5 +1,5 @@
-// CSV files as the program writes them: fields taken apart as csv_field() of bench/study/output_file.h puts them
-// together, and whole files with their notes, the lines that begin with '#'.
+// CSV files as the program writes them: fields put together and taken apart, and whole files with their notes, the
+// lines that begin with '#'.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,8 @@
 
 namespace poinsot::study {
 
+// A field of CSV, quoted where it has to be, and where a spreadsheet would take it for a formula.
+std::string csv_field(std::string_view text);
 std::vector<std::string> csv_fields(std::string_view line);
 
 struct CsvTable {

@@ -2,21 +2,19 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <charconv>
-#include <climits>
 #include <cstdio>
 #include <cstring>
 
+#include "bench/study/csv.h"
 #include "bench/study/output_place.h"
+#include "bench/study/temporary_file.h"
 #include "core/input_error.h"
 
 namespace poinsot::study {
@@ -25,40 +23,8 @@ namespace {
 
 constexpr std::size_t kBuffer = 1 << 20;
 
-// Temporary files that are being written. A signal handler may neither allocate nor lock, so their paths lie here.
-struct Unfinished {
-  std::atomic<pid_t> owner = 0;  // not a process that was made of it since
-  char path[PATH_MAX] = {};
-};
-std::array<Unfinished, 32> unfinished;
-
-void remember(const fs::path& file) {
-  constexpr pid_t kTaken = -1;  // until the path stands there: another thread may look for a place, too
-  for (Unfinished& free : unfinished) {
-    pid_t nobody = 0;
-    if (file.native().size() >= sizeof free.path || !free.owner.compare_exchange_strong(nobody, kTaken)) continue;
-    std::strcpy(free.path, file.c_str());
-    free.owner = getpid();
-    return;
-  }
-}
-
-void forget(const fs::path& file) {
-  for (Unfinished& one : unfinished)
-    if (one.owner == getpid() && file == one.path) one.owner = 0;
-}
-
 std::string shown(const fs::path& target) {
   return target == "-" ? "standard output" : target.string();
-}
-
-// What a spreadsheet would compute: no sign of a number, nor a dash alone.
-bool is_formula(std::string_view text) {
-  if (text.starts_with('=') || text.starts_with('@')) return true;
-  const bool sign = text.starts_with('+') || text.starts_with('-');
-  double number = 0;
-  return sign && text.size() > 1 &&
-         std::from_chars(text.data() + 1, text.data() + text.size(), number).ptr != text.data() + text.size();
 }
 
 std::string cannot_be_written(const fs::path& target, std::string_view reason) {
@@ -69,64 +35,7 @@ std::string cannot_be_written(const fs::path& target, std::string_view reason) {
   throw InputError(cannot_be_written(target, reason));
 }
 
-// Makes what is missing of a folder; returns what was made, the innermost first.
-std::vector<fs::path> make_folders(const fs::path& folder) {
-  std::error_code error;
-  std::vector<fs::path> missing;
-  for (fs::path part = folder; !part.empty() && !fs::exists(part, error); part = part.parent_path())
-    missing.push_back(part);
-  fs::create_directories(folder, error);
-  if (error) throw InputError(fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
-  return missing;
-}
-
-void remove_folders(const std::vector<fs::path>& folders) {
-  std::error_code error;  // one that others have put something into stays
-  for (const fs::path& folder : folders) fs::remove(folder, error);
-}
-
-// A socket in the file system is not opened but connected to.
-int open_device(const fs::path& file) {
-  sockaddr_un address{};
-  if (!fs::is_socket(file) || file.native().size() >= sizeof address.sun_path)
-    return open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-  address.sun_family = AF_UNIX;
-  std::strcpy(address.sun_path, file.c_str());
-  const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (descriptor < 0 || connect(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0)
-    return descriptor;
-  const int why = errno;
-  close(descriptor);
-  errno = why;
-  return -1;
-}
-
-// With the owner and mode of the file it takes the place of, or those of a new one.
-int open_beside(const fs::path& real, fs::path& temporary) {
-  std::string name = (real.parent_path() / ".poinsot-XXXXXX").string();
-  const int descriptor = mkostemp(name.data(), O_CLOEXEC | O_NOFOLLOW);  // and O_EXCL
-  if (descriptor < 0) return -1;
-  temporary = name;
-  remember(temporary);
-  struct stat before {};
-  if (stat(real.c_str(), &before) == 0) {
-    [[maybe_unused]] const int allowed = fchown(descriptor, before.st_uid, before.st_gid);  // to few
-    fchmod(descriptor, before.st_mode & 07777);
-  } else {
-    const mode_t mask = umask(0);
-    umask(mask);
-    fchmod(descriptor, 0666 & ~mask);
-  }
-  return descriptor;
-}
-
 }  // namespace
-
-void remove_unfinished() noexcept {
-  const pid_t self = getpid();
-  for (const Unfinished& file : unfinished)
-    if (file.owner == self) unlink(file.path);
-}
 
 bool is_device(const fs::path& file) {
   const OutputPlace place = output_place(file);
@@ -160,7 +69,7 @@ OutputFile::OutputFile(fs::path target, BinaryRows binary) : binary_(std::move(b
     if (fs::exists(real_, error) && access(real_.c_str(), W_OK) != 0) refuse(target_, std::strerror(errno));
     const fs::path folder = target_.parent_path();
     if (!folder.empty()) folders_ = make_folders(folder);
-    descriptor_ = open_beside(real_, temporary_);
+    descriptor_ = open_temporary(real_, temporary_);
     regular_ = true;
   }
   if (descriptor_ < 0) {
@@ -175,7 +84,7 @@ OutputFile::~OutputFile() {
   if (descriptor_ >= 0) close(descriptor_);
   if (temporary_.empty()) return;
   unlink(temporary_.c_str());
-  forget(temporary_);
+  forget_temporary(temporary_);
   remove_folders(folders_);
 }
 
@@ -308,7 +217,7 @@ void OutputFile::publish() {
   const bool named = std::rename(temporary_.c_str(), real_.c_str()) == 0;
   const int why = errno;
   if (!named) unlink(temporary_.c_str());
-  forget(temporary_);
+  forget_temporary(temporary_);
   temporary_.clear();
   folders_.clear();
   if (named) return;
@@ -333,16 +242,6 @@ void OutputFile::complete() {
 void OutputFile::commit() {
   complete();
   if (!failed_ || lines_ > 0) publish();
-}
-
-std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos && !is_formula(text)) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) {
-    quoted += c;
-    if (c == '"') quoted += c;
-  }
-  return quoted + '"';
 }
 
 }  // namespace poinsot::study

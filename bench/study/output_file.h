@@ -77,14 +77,9 @@ class OutputFile {
   std::string buffer_;
 };
 
-// Removes the files that are not complete: for handlers of signals, it neither allocates nor locks.
-void remove_unfinished() noexcept;
-
 // Whether it is written as it is: "-", a device, a pipe, a descriptor that stands open.
 bool is_device(const std::filesystem::path& file);
 // Of a name like /dev/stdout, or "-"; -1 of any other.
 int open_descriptor(const std::filesystem::path& file);
-// A field of CSV, quoted where it has to be, and where a spreadsheet would take it for a formula.
-std::string csv_field(std::string_view text);
 
 }  // namespace poinsot::study

@@ -1,9 +1,16 @@
 #include "bench/study/output_place.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
+#include <cstring>
+
+#include "core/input_error.h"
 
 namespace poinsot::study {
 namespace fs = std::filesystem;
@@ -29,6 +36,36 @@ OutputPlace output_place(const fs::path& file) {
     path = next.is_absolute() ? next : folder / next;
   }
   return {path, -1, ELOOP};
+}
+
+std::vector<fs::path> make_folders(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path part = folder; !part.empty() && !fs::exists(part, error); part = part.parent_path())
+    missing.push_back(part);
+  fs::create_directories(folder, error);
+  if (error) throw InputError(fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
+  return missing;
+}
+
+void remove_folders(const std::vector<fs::path>& folders) {
+  std::error_code error;
+  for (const fs::path& folder : folders) fs::remove(folder, error);
+}
+
+int open_device(const fs::path& file) {
+  sockaddr_un address{};
+  if (!fs::is_socket(file) || file.native().size() >= sizeof address.sun_path)
+    return open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+  address.sun_family = AF_UNIX;
+  std::strcpy(address.sun_path, file.c_str());
+  const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0 || connect(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0)
+    return descriptor;
+  const int why = errno;
+  close(descriptor);
+  errno = why;
+  return -1;
 }
 
 }  // namespace poinsot::study

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace poinsot::study {
 
@@ -13,5 +14,13 @@ struct OutputPlace {
 };
 
 OutputPlace output_place(const std::filesystem::path& file);
+
+// The descriptor, or -1 with errno. A socket in the file system is not opened but connected to.
+int open_device(const std::filesystem::path& file);
+
+// Makes what is missing of a folder; returns what was made, the innermost first. Throws InputError.
+std::vector<std::filesystem::path> make_folders(const std::filesystem::path& folder);
+// Those that nobody has put anything into.
+void remove_folders(const std::vector<std::filesystem::path>& folders);
 
 }  // namespace poinsot::study

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "bench/study/csv.h"
 #include "bench/study/output_file.h"
 #include "core/check.h"
 #include "core/input_error.h"

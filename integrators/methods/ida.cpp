@@ -1,10 +1,6 @@
 #include "integrators/methods/ida.h"
 
 #include <fmt/format.h>
-#include <ida/ida.h>
-#include <nvector/nvector_serial.h>
-#include <sundials/sundials_linearsolver.h>
-#include <sundials/sundials_matrix.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +8,7 @@
 
 #include "core/check.h"
 #include "core/interruption.h"
+#include "integrators/methods/ida_objects.h"
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
@@ -34,41 +31,6 @@ constexpr double kShare = 0.1;
 // Newton's corrections end below this part of the tolerance. IDA's own third makes more steps fail than it saves.
 constexpr double kNewton = 0.1;
 
-// What IDA asks its matrix and its linear solver for: nothing but to solve, because the matrix is written and factored
-// when IDA wants a new one. Both are empty shells around the run.
-SUNMatrix_ID matrix_id(SUNMatrix) {
-  return SUNMATRIX_CUSTOM;
-}
-int zero_matrix(SUNMatrix) {
-  return 0;
-}
-SUNLinearSolver_Type solver_type(SUNLinearSolver) {
-  return SUNLINEARSOLVER_DIRECT;
-}
-SUNLinearSolver_ID solver_id(SUNLinearSolver) {
-  return SUNLINEARSOLVER_CUSTOM;
-}
-int nothing_to_do(SUNLinearSolver) {
-  return SUNLS_SUCCESS;
-}
-int already_factored(SUNLinearSolver, SUNMatrix) {
-  return SUNLS_SUCCESS;
-}
-
-template <class T, void (*release)(T)>
-struct Release {
-  void operator()(T x) const { release(x); }
-};
-template <class T, void (*release)(T)>
-using Owned = std::unique_ptr<std::remove_pointer_t<T>, Release<T, release>>;
-
-void free_context(SUNContext context) {
-  SUNContext_Free(&context);
-}
-void free_ida(void* ida) {
-  IDAFree(&ida);
-}
-
 // IDA's objects and the run they are part of, which their callbacks are given.
 class Session {
  public:
@@ -85,38 +47,20 @@ class Session {
         at_(run.state),
         next_(problem_),
         switches_(problem_.model(), run.settings.end, run.tell),
-        pulses_(problem_.model(), run.settings.end, run.settings.rtol, run.tell) {
-    SUNContext context = nullptr;
-    check(SUNContext_Create(nullptr, &context) == 0, "SUNDIALS gives a context");
-    context_.reset(context);
-    y_.reset(N_VNew_Serial(form_->size(), context));
-    y_dot_.reset(N_VNew_Serial(form_->size(), context));
-    inner_.reset(N_VNew_Serial(form_->size(), context));
-    matrix_.reset(SUNMatNewEmpty(context));
-    linear_.reset(SUNLinSolNewEmpty(context));
-    ida_.reset(IDACreate(context));
-    check(y_ && y_dot_ && inner_ && matrix_ && linear_ && ida_, "SUNDIALS gives its objects");
-    matrix_->ops->getid = matrix_id;
-    matrix_->ops->zero = zero_matrix;
-    linear_->content = this;
-    linear_->ops->gettype = solver_type;
-    linear_->ops->getid = solver_id;
-    linear_->ops->initialize = nothing_to_do;
-    linear_->ops->setup = already_factored;
-    linear_->ops->solve = solve;
-  }
+        pulses_(problem_.model(), run.settings.end, run.settings.rtol, run.tell),
+        objects_(form_->size(), this, solve) {}
 
   Status prepare() {
     if (Status status = system_.prepare(form_->pattern(), form_->unknowns()); !status.ok()) return status;
     if (Status status = consistent_.prepare(); !status.ok()) return status;
-    form_->start(at_, values(y_.get()), values(y_dot_.get()));
-    void* ida = ida_.get();
+    form_->start(at_, values(objects_.y.get()), values(objects_.y_dot.get()));
+    void* ida = objects_.ida.get();
     const auto done = [](int flag) { check(flag == IDA_SUCCESS, "IDA accepts what it is given"); };
-    done(IDAInit(ida, residual, 0, y_.get(), y_dot_.get()));
+    done(IDAInit(ida, residual, 0, objects_.y.get(), objects_.y_dot.get()));
     done(IDASetErrHandlerFn(ida, keep_silent, nullptr));
     done(IDASetUserData(ida, this));
     done(IDAWFtolerances(ida, weights));
-    done(IDASetLinearSolver(ida, linear_.get(), matrix_.get()));
+    done(IDASetLinearSolver(ida, objects_.linear.get(), objects_.matrix.get()));
     done(IDASetJacFn(ida, jacobian));
     done(IDASetNonlinConvCoef(ida, kNewton));
     done(IDASetStopTime(ida, settings_.end));
@@ -136,8 +80,6 @@ class Session {
   }
 
  private:
-  using Vector = Owned<N_Vector, N_VDestroy>;
-
   Status advance() {
     SampleTimes times(settings_.every, settings_.end);
     Creeping creeping(settings_.end);
@@ -154,13 +96,13 @@ class Session {
         times.pass();
         continue;
       }
-      if (IDASolve(ida_.get(), settings_.end, &t, y_.get(), y_dot_.get(), IDA_ONE_STEP) < 0) {
+      if (IDASolve(objects_.ida.get(), settings_.end, &t, objects_.y.get(), objects_.y_dot.get(), IDA_ONE_STEP) < 0) {
         if (Status status = go_on(); !status.ok()) return status;
         continue;
       }
       ++statistics_.steps;
       double h = 0;
-      IDAGetLastStep(ida_.get(), &h);
+      IDAGetLastStep(objects_.ida.get(), &h);
       statistics_.largest_rotation = std::max(statistics_.largest_rotation, h * problem_.fastest_turn());
       limit_turn();
       if (creeping.tries(t, h)) return step_too_small(t, h, {});
@@ -187,13 +129,13 @@ class Session {
   // The next step by how fast counted angles turn now, with room for their getting faster.
   void limit_turn() {
     const double rate = problem_.counted_turn().rate;
-    if (rate > 0) IDASetMaxStep(ida_.get(), 0.5 * kMostCounted / rate);
+    if (rate > 0) IDASetMaxStep(objects_.ida.get(), 0.5 * kMostCounted / rate);
   }
 
   // The next switch of the data within reach of IDA's next step, which it then does not step over, nor a pulse.
   SwitchTimes::Switch next_switch(double t, Creeping& creeping) {
     double h = 0;
-    IDAGetCurrentStep(ida_.get(), &h);
+    IDAGetCurrentStep(objects_.ida.get(), &h);
     const double reach = h > 0 ? 2 * h : 0.01 * (settings_.end - t);  // its first step is a tenth of that, or less
     const double ahead = std::min(t + reach, settings_.end);
     const SwitchTimes::Switch turn = switches_.first(t, ahead);
@@ -204,7 +146,7 @@ class Session {
       const double seen = pulses_.reach(t, wanted);
       if (seen < wanted) creeping.limited();
       const double stop = seen < wanted ? t + (seen - t) / kStages : std::min(turn.before, settings_.end);
-      check(IDASetStopTime(ida_.get(), stop) == IDA_SUCCESS, "IDA stops at a switch");
+      check(IDASetStopTime(objects_.ida.get(), stop) == IDA_SUCCESS, "IDA stops at a switch");
     }
     return turn;
   }
@@ -225,8 +167,8 @@ class Session {
   // After a failure of IDA: again from the last point, at the tolerance itself.
   Status go_on() {
     double t = 0, h = 0;
-    IDAGetCurrentTime(ida_.get(), &t);
-    IDAGetCurrentStep(ida_.get(), &h);
+    IDAGetCurrentTime(objects_.ida.get(), &t);
+    IDAGetCurrentStep(objects_.ida.get(), &h);
     if (t > at_.t) {
       if (Status status = stand_at(t); !status.ok()) return status;
     }
@@ -238,17 +180,18 @@ class Session {
 
   void count() {
     long newton = 0, error_tests = 0, failures = 0;
-    IDAGetNumNonlinSolvIters(ida_.get(), &newton);
-    IDAGetNumErrTestFails(ida_.get(), &error_tests);
-    IDAGetNumStepSolveFails(ida_.get(), &failures);
+    IDAGetNumNonlinSolvIters(objects_.ida.get(), &newton);
+    IDAGetNumErrTestFails(objects_.ida.get(), &error_tests);
+    IDAGetNumStepSolveFails(objects_.ida.get(), &failures);
     statistics_.newton_iterations += newton;
     statistics_.rejected_steps += error_tests + failures;
   }
 
   // Makes the motion at a time within the last step the state.
   Status stand_at(double t) {
-    check(IDAGetDky(ida_.get(), t, 0, inner_.get()) == IDA_SUCCESS, "the time lies within IDA's last step");
-    const std::span<const double> y = values(inner_.get());
+    check(IDAGetDky(objects_.ida.get(), t, 0, objects_.inner.get()) == IDA_SUCCESS,
+          "the time lies within IDA's last step");
+    const std::span<const double> y = values(objects_.inner.get());
     next_.t = t;
     std::ranges::copy(form_->q(y), next_.q.begin());
     std::ranges::copy(form_->v(y), next_.v.begin());
@@ -284,8 +227,8 @@ class Session {
   // From the last point: what IDA remembers of the motion is gone.
   void start_anew(double t) {
     count();
-    form_->start(at_, values(y_.get()), values(y_dot_.get()));
-    check(IDAReInit(ida_.get(), t, y_.get(), y_dot_.get()) == IDA_SUCCESS, "IDA starts anew");
+    form_->start(at_, values(objects_.y.get()), values(objects_.y_dot.get()));
+    check(IDAReInit(objects_.ida.get(), t, objects_.y.get(), objects_.y_dot.get()) == IDA_SUCCESS, "IDA starts anew");
   }
 
   void give_out() { give_out(at_.t); }
@@ -297,9 +240,7 @@ class Session {
 
   // IDA's callbacks: 0 done, 1 not possible here, try a smaller step.
   static Session& of(void* user) { return *static_cast<Session*>(user); }
-  static std::span<double> values(N_Vector x) {
-    return {N_VGetArrayPointer(x), static_cast<std::size_t>(N_VGetLength(x))};
-  }
+  static std::span<double> values(N_Vector x) { return IdaObjects::values(x); }
   static int residual(double t, N_Vector y, N_Vector y_dot, N_Vector F, void* user) {
     const std::span<double> out = values(F);
     of(user).form_->residual(t, values(y), values(y_dot), out);
@@ -317,7 +258,7 @@ class Session {
     Session& session = of(shell->content);
     std::ranges::copy(values(b), values(x).begin());
     double t = 0;
-    IDAGetCurrentTime(session.ida_.get(), &t);
+    IDAGetCurrentTime(session.objects_.ida.get(), &t);
     session.linear_status_ = session.system_.solve(t, values(x));
     return session.linear_status_.ok() ? 0 : 1;
   }
@@ -352,12 +293,7 @@ class Session {
   Pulses pulses_;
   Status linear_status_;
   double share_ = kShare;  // of the tolerance
-
-  Owned<SUNContext, free_context> context_;
-  Vector y_, y_dot_, inner_;
-  Owned<SUNMatrix, SUNMatFreeEmpty> matrix_;
-  Owned<SUNLinearSolver, SUNLinSolFreeEmpty> linear_;
-  std::unique_ptr<void, Release<void*, free_ida>> ida_;
+  IdaObjects objects_;
 };
 
 class Ida final : public Integrator {

@@ -1,0 +1,146 @@
+#include "integrators/settings_table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "formulations/registry.h"
+#include "integrators/jacobian_policy.h"
+#include "integrators/stopping_test.h"
+#include "linsolve/registry.h"
+
+namespace poinsot {
+namespace {
+
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> names;
+  for (const IntegratorEntry& entry : integrators())
+    if (entry.analysis == Analysis::dynamics) names.emplace_back(entry.name);
+  return names;
+}
+
+using For = SettingEntry::For;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+const std::array kEntries{
+    SettingEntry{"analysis", "what is computed", &Settings::analysis,
+                 [] {
+                   return std::vector<std::string>{"kinematics", "dynamics"};
+                 },
+                 false},  // as in the enumeration
+    SettingEntry{"formulation", "orientation coordinates", &Settings::formulation,
+                 [] { return formulations().names(); }, false},
+    SettingEntry{"integrator", "time stepping of dynamics", &Settings::integrator, integrator_names, false},
+    SettingEntry{"linear_solver", "solver of the linear systems", &Settings::linear_solver,
+                 [] { return linear_solvers().names(); }, false},
+    SettingEntry{"linear_system", "matrix that is factored", &Settings::linear_system,
+                 [] { return linear_systems().names(); }, false},
+    SettingEntry{"jacobian", "matrix of Newton's method", &Settings::jacobian, [] { return jacobians().names(); },
+                 false, 0, kInfinity, For::fixed_steps},
+    SettingEntry{"stopping", "stopping test of Newton's method in dynamics", &Settings::stopping,
+                 [] { return stopping_tests().names(); }, false, 0, kInfinity, For::fixed_steps},
+    SettingEntry{"step", "step size h, s, of integrators with fixed steps", &Settings::step, nullptr, false, 0,
+                 kInfinity, For::fixed_steps},
+    SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false, kLeastEnd},
+    SettingEntry{"tolerance", "Newton: size of the correction, see stopping; in kinematics its 2-norm",
+                 &Settings::tolerance, nullptr, false, 0, kInfinity, For::fixed_steps},
+    SettingEntry{"rtol", "relative tolerance of integrators with error control", &Settings::rtol, nullptr, false,
+                 kLeastRtol, kInfinity, For::error_control},
+    SettingEntry{"atol", "absolute tolerance of integrators with error control", &Settings::atol, nullptr, false, 0,
+                 kInfinity, For::error_control},
+    SettingEntry{"max_iterations", "Newton: iterations allowed in a step", &Settings::max_iterations, nullptr, false, 0,
+                 kInfinity, For::fixed_steps},
+    SettingEntry{"retry", "do a step of fixed size that fails in halves of it, and halves of those", &Settings::retry,
+                 nullptr, false, 0, kInfinity, For::fixed_steps, "end the run there"},
+    SettingEntry{"every", "time between output rows, s; 0: every step", &Settings::every, nullptr, true},
+    SettingEntry{"assemble", "project an initial state that violates the constraints", &Settings::assembly, nullptr,
+                 false, 0, kInfinity, For::all, "refuse such a state"},
+};
+
+std::vector<SettingEntry> make_entries() {
+  std::vector<SettingEntry> entries(std::begin(kEntries), std::end(kEntries));
+  for (const IntegratorEntry& integrator : integrators()) {
+    for (const MethodParameter& parameter : integrator.parameters) {
+      if (std::ranges::find(entries, parameter.name, &SettingEntry::key) != entries.end()) continue;
+      entries.push_back({parameter.name,
+                         fmt::format("{}: {}", fmt::join(integrators_with(parameter.name), ", "), parameter.about),
+                         &parameter, nullptr, true, parameter.least, parameter.most});
+    }
+  }
+  return entries;
+}
+
+}  // namespace
+
+std::vector<std::string_view> integrators_with(std::string_view parameter) {
+  std::vector<std::string_view> names;
+  for (const IntegratorEntry& entry : integrators())
+    if (std::ranges::find(entry.parameters, parameter, &MethodParameter::name) != entry.parameters.end())
+      names.push_back(entry.name);
+  return names;
+}
+
+bool chooses_steps(const Settings& settings) {
+  const IntegratorEntry* integrator = integrators().find(settings.integrator);
+  return settings.analysis == Analysis::dynamics && integrator && integrator->controls_error;
+}
+
+std::string why_ignored(const SettingEntry& entry, const Settings& settings) {
+  const For used = chooses_steps(settings) ? For::error_control : For::fixed_steps;
+  if (entry.meant_for == For::all || entry.meant_for == used) return "";
+  if (settings.analysis == Analysis::kinematics)
+    return fmt::format("{} means nothing to kinematics, whose accuracy is the tolerance of Newton's method",
+                       option_name(entry));
+  return used == For::error_control
+             ? fmt::format("{} means nothing to integrator {}, which controls its error by rtol and atol",
+                           option_name(entry), settings.integrator)
+             : fmt::format("{} means nothing to integrator {}, whose accuracy follows from its step",
+                           option_name(entry), settings.integrator);
+}
+
+std::span<const SettingEntry> setting_entries() {
+  static const std::vector<SettingEntry> entries = make_entries();
+  return entries;
+}
+
+const SettingEntry* find_setting(std::string_view key) {
+  const auto entry = std::ranges::find(setting_entries(), key, &SettingEntry::key);
+  return entry == setting_entries().end() ? nullptr : &*entry;
+}
+
+bool is_switch(const SettingEntry& entry) {
+  return std::holds_alternative<bool Settings::*>(entry.member) ||
+         std::holds_alternative<Assembly Settings::*>(entry.member);
+}
+
+std::string option_name(const SettingEntry& entry) {
+  std::string name = "--" + std::string(entry.key);
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
+std::string value_text(const SettingEntry& entry, const Settings& settings) {
+  if (const auto* text = std::get_if<std::string Settings::*>(&entry.member)) return settings.*(*text);
+  if (const auto* number = std::get_if<double Settings::*>(&entry.member))
+    return fmt::format("{}", settings.*(*number));
+  if (std::holds_alternative<std::optional<double> Settings::*>(entry.member))
+    return settings.atol ? fmt::format("{}", *settings.atol) : "rtol/100";
+  if (const auto* count = std::get_if<int Settings::*>(&entry.member)) return fmt::format("{}", settings.*(*count));
+  if (const auto* flag = std::get_if<bool Settings::*>(&entry.member)) return fmt::format("{}", settings.*(*flag));
+  if (const auto* parameter = std::get_if<const MethodParameter*>(&entry.member))
+    return fmt::format("{}", (*parameter)->of(settings));
+  if (entry.names) return entry.names()[static_cast<std::size_t>(settings.analysis)];
+  switch (settings.assembly) {
+    case Assembly::always:
+      return "true";
+    case Assembly::never:
+      return "false";
+    case Assembly::small:
+      break;
+  }
+  return "where the violation is small";
+}
+
+}  // namespace poinsot
