@@ -1,0 +1,159 @@
+#include "integrators/start/beside.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "core/check.h"
+#include "core/index.h"
+#include "formulations/registry.h"
+#include "integrators/settings.h"
+#include "linsolve/column_dependencies.h"
+
+namespace poinsot {
+namespace {
+
+constexpr double kMove = 1e-3;        // of a body's size
+constexpr double kShortWhile = 1e-3;  // s, where nothing moves yet
+constexpr double kPulledBack = 0.3;   // of the move that has to be left after the projection
+
+// Bodies of unit mass that turn as hard as they move: projections are the shortest ways.
+std::shared_ptr<const Model> with_unit_masses(const Model& model, std::span<const double> sizes) {
+  auto unit = std::make_shared<Model>(model);
+  for (std::size_t b = 0; b < sizes.size(); ++b) {
+    unit->bodies[b].mass = 1;
+    unit->bodies[b].inertia = sizes[b] * sizes[b] * Matrix3::Identity();
+  }
+  return unit;
+}
+
+}  // namespace
+
+Beside::Beside(const std::shared_ptr<const Model>& model, std::span<const BodyState> states, RowSpace& space)
+    : model_(model), states_(states.begin(), states.end()), space_(space), sizes_(body_sizes(*model)) {
+  unit_ = with_unit_masses(*model_, sizes_);
+}
+
+Trial Beside::begin(const std::vector<int>& without) const {
+  Trial trial;
+  trial.problem = intrinsic_formulation().make(unit_, without);
+  trial.consistent = std::make_unique<Consistent>(*trial.problem, LinearChoice{});
+  Place& start = trial.start;
+  start.q.resize(index(trial.problem->nq())), start.v.resize(index(trial.problem->nv()));
+  check(trial.problem->from_bodies(states_, start.q, start.v).ok(), "every orientation has coordinates");
+  trial.regular = trial.put_back(start);
+  if (!trial.regular) return trial;
+  trial.problem->set_position(0, start.q);
+  trial.problem->set_velocity(start.v);
+  trial.regular = trial.consistent->project_velocity(0, start.v).ok();
+  return trial;
+}
+
+double Beside::extent(std::span<const double> dq) const {
+  double largest = 0;
+  for (std::size_t b = 0; b < sizes_.size(); ++b)
+    for (std::size_t k = 0; k < 6; ++k)
+      largest = std::max(largest, std::abs(dq[6 * b + k]) / (k < 3 ? sizes_[b] : 1.0));
+  return largest;
+}
+double Beside::distance(std::span<const double> q, std::span<const double> from) const {
+  double largest = 0;
+  const std::size_t per_body = q.size() / sizes_.size();
+  for (std::size_t k = 0; k < q.size(); ++k)
+    largest = std::max(largest, std::abs(q[k] - from[k]) / (k % per_body < 3 ? sizes_[k / per_body] : 1.0));
+  return largest;
+}
+
+std::optional<Place> Beside::along_velocities(Trial& trial) {
+  const Place& start = trial.start;
+  const double speed = extent(start.v);
+  const bool driven = std::ranges::any_of(model_->rows, [](const Row& row) { return !row.f.is_constant(); });
+  if (speed == 0 && !driven) return {};
+  Place place = start;
+  place.t = speed > 0 ? std::min(kMove / speed, 1.0) : kShortWhile;
+  std::vector<double> dq = start.v;
+  for (double& x : dq) x *= place.t;
+  return settle(trial, std::move(place), dq, speed > 0 && kMove / speed <= 1.0);
+}
+
+std::optional<Place> Beside::at_random(Trial& trial, int seed) {
+  Problem& problem = *trial.problem;
+  const Place& start = trial.start;
+  std::mt19937 random(static_cast<unsigned>(seed));
+  std::normal_distribution<double> normal;
+  std::vector<double> move(index(problem.nv() + problem.nc()), 0.0);
+  for (std::size_t b = 0; b < sizes_.size(); ++b)
+    for (std::size_t k = 0; k < 6; ++k) move[6 * b + k] = sizes_[b] * (k < 3 ? 1 : sizes_[b]) * normal(random);
+  const double asked = extent(std::span<const double>(move).first(start.v.size()));
+  const std::vector<double> at_rest(start.v.size(), 0.0);
+  problem.set_position(0, start.q);
+  problem.set_velocity(at_rest);
+  if (!trial.consistent->factor(0).ok() || !trial.consistent->solve(0, move).ok()) return {};
+  move.resize(start.v.size());
+  const double length = extent(move);
+  if (!(length > 1e-6 * asked)) return {};  // it cannot move
+  for (double& x : move) x *= kMove / length;
+  return settle(trial, start, move, true);
+}
+
+// Moves by dq, puts the mechanism back onto the problem's rows, and looks at all of them.
+std::optional<Place> Beside::settle(Trial& trial, Place place, std::span<const double> dq, bool must_move) {
+  const Place& start = trial.start;
+  trial.problem->retract(start.q, dq, place.q);
+  const double moved = distance(place.q, start.q);
+  if (!trial.put_back(place)) return {};
+  if (must_move && distance(place.q, start.q) < kPulledBack * moved) return {};
+  look(*trial.problem, place);
+  return place;
+}
+
+void Beside::stand(Problem& problem, const Place& place) {
+  std::vector<BodyState> states(states_.size());
+  problem.set_position(place.t, place.q);
+  problem.set_velocity(place.v);
+  const std::vector<double> none(place.v.size(), 0.0);
+  problem.to_bodies(none, states);
+  space_.stand(place.t, states);
+}
+
+std::span<const double> Beside::measure_start(Trial& trial) {
+  stand(*trial.problem, trial.start);
+  off_at_start_.assign(space_.rows().size(), 0.0);
+  space_.distances(off_at_start_);
+  for (double& x : off_at_start_) x = std::abs(x);
+  return off_at_start_;
+}
+
+void Beside::look(Problem& problem, Place& place) {
+  stand(problem, place);
+  place.columns = space_.columns();
+  place.dependent = dependent_columns(place.columns, kFreeBeside).size();
+  std::vector<double> off(space_.rows().size());
+  space_.distances(off);
+  place.holds = true;
+  for (std::size_t k = 0; k < off.size(); ++k) {
+    const double allowed = kHolds * space_.size_of_row(k) + 3 * off_at_start_[k];
+    if (std::abs(off[k]) <= allowed) continue;
+    place.holds = false;
+    if (std::abs(off[k]) <= place.off) continue;
+    place.off = std::abs(off[k]);
+    place.worst = space_.rows()[k];
+  }
+}
+
+bool Beside::leads_on(const Place& start, const Place& along, const std::vector<int>& without) {
+  if (extent(start.v) == 0) return false;
+  Place place = along;
+  if (!along.holds) {
+    Trial trial;
+    trial.problem = intrinsic_formulation().make(unit_, without);
+    trial.consistent = std::make_unique<Consistent>(*trial.problem, LinearChoice{});
+    if (!trial.put_back(place)) return false;
+    if (distance(place.q, start.q) < kPulledBack * kMove) return false;
+    look(*trial.problem, place);
+  }
+  return place.holds && place.dependent == without.size();
+}
+
+}  // namespace poinsot

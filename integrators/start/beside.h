@@ -1,0 +1,77 @@
+// Positions beside a given one: the mechanism moved a little along its velocities, or along a random direction that its
+// constraints leave free, time going on where drivers ask for it, and put back onto the rows that are kept. Bodies of
+// unit mass that turn as hard as they move make projections the shortest ways.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/body_state.h"
+#include "core/model.h"
+#include "integrators/start/row_space.h"
+#include "integrators/stepping/consistent.h"
+
+namespace poinsot {
+
+// A row that is singular where the mechanism stood has this much of its length free beside, give or take the shape of
+// the mechanism; what follows from others but for the second order of the move, where some row does not hold, has the
+// square of it.
+inline constexpr double kFreeBeside = 3e-5;
+// Part of a body's size: a row that holds beside is off by no more than the solution of the others, one that does not
+// by some 1e-6, the square of the move.
+inline constexpr double kHolds = 1e-9;
+
+struct Place {
+  double t = 0;
+  std::vector<double> q, v;
+  Eigen::SparseMatrix<double> columns;
+  std::size_t dependent = 0;  // of them
+  bool holds = false;
+  int worst = -1;  // the row that is off most, of those left out
+  double off = 0;  // m
+};
+
+// The given state, put onto the rows of the model that are not left out.
+struct Trial {
+  std::unique_ptr<Problem> problem;
+  std::unique_ptr<Consistent> consistent;
+  Place start;
+  bool regular = false;  // it could be put there
+
+  bool put_back(Place& place) { return consistent->project_position(place.t, place.q).ok(); }
+};
+
+class Beside {
+ public:
+  // `space` stands where it was last looked.
+  Beside(const std::shared_ptr<const Model>& model, std::span<const BodyState> states, RowSpace& space);
+
+  Trial begin(const std::vector<int>& without) const;
+  // Makes the trial's start the one from which `holds` is judged: m that each row of the space is off there.
+  std::span<const double> measure_start(Trial& trial);
+  // Nothing where it does not move, or the projection pulls it back.
+  std::optional<Place> along_velocities(Trial& trial);
+  std::optional<Place> at_random(Trial& trial, int seed);
+  // Whether the mechanism, moved on along its velocities, comes to a position where all rows hold and are independent
+  // but those left out.
+  bool leads_on(const Place& start, const Place& along, const std::vector<int>& without);
+
+  double extent(std::span<const double> dq) const;  // largest move of a body by dq, in its size
+
+ private:
+  std::optional<Place> settle(Trial& trial, Place place, std::span<const double> dq, bool must_move);
+  void stand(Problem& problem, const Place& place);
+  void look(Problem& problem, Place& place);
+  double distance(std::span<const double> q, std::span<const double> from) const;
+
+  std::shared_ptr<const Model> model_, unit_;
+  std::vector<BodyState> states_;
+  RowSpace& space_;
+  std::vector<double> sizes_, off_at_start_;
+};
+
+}  // namespace poinsot
