@@ -67,7 +67,9 @@ Family spin() {
   return f;
 }
 
-// Heavy symmetric top, J about its tip across and J₃ along its axis: w₃ and J φ̇ sin²θ + J₃ w₃ cosθ stay.
+// Heavy symmetric top, J about its tip across and J₃ along its axis: w₃ and J φ̇ sin²θ + J₃ w₃ cosθ stay. A slow one is
+// moved by its weight more than by its spin: both are nudged, and it falls as fast as it nutates.
+constexpr double kTopJ = 1.2, kTopJ3 = 0.3, kTopLoad = 9.81;
 Family top() {
   Family f;
   f.name = "top";
@@ -83,9 +85,9 @@ Family top() {
   f.y = accuracy();
   f.columns = {"top.x", "top.y", "top.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
-    constexpr double J = 1.2, J3 = 0.3, mgl = 9.81;
+    constexpr double J = kTopJ;
     constexpr int kSteps = 10000;
-    const double spin = J3 * at.x * (1 + at.nudge), along = spin * std::cos(1.0);
+    const double mgl = kTopLoad * (1 + at.nudge), spin = kTopJ3 * at.x * (1 + at.nudge), along = spin * std::cos(1.0);
     const Eigen::Vector3d y = runge_kutta<3>(Eigen::Vector3d(1, 0, 0), t, kSteps, [&](const Eigen::Vector3d& s) {
       const double sine = std::sin(s[0]), rate = (along - spin * std::cos(s[0])) / (J * sine * sine);  // φ̇
       return Eigen::Vector3d(s[1], sine * (J * rate * rate * std::cos(s[0]) - spin * rate + mgl) / J, rate);
@@ -93,7 +95,10 @@ Family top() {
     const double sine = std::sin(y[0]);
     return {{sine * std::sin(y[2]), -sine * std::cos(y[2]), std::cos(y[0])}};
   };
-  f.rate = [](const Place& at) { return std::max(at.x, 3.0); };
+  f.rate = [](const Place& at) {
+    const double fall = std::sqrt(2 * kTopLoad * (1 + std::cos(1.0)) / kTopJ), nutation = kTopJ3 * at.x / kTopJ;
+    return std::hypot(fall, nutation);
+  };
   return f;
 }
 
