@@ -45,10 +45,9 @@ Shard shard_of(const std::string& text) {
 // What the rows come to: the table, the pictures, the record.
 int conclude(const StudyOptions& options, const Computation& c) {
   std::vector<fs::path> written;
-  const std::string why = c.conclude(written);
+  const std::string by = caught_signal() != 0 ? signal_text() : "incomplete", why = c.conclude(written, by);
   if (!c.complete()) {
-    print_error(fmt::format("{}: {} of {} cases are there; the same command goes on with them", signal_text(),
-                            c.there(), c.selected()));
+    print_error(c.unfinished(by));
     return caught_signal() != 0 ? signal_status() : kNumericsFailed;
   }
   if (!why.empty()) print_error(why);

@@ -103,8 +103,8 @@ void read_items(const JsonValue& root, std::string_view section, std::string_vie
 }
 
 template <class Item, class Read>
-void read_again(const JsonValue& root, std::string_view section, std::vector<Item>& items,
-                const std::vector<std::size_t>& calling, Read read) {
+void read_items_again(const JsonValue& root, std::string_view section, std::vector<Item>& items,
+                      const std::vector<std::size_t>& calling, Read read) {
   if (calling.empty()) return;
   const JsonValue list = root.required(section);
   for (const std::size_t k : calling) {
@@ -192,40 +192,43 @@ Scene read_scene(const std::filesystem::path& file, const ParameterValues& set) 
 }
 
 Scene with_parameters(const Scene& scene, const std::map<std::string, double>& values) {
-  require_read(scene);
-  Scene varied = parse_scene(scene.source, printable(scene.name), texts_of(values));
-  for (std::size_t k = 0; k < varied.parameters.size(); ++k) varied.parameters[k].set |= scene.parameters[k].set;
-  return varied;
+  VariedScene varied(scene);
+  Scene with = varied.with(values);
+  with.source = varied.source();
+  return with;
 }
 
 VariedScene::VariedScene(const Scene& scene)
     : name_(printable(scene.name)), text_((require_read(scene), scene.source)), document_(text_, name_) {
-  ParameterValues set;
   for (const Parameter& parameter : scene.parameters)
-    if (parameter.set) set.emplace(parameter.name, "");
-  scene_ = read_document(document_, name_, set, calling_);
+    if (parameter.set) set_.emplace(parameter.name, "");
 }
 
 const Scene& VariedScene::with(const std::map<std::string, double>& values) {
-  with_lines_of_errors(text_, [&] { vary(texts_of(values)); });
-  return scene_;
+  with_lines_of_errors(text_, [&] {
+    const ParameterValues set = texts_of(values);
+    set_parameters(document_, set);
+    set_.insert(set.begin(), set.end());
+    if (scene_) return read_again();
+    CallingItems calling;
+    scene_ = read_document(document_, name_, set_, calling);
+    calling_ = std::move(calling);
+  });
+  return *scene_;
 }
 
-void VariedScene::vary(ParameterValues set) {
-  set_parameters(document_, set);
-  for (const Parameter& parameter : scene_.parameters)
-    if (parameter.set) set.emplace(parameter.name, "");
+void VariedScene::read_again() {
   Definitions definitions(document_);
   const JsonValue root = document_.root(&definitions);
-  scene_.gravity = optional_or(root, "gravity", read_vector, scene_.gravity);
-  read_again(root, "bodies", scene_.bodies, calling_.bodies, read_body);
-  const BodyNames bodies(scene_.bodies);
-  read_again(root, "constraints", scene_.constraints, calling_.constraints, with_names(bodies, read_constraint));
-  read_again(root, "joints", scene_.joints, calling_.joints, with_names(bodies, read_joint));
-  read_again(root, "drivers", scene_.drivers, calling_.drivers, with_names(bodies, read_driver));
-  read_again(root, "forces", scene_.forces, calling_.forces, with_names(bodies, read_force));
-  in_file(name_, [&] { validate_bodies(scene_.bodies), validate(scene_); });
-  set_values(scene_, definitions, set);
+  scene_->gravity = optional_or(root, "gravity", read_vector, scene_->gravity);
+  read_items_again(root, "bodies", scene_->bodies, calling_.bodies, read_body);
+  const BodyNames bodies(scene_->bodies);
+  read_items_again(root, "constraints", scene_->constraints, calling_.constraints, with_names(bodies, read_constraint));
+  read_items_again(root, "joints", scene_->joints, calling_.joints, with_names(bodies, read_joint));
+  read_items_again(root, "drivers", scene_->drivers, calling_.drivers, with_names(bodies, read_driver));
+  read_items_again(root, "forces", scene_->forces, calling_.forces, with_names(bodies, read_force));
+  in_file(name_, [&] { validate_bodies(scene_->bodies), validate(*scene_); });
+  set_values(*scene_, definitions, set_);
 }
 
 }  // namespace poinsot

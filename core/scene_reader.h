@@ -20,8 +20,8 @@ Scene read_scene(const std::filesystem::path& file, const ParameterValues& set =
 // As read_scene, from text; `file` names it in messages, and files of tables lie beside it.
 Scene parse_scene(std::string_view text, std::string_view file, const ParameterValues& set = {});
 
-// The scene with other values of some of its parameters. Files are not read again, and what was set before stays set.
-// Of many values VariedScene (core/varied_scene.h) reads again only what depends on them.
+// The scene with other values of some of its parameters: VariedScene (core/varied_scene.h) for once, with the text.
+// Files are not read again, and what was set before stays set.
 Scene with_parameters(const Scene& scene, const std::map<std::string, double>& values);
 
 }  // namespace poinsot

@@ -3,12 +3,14 @@
 //   VariedScene varied(read_scene("pendulum.json"));
 //   for (const double l : lengths) simulate(varied.with({{"l", l}}), settings, observe);
 //
-// Its text is taken apart once, and read again are only the parameters, the tables and those bodies, constraints,
-// joints, drivers and forces that call one of them by name: everything else stays as it is.
+// Its text is taken apart once and read whole for the first values. For those that follow, read again are only the
+// parameters, the tables and those bodies, constraints, joints, drivers and forces that call one of them by name:
+// everything else stays as it is.
 #pragma once
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,17 +29,19 @@ class VariedScene {
   // Throws InputError where the scene was not read.
   explicit VariedScene(const Scene& scene);
 
-  // As with_parameters() of core/scene_reader.h, but without the text: Scene::source is empty. What was set before
-  // stays set. The scene stays as it is until the next call.
+  // What was set before stays set. The scene is without its text, Scene::source, and stays as it is until the next
+  // call.
   const Scene& with(const std::map<std::string, double>& values);
+  std::string source() const { return document_.text(); }  // with the values set last
 
  private:
-  void vary(std::map<std::string, std::string> set);
+  void read_again();
 
   std::string name_, text_;
   JsonDocument document_;
+  std::map<std::string, std::string> set_;
   CallingItems calling_;
-  Scene scene_;
+  std::optional<Scene> scene_;  // once it has been read
 };
 
 }  // namespace poinsot

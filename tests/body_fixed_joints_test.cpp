@@ -265,6 +265,13 @@ TEST(BodyFixedJoints, AJointFarFromItsBodiesIsTold) {
   EXPECT_THAT(start_of(scene).notices, Not(::testing::Contains(HasSubstr("far from its bodies"))));
   scene.joints[1].point *= 10;
   EXPECT_THAT(start_of(scene).notices, ::testing::Contains(HasSubstr("is far from its bodies: ")));
+  scene = scene_of("single_pendulum_joints");
+  scene.drivers.clear();
+  EXPECT_THAT(start_of(scene).notices, Not(::testing::Contains(HasSubstr("far from its bodies"))));
+  scene.joints[0].point += 10 * scene.bodies[0].position;
+  EXPECT_THAT(start_of(scene).notices,
+              ::testing::Contains(HasSubstr("the body's size and its way from the origin are at "
+                                            "most")));
 }
 
 }  // namespace

@@ -172,7 +172,13 @@ TEST_F(CliStudy, AnInterruptedStudyEndsTidilyAndGoesOn) {
   const Result result = finish(child);
   EXPECT_EQ(result.status, 130);
   EXPECT_TRUE(result.err.starts_with("poinsot: interrupted by SIGINT: ")) << result.err;
-  EXPECT_EQ(read_json("out/cases.run.json")["incomplete"], true);
+  const nlohmann::json record = read_json("out/cases.run.json");
+  EXPECT_EQ(record["incomplete"], true);
+  const std::string message = record["message"];
+  EXPECT_TRUE(message.starts_with("interrupted by SIGINT: ") &&
+              message.find(" of 1600 cases are there") != std::string::npos)
+      << message;
+  EXPECT_NE(result.err.find("poinsot: " + message + "\n"), std::string::npos) << result.err;
   EXPECT_FALSE(fs::exists(folder() / "out/cases.csv"));
   ASSERT_EQ(study({"--out", "out"}).status, 0);
   EXPECT_EQ(read("out/cases.csv"), reference());

@@ -87,6 +87,7 @@ TEST(Findings, TellWhatStudiesOfFormulationsShow) {
                        "many <b>",
                        "about",
                        false,
+                       true,
                        {{"time over that of rA", "speed_up", "formulation", "rA", points, numbers}}});
   const Findings found = findings(r);
   const auto own = std::ranges::find(found.all, "studies", &Finding::id);
@@ -100,6 +101,7 @@ TEST(Findings, TellWhatStudiesOfFormulationsShow) {
   EXPECT_THAT(html, HasSubstr("<h3>many &lt;b&gt;</h3>"));
   EXPECT_THAT(html, HasSubstr("href=\"random/speed_up_table.csv\""));
   EXPECT_THAT(html, Not(HasSubstr("many <b>")));
+  EXPECT_THAT(html, HasSubstr("Here a tenth of its cases (--quick)."));
   EXPECT_THAT(page(results()).html,
               HasSubstr("poinsot study bench/studies/random_mechanisms.json --out results/random_mechanisms"));
 }

@@ -122,6 +122,7 @@ TEST_F(SceneLanguage, many_values_read_again_what_calls_them) {
     EXPECT_EQ(one.bodies[0].mass, 3 * a);
     EXPECT_EQ(one.drivers[0].value.at(1.0).f, a);
     EXPECT_EQ(one.notices, other.notices);
+    EXPECT_EQ(varied.source(), other.source);
     ASSERT_EQ(one.parameters.size(), other.parameters.size());
     for (std::size_t k = 0; k < one.parameters.size(); ++k) {
       EXPECT_EQ(one.parameters[k].value, other.parameters[k].value);

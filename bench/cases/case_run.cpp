@@ -83,8 +83,8 @@ const Scene& CaseRunner::scene_of(const Case& one) {
   std::map<std::string, double> values;
   for (std::size_t k = 0; k < names_.size(); ++k) values.emplace(names_[k], one.parameters[k]);
   varied_by_.clear();  // until it is read
-  // References are known by the scene's text.
-  varied_ = study_.kept.errors ? with_parameters(scene, values) : text_->with(values);
+  varied_ = text_->with(values);
+  if (study_.kept.errors) varied_.source = text_->source();  // by which references are known
   varied_of_ = one.scene;
   varied_by_ = one.parameters;
   return varied_;

@@ -130,8 +130,12 @@ void Computation::write_record(State state, const std::string& why) const {
   file.commit();
 }
 
-std::string Computation::conclude(std::vector<fs::path>& written) const {
-  write_record(State::ended);
+std::string Computation::unfinished(const std::string& ended_by) const {
+  return fmt::format("{}: {} of {} cases are there; the same command goes on with them", ended_by, there(), selected());
+}
+
+std::string Computation::conclude(std::vector<fs::path>& written, const std::string& ended_by) const {
+  write_record(State::ended, complete() || ended_by.empty() ? "" : unfinished(ended_by));
   if (!complete()) return "";
   if (options_.shard.places > 1) {
     written = {options_.folder / (options_.shard.name() + ".part")};

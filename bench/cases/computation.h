@@ -60,9 +60,11 @@ class Computation {
   const CaseTable& table() const { return table_; }
   std::int64_t failures() const { return table_.failures(); }
 
-  // The record of what is there, whether complete or not; and where it is, the table and the pictures. `written`: the
-  // files for the user. Returns why pictures are missing.
-  std::string conclude(std::vector<std::filesystem::path>& written) const;
+  // The record of what is there, whether complete or not, and then what it was `ended_by`; and where it is, the table
+  // and the pictures. `written`: the files for the user. Returns why pictures are missing.
+  std::string conclude(std::vector<std::filesystem::path>& written, const std::string& ended_by = "") const;
+  // For the user: "interrupted by SIGINT: 3 of 20 cases are there; the same command goes on with them".
+  std::string unfinished(const std::string& ended_by) const;
 
  private:
   void compute_rest(const std::function<void(const ComputationProgress&)>& told);

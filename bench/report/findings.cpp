@@ -118,10 +118,11 @@ Finding matched(const Table& table, Ledger& ledger) {
       middle.add(ratios[ratios.size() - 1 - ratios.size() / 4]);
       finding.sentences.push_back(fmt::format(
           "At the same error in {} and with the same integrator {} takes {} times as long as {} in the median of {} "
-          "comparisons (the middle half: {}); beyond the noise it is slower in {} and faster in {}.",
+          "{} (the middle half: {}); beyond the noise it is slower in {} and faster in {}.",
           kQuantities[quantity], other, ledger.number(what("ratio"), median_interval(ratios).median, 2), kSubject,
-          ledger.count(what("comparisons"), ratios.size()), ledger.range(what("middle half"), middle, 2),
-          ledger.count(what("slower"), slower), ledger.count(what("faster"), faster)));
+          ledger.count(what("comparisons"), ratios.size()), ratios.size() == 1 ? "comparison" : "comparisons",
+          ledger.range(what("middle half"), middle, 2), ledger.count(what("slower"), slower),
+          ledger.count(what("faster"), faster)));
     }
   return finding;
 }

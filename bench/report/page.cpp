@@ -97,7 +97,8 @@ std::string charts_block(const Results& results, std::set<std::string>& used) {
 std::string studies_block(const Results& results, std::set<std::string>& used) {
   std::string html;
   for (const StudyResults& study : results.studies) {
-    html += fmt::format("<h3>{}</h3>\n<p>{}{}</p>\n", escape(study.name), escape(study.about),
+    html += fmt::format("<h3>{}</h3>\n<p>{}{}{}</p>\n", escape(study.name), escape(study.about),
+                        study.quick ? " Here a tenth of its cases (--quick)." : "",
                         study.incomplete ? " The study is incomplete." : "");
     for (const StudyPicture& picture : study.pictures) {
       const std::string file = study.folder + picture.file;

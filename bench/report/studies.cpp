@@ -15,12 +15,13 @@ namespace {
 
 StudyResults read_one(const fs::path& folder, const std::string& record, const std::string& within) {
   using Json = nlohmann::json;
-  StudyResults study{within, {}, {}, false, {}};
+  StudyResults study{within, {}, {}, false, false, {}};
   try {
     constexpr bool kThrows = true, kComments = true;
     const Json json = Json::parse(read_text(record));
     const Json said = Json::parse(json.at("content").at("study").get<std::string>(), nullptr, kThrows, kComments);
     study.incomplete = json.at("incomplete");
+    study.quick = json.at("quick");
     study.name = said.value("name", "");
     study.about = said.value("about", "");
     for (const Json& picture : said.value("pictures", Json::array())) {

@@ -20,8 +20,8 @@ struct StudyPicture {
 struct StudyResults {
   std::string folder;  // within that of the results: "", "random_mechanisms/"
   std::string name, about;
-  bool incomplete = false;
-  std::vector<StudyPicture> pictures;  // those that are there
+  bool incomplete = false, quick = false;  // quick: a tenth of its cases
+  std::vector<StudyPicture> pictures;      // those that are there
 };
 
 // Throws InputError where a record or a table cannot be read.

@@ -35,19 +35,22 @@ class Auto final : public Integrator {
     if (Status status = dop853.prepare(); !status.ok()) return status;
     clock.start();
     bool begun = false;
-    for (std::int64_t trial = kFirstTrial;; trial *= kTrialsApart) {
+    for (std::int64_t trial = kFirstTrial;;) {
       if (Status status = dop853.start(run.state); !status.ok()) return status;
       if (!std::exchange(begun, true)) course.give_out(dop853.state());
       std::int64_t steps = 0;
       const double from = run.state.t;
-      if (Status status = go_on(dop853, pair.name, pair.rule, course, run,
-                                [&] {
-                                  ++steps;
-                                  return dop853.stiff() || (rtol >= kOfRounding && steps == trial);
-                                });
+      if (Status status =
+              go_on(dop853, pair.name, pair.rule, course, run,
+                    [&] {
+                      ++steps;
+                      return dop853.stiff() ||
+                             (rtol >= kOfRounding && (steps == trial || (!radau5 && dop853.held_by_the_decayed())));
+                    });
           !status.ok() || run.state.t == end)
         return status;
 
+      if (steps == trial) trial *= kTrialsApart;
       if (!radau5) {
         radau5.emplace(run.problem, run.systems, rtol, atol, run.statistics, clock);
         if (Status status = radau5->prepare(); !status.ok()) return status;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/index.h"
@@ -27,6 +28,12 @@ double extent(const std::vector<Body>& bodies) {
   return (high - low).norm();
 }
 
+// How far a body is from the origin, about which scenes are written, or how long a rod of its mass and inertia would
+// be.
+double own_size(const Body& body) {
+  return std::max(body.position.norm(), std::sqrt(6 * body.inertia.trace() / body.mass));
+}
+
 }  // namespace
 
 void tell_far_joints(const Model& model, std::vector<std::string>& notices) {
@@ -46,16 +53,18 @@ void tell_far_joints(const Model& model, std::vector<std::string>& notices) {
     if (group.kind != GroupKind::joint) continue;
     const JointFrames& f = model.joints[k++];
     const double a = arm(group, f), others = std::max(centres, a == first ? second : first);
-    if (group.body_fixed || others == 0 || a <= kFar * others) continue;
+    const bool alone = others == 0;
+    const double size = alone ? own_size(model.bodies[index(group.i == kGround ? group.j : group.i)]) : others;
+    if (group.body_fixed || a <= kFar * size) continue;
     const auto from = [&](int body, const Vector3& s) {
       return body == kGround ? std::string()
                              : fmt::format(" {:.3g} m from '{}'", s.norm(), model.bodies[index(body)].name);
     };
     const std::string i = from(group.i, f.s_i), j = from(group.j, f.s_j);
-    notices.push_back(
-        fmt::format("joint '{}' is far from its bodies:{}{}{}, where the mechanism without it measures "
-                    "{:.3g} m; is its point meant?",
-                    group.name, i, i.empty() || j.empty() ? "" : " and", j, others));
+    notices.push_back(fmt::format(
+        "joint '{}' is far from its bodies:{}{}{}, where {} {:.3g} m; is its point meant?", group.name, i,
+        i.empty() || j.empty() ? "" : " and", j,
+        alone ? "the body's size and its way from the origin are at most" : "the mechanism without it measures", size));
   }
 }
 

@@ -9,7 +9,8 @@
 namespace poinsot {
 
 // A sentence for every joint whose point is further from its bodies' centres of mass than twice the extent of the
-// mechanism without it: of the bodies' centres, and of the arms of other joints.
+// mechanism without it: of the bodies' centres, and of the arms of other joints. Where there is nothing else, of the
+// body itself: of its distance from the origin, and of a rod of its inertia.
 void tell_far_joints(const Model& model, std::vector<std::string>& notices);
 
 }  // namespace poinsot

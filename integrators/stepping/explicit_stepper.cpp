@@ -155,8 +155,12 @@ void ExplicitStepper::test_stiffness() {
   combined_ = y_ - g_;
   const double apart = error_norm(span(combined_), span(scale_));
   if (!(apart * rtol_ > kNoise)) return;
+  const auto nv = static_cast<Eigen::Index>(nv_);
+  const auto scaled = [&](auto&& x) { return x.tail(nv).array() / scale_.tail(nv).array(); };
+  const double size = scaled(combined_).square().sum();
+  const double along = (scaled(k_.col(last_) - k_.col(last_ - 1)) * scaled(combined_)).sum();
   combined_ = k_.col(last_) - k_.col(last_ - 1);
-  stiffness_.accepted(h_ * error_norm(span(combined_), span(scale_)) / apart);
+  stiffness_.accepted(h_ * error_norm(span(combined_), span(scale_)) / apart, size > 0 ? -h_ * along / size : 0);
 }
 
 Status ExplicitStepper::attempt(double to, Stages stages, double& error) {

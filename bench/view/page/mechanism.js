@@ -1,10 +1,11 @@
-// The mechanism of one motion as a handful of instanced meshes, one for every layer, unit shape and colour role: a
-// thousand bodies are drawn in as many calls as one.
+// The mechanism of one motion as a handful of meshes, one for every layer, unit shape and colour role: a thousand bodies
+// are drawn in as many calls as one. Few parts are instances of their shape, many are merged (merged.js).
 
 import { BoxGeometry, BufferGeometry, Color, ConeGeometry, Curve, CylinderGeometry, DoubleSide, Float32BufferAttribute, Group,
   InstancedMesh, MeshLambertMaterial, SphereGeometry, TorusGeometry, TubeGeometry, Vector3 } from "three";
 import { bodyParts, ellipsoid } from "./bodies.js";
 import { add, ball, length, scale, segment } from "./geometry.js";
+import { Merged } from "./merged.js";
 import { groundParts, jointParts, lineParts } from "./symbols.js";
 
 class Helix extends Curve {
@@ -92,7 +93,8 @@ export class Mechanism {
     const material = new MeshLambertMaterial(batch.kind === "plate" ? { side: DoubleSide } : {});
     const opacity = (batch.glass ? 0.4 : 1) * this.look.opacity;
     if (opacity < 1) Object.assign(material, { transparent: true, opacity, depthWrite: !batch.glass });
-    batch.mesh = new InstancedMesh(geometry(batch.kind, n > MANY), material, n);
+    const many = n > MANY, shape = geometry(batch.kind, many);
+    batch.mesh = many ? new Merged(shape, material, n) : new InstancedMesh(shape, material, n);
     batch.mesh.frustumCulled = false;
     if (batch.role === "body") {
       const colour = new Color();
@@ -114,12 +116,13 @@ export class Mechanism {
   update(time) {
     for (const batch of this.batches.values()) {
       if (!batch.mesh.visible) continue;
-      const out = batch.mesh.instanceMatrix.array;
+      const mesh = batch.mesh, out = mesh.matrices ?? mesh.instanceMatrix.array;
       batch.parts.forEach((part, k) => {
         if (part.matrix) this.#place(part, out, 16 * k);
         else out.set(part.line ? this.#line(part) : this.#arrow(part, time), 16 * k);
       });
-      batch.mesh.instanceMatrix.needsUpdate = true;
+      if (mesh.matrices) mesh.commit();
+      else mesh.instanceMatrix.needsUpdate = true;
     }
   }
 

@@ -57,6 +57,8 @@ function selectOf(label, names) {
   return select;
 }
 
+const DECADES = [1, 2, 5, 10, 20, 50, 100, 200];  // from tick to tick of logarithms
+
 class Plot {
   constructor(board, source, quantity, logarithmic) {
     this.board = board;
@@ -116,7 +118,7 @@ class Plot {
       legend: { show: false }, cursor: { drag: { x: false, y: false }, points: { show: false }, y: false },
       scales: { x: { time: false }, y: log ? { range: () => decades(drawn.slice(1)) } : {} },
       axes: [{ ...axis, label: "t, s", labelSize: 16, size: 34, values: (_, v) => v.map(tick) },
-             { ...axis, label: what.unit, labelSize: 18, size: 62, values: (_, v) => v.map(level) }],
+             { ...axis, label: what.unit, labelSize: 18, size: 62, values: (_, v) => v.map(level), ...(log ? { incrs: DECADES } : {}) }],
       series: [{}, ...this.curves.map((curve) => ({
         stroke: colour(curve.motion === null ? "ink" : curve.motion === 0 ? "first" : "second"), width: 1.6,
         dash: curve.motion === 1 ? [7, 4] : undefined, spanGaps: true, points: { show: false } }))],
