@@ -66,6 +66,7 @@ class Solver final : public LinearSolver {
     slots_ = layout_.slots;
     std::vector<int>().swap(layout_.slots);
     node_ = pattern.node;
+    residual_.resize(layout_);
     values_.assign(index(layout_.nonzeros()), 0);
     statistics_.nonzeros = layout_.nonzeros();
     klu_.reset();
