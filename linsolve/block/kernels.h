@@ -4,6 +4,8 @@
 //   forward:    b₁ ← P_r b₁,  b₂ ← b₂ − L b₁
 //   backward:   b₁ ← (L_D U_D)⁻¹ (b₁ − U b₂)
 //
+// Why not Eigen's LU of fixed size: linsolve/dense_kernels.h has the figures.
+//
 // The diagonal of U_D is stored inverted. P = 0 stands for a number known at run time only. Rows go by whole vectors:
 // the padding rows of L and W are zero and stay so.
 #pragma once
