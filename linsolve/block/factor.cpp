@@ -14,8 +14,8 @@ namespace {
 
 // Kernels by the number of pivots; the first is that for any number.
 constexpr int kKernels = 9;
-int kernel(int pivots) {
-  return pivots < kKernels ? pivots : 0;
+std::size_t kernel(int pivots) {
+  return pivots < kKernels ? index(pivots) : 0;
 }
 template <int... P>
 constexpr auto eliminations(std::integer_sequence<int, P...>) {
