@@ -1,6 +1,9 @@
 // Dual numbers v + ε d with ε² = 0: evaluating a kernel on them gives its exact directional derivative.
 //
 // They are what the derivative tests and `poinsot check` differentiate with; nothing in a run uses them.
+// Eigen's AutoDiffScalar is as fast (2.3 ms for 300 times 200 sines, roots and quotients with either), but its sums and
+// products are expressions with types of their own, for which the kernels' templates find no function: a mechanism in
+// rA does not compile on it.
 #pragma once
 
 #include <Eigen/Core>

@@ -11,10 +11,7 @@
 // with AVX-512 (before commit 71b95ac; where it says "the paper's mechanisms", block had G alone of those without
 // degrees of freedom and klu the whole matrix). In whole steps dense is up to a tenth faster on the single pendulum.
 //
-// Where solves outnumber factorizations (jacobian "kept") the pick is the same: instructions of a whole step in rA,
-// klu's over block's, were 1.21 for the double pendulum, 1.41 and 1.00 for chains of 10 and 100, 1.72 for a ladder of
-// 30 (callgrind, `release` build of commit 71b95ac, SSE2). Times with wider vectors are another matter: there klu has
-// been seen 3 to 21 % faster with "kept" up to 100 bodies.
+// Where solves outnumber factorizations (jacobian "kept") the pick is the same: linsolve/README.md has the figures.
 #include "linsolve/back_ends.h"
 #include "linsolve/registry.h"
 

@@ -57,6 +57,8 @@ LinearStatus CscLayout::build(const Pattern& pattern) {
 namespace {
 
 // Hopcroft and Karp's algorithm, columns on the left: phases of shortest augmenting paths, O(√n · nonzeros) in all.
+// SuiteSparse's btf_maxtrans, which follows one path after the other, takes 928 ms for a ladder of 1000 bodies and
+// 178 ms for a tree of 3000, this 1.0 and 2.9 ms (chain of 1000: 0.26 and 0.66 ms; Intel Xeon, release build).
 class Matching {
  public:
   explicit Matching(const CscLayout& layout)

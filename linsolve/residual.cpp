@@ -3,26 +3,61 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "linsolve/finite.h"
+#include "linsolve/lanes.h"
 
 namespace poinsot {
 namespace {
 
-// max |v| f, in lanes that a compiler turns into vectors.
+constexpr int kTogether = 4;  // columns at most
+
+Vec greater(Vec x, Vec y) {
+  return x > y ? x : y;
+}
+
+// max |v| f
 double largest(std::span<const double> v, std::span<const double> f) {
-  constexpr std::size_t kWide = 8;
-  double most[kWide] = {};
+  Vec most = {};
   std::size_t i = 0;
-  for (; i + kWide <= v.size(); i += kWide)
-    for (std::size_t lane = 0; lane < kWide; ++lane) {
-      const double size = std::abs(v[i + lane]) * f[i + lane];
-      most[lane] = size > most[lane] ? size : most[lane];
-    }
-  for (; i < v.size(); ++i) most[0] = std::max(most[0], std::abs(v[i]) * f[i]);
-  return *std::ranges::max_element(most);
+  for (; i + kLanes <= v.size(); i += kLanes) {
+    const Vec x = load(v.data() + i);
+    most = greater((x < 0 ? -x : x) * load(f.data() + i), most);
+  }
+  double rest = 0;
+  for (; i < v.size(); ++i) rest = std::max(rest, std::abs(v[i]) * f[i]);
+  for (int lane = 0; lane < kLanes; ++lane) rest = std::max(rest, most[lane]);
+  return rest;
+}
+
+// r ← r − A x for C columns with the same rows, each row's terms in the order of the columns.
+template <int C>
+void take(const int* row, int rows, const double* values, const double* x, double* r) {
+  double by[C];
+  const double* column[C];
+  unrolled<C>([&](auto c) { by[c] = x[c], column[c] = values + c * rows; });
+  for (int i = 0; i < rows; ++i) {
+    double sum = r[row[i]];
+    unrolled<C>([&](auto c) { sum -= column[c][i] * by[c]; });
+    r[row[i]] = sum;
+  }
 }
 
 }  // namespace
+
+void Residual::resize(const CscLayout& layout) {
+  panels_.clear();
+  const auto rows = [&](int j) {
+    return std::span(layout.row)
+        .subspan(index(layout.start[index(j)]), index(layout.start[index(j) + 1] - layout.start[index(j)]));
+  };
+  for (int j = 0, columns; j < layout.n; j += columns) {
+    columns = 1;
+    while (columns < kTogether && j + columns < layout.n && std::ranges::equal(rows(j), rows(j + columns))) ++columns;
+    panels_.push_back(columns);
+  }
+  panels_.shrink_to_fit();
+}
 
 void Residual::measure_by(std::span<const double> rows, std::span<const double> columns) {
   rows_.assign(rows.begin(), rows.end());
@@ -33,9 +68,27 @@ void Residual::measure_by(std::span<const double> rows, std::span<const double> 
 void Residual::find(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
                     std::span<const double> x) {
   r_.assign(b.begin(), b.end());
-  for (std::size_t j = 0; j < r_.size(); ++j)
-    for (auto k = static_cast<std::size_t>(layout.start[j]); k < static_cast<std::size_t>(layout.start[j + 1]); ++k)
-      r_[static_cast<std::size_t>(layout.row[k])] -= values[k] * x[j];
+  const double* xj = x.data();
+  const int* start = layout.start.data();
+  for (const int columns : panels_) {
+    const int rows = start[1] - *start;
+    const int* row = layout.row.data() + *start;
+    const double* entries = values.data() + *start;
+    switch (columns) {
+      case 1:
+        take<1>(row, rows, entries, xj, r_.data());
+        break;
+      case 2:
+        take<2>(row, rows, entries, xj, r_.data());
+        break;
+      case 3:
+        take<3>(row, rows, entries, xj, r_.data());
+        break;
+      default:
+        take<kTogether>(row, rows, entries, xj, r_.data());
+    }
+    xj += columns, start += columns;
+  }
 }
 
 double Residual::size(const CscLayout& layout, std::span<const double> values, std::span<const double> b,

@@ -10,6 +10,8 @@ namespace poinsot {
 
 class Residual {
  public:
+  // The structure of A.
+  void resize(const CscLayout& layout);
   // Factors of rows; sizes of unknowns (the column factors of an equilibration).
   void measure_by(std::span<const double> rows, std::span<const double> columns);
   std::span<const double> rows() const { return rows_; }
@@ -23,6 +25,7 @@ class Residual {
   std::span<double> vector() { return r_; }
 
  private:
+  std::vector<int> panels_;  // columns in a row that have the same rows, and are taken together
   std::vector<double> rows_, per_column_, r_;
 };
 

@@ -1,7 +1,9 @@
 #include "linsolve/block/factor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/index.h"
 #include "linsolve/block/assembly.h"
@@ -10,30 +12,26 @@
 namespace poinsot::block {
 namespace {
 
-// Calls work(std::integral_constant<int, P>) with P the front's number of pivots where a kernel is compiled for it.
-template <class Work>
-void with_size(int pivots, Work&& work) {
-  switch (pivots) {
-    case 1:
-      return work(std::integral_constant<int, 1>());
-    case 2:
-      return work(std::integral_constant<int, 2>());
-    case 3:
-      return work(std::integral_constant<int, 3>());
-    case 4:
-      return work(std::integral_constant<int, 4>());
-    case 5:
-      return work(std::integral_constant<int, 5>());
-    case 6:
-      return work(std::integral_constant<int, 6>());
-    case 7:
-      return work(std::integral_constant<int, 7>());
-    case 8:
-      return work(std::integral_constant<int, 8>());
-    default:
-      return work(std::integral_constant<int, 0>());
-  }
+// Kernels by the number of pivots; the first is that for any number.
+constexpr int kKernels = 9;
+std::size_t kernel(int pivots) {
+  return pivots < kKernels ? index(pivots) : 0;
 }
+template <int... P>
+constexpr auto eliminations(std::integer_sequence<int, P...>) {
+  return std::array{&block::eliminate<P>...};
+}
+template <int... P>
+constexpr auto forwards(std::integer_sequence<int, P...>) {
+  return std::array{&block::forward<P>...};
+}
+template <int... P>
+constexpr auto backwards(std::integer_sequence<int, P...>) {
+  return std::array{&block::backward<P>...};
+}
+constexpr auto kEliminate = eliminations(std::make_integer_sequence<int, kKernels>());
+constexpr auto kForward = forwards(std::make_integer_sequence<int, kKernels>());
+constexpr auto kBackward = backwards(std::make_integer_sequence<int, kKernels>());
 
 float in_range(double x) {
   return static_cast<float>(std::clamp(x, 1e-37, 1e37));
@@ -41,7 +39,7 @@ float in_range(double x) {
 
 // A factor that no cache holds is fetched ahead: its fronts are a kilobyte or two each, and the processor's own
 // prefetching begins anew at every page.
-constexpr std::size_t kAhead = 8;          // fronts
+constexpr std::ptrdiff_t kAhead = 8;       // fronts
 constexpr std::size_t kCached = 1u << 17;  // doubles: 1 MB
 
 inline void fetch(const double* from, int doubles) {
@@ -55,8 +53,7 @@ void Factor::resize(const Schedule& s) {
   store_.assign(index(s.store_size + kLanes), 0);  // the last front may be laid down as well
   stack_.assign(index(s.stack_size), 0);
   update_.assign(index(s.largest_update), 0);
-  x_.assign(index(s.n), 0);
-  t_.assign(index(std::max(s.largest_rows, s.largest_pivots)), 0);
+  t_.assign(index(s.largest_rows + s.largest_pivots), 0);
   then_.assign(index(s.n), 1);
   weight_.assign(index(s.n), 1);
   order_.assign(index(s.n), 0);
@@ -104,39 +101,32 @@ Drift Factor::factor(const Schedule& s, std::span<const double> values, bool kee
     }
     Choice choice{order_.data() + f.first, weight_.data() + f.first, then_.data() + f.first, moved_[k] != 0,
                   keep_order};
-    with_size(f.pivots,
-              [&](auto P) { block::eliminate<P.value>(D, f, W, stack_.data() + f.update, choice, t_.data(), drift); });
+    kEliminate[kernel(f.pivots)](D, f, W, stack_.data() + f.update, choice, t_.data(), drift);
     moved_[k] = choice.moved;
   }
   return drift;
 }
 
 void Factor::solve(const Schedule& s, std::span<double> b) {
-  for (std::size_t k = 0; k < b.size(); ++k) x_[k] = b[index(s.unknown[k])];
-  const std::size_t ahead = store_.size() > kCached ? kAhead : s.fronts.size();
-  for (std::size_t k = 0; k < s.fronts.size(); ++k) {
-    const Front& f = s.fronts[k];
-    if (k + ahead < s.fronts.size()) {
-      const Front& next = s.fronts[k + ahead];
-      fetch(store_.data() + next.store + next.pivots * next.pivots, next.pivots * next.rows);
+  const Front *const begin = s.fronts.data(), *const end = begin + s.fronts.size();
+  const std::ptrdiff_t ahead = store_.size() > kCached ? kAhead : end - begin;
+  const Pass pass{store_.data(), s.unknown.data(), s.other.data(), b.data(), t_.data()};
+  const char* moved = moved_.data();
+  for (const Front* f = begin; f != end; ++f, ++moved) {
+    if (end - f > ahead) {
+      const Front& next = f[ahead];
+      fetch(pass.store + next.store + next.pivots * next.pivots, next.pivots * next.rows);
     }
-    with_size(f.pivots, [&](auto P) {
-      block::forward<P.value>(store_.data() + f.store, f, s.position.data() + f.list,
-                              moved_[k] ? order_.data() + f.first : nullptr, x_.data(), t_.data());
-    });
+    kForward[kernel(f->pivots)](pass, *f, *moved ? order_.data() + f->first : nullptr);
   }
-  for (std::size_t k = s.fronts.size(); k-- > 0;) {
-    const Front& f = s.fronts[k];
-    if (k >= ahead) {
-      const Front& next = s.fronts[k - ahead];
-      fetch(store_.data() + next.store, next.pivots * next.pivots);
-      fetch(store_.data() + next.store + next.pivots * (next.pivots + next.rows), next.pivots * next.others);
+  for (const Front* f = end; f-- != begin;) {
+    if (f - begin >= ahead) {
+      const Front& next = f[-ahead];
+      fetch(pass.store + next.store, next.pivots * next.pivots);
+      fetch(pass.store + next.store + next.pivots * (next.pivots + next.rows), next.pivots * next.others);
     }
-    with_size(f.pivots, [&](auto P) {
-      block::backward<P.value>(store_.data() + f.store, f, s.position.data() + f.list, x_.data());
-    });
+    kBackward[kernel(f->pivots)](pass, *f);
   }
-  for (std::size_t k = 0; k < b.size(); ++k) b[index(s.unknown[k])] = x_[k];
 }
 
 void Factor::weigh_rows(const Schedule& s, std::span<const double> weight) {

@@ -27,7 +27,7 @@ class Factor {
   void keep_pivots(const Schedule& schedule);
 
  private:
-  std::vector<double> store_, stack_, update_, x_, t_;
+  std::vector<double> store_, stack_, update_, t_;
   std::vector<float> then_;    // 1/|pivot| of an examined factorization, by position
   std::vector<float> weight_;  // by position
   std::vector<std::uint16_t> order_;

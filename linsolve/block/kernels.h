@@ -4,6 +4,8 @@
 //   forward:    b₁ ← P_r b₁,  b₂ ← b₂ − L b₁
 //   backward:   b₁ ← (L_D U_D)⁻¹ (b₁ − U b₂)
 //
+// Why not Eigen's LU of fixed size: linsolve/dense_kernels.h has the figures.
+//
 // The diagonal of U_D is stored inverted. P = 0 stands for a number known at run time only. Rows go by whole vectors:
 // the padding rows of L and W are zero and stay so.
 #pragma once
@@ -227,68 +229,91 @@ void eliminate(double* D, const Front& f, const double* W, double* out, Choice& 
   }
 }
 
-// x: the permuted right-hand side; t: room for `rows` and for p numbers; `order` is null where no rows moved.
+// What a solve passes over: the factors, the unknowns of its fronts (Schedule), the right-hand side by unknown, and
+// room for `rows` and p numbers.
+struct Pass {
+  const double* store;
+  const int *unknown, *other;
+  double *x, *t;
+};
+
+// `order` is null where no rows moved.
 template <int P>
-inline void forward(const double* D, const Front& f, const int* position, const std::uint16_t* order, double* x,
-                    double* t) {
-  const int p = P ? P : f.pivots, m = f.others, rows = f.rows;
-  double* b = x + f.first;
-  if (order) reorder<P>(order, p, b, t);
-  const double* L = D + p * p;
+[[gnu::flatten]] void forward(const Pass& pass, const Front& f, const std::uint16_t* order) {
+  const int p = P ? P : f.pivots, rows = f.rows;
+  const double* L = pass.store + f.store + p * p;
+  const int *own = pass.unknown + f.first, *other = pass.other + f.list;
+  double *x = pass.x, *t = pass.t;
   if constexpr (P > 0) {
-    double own[P];
-    unrolled<P>([&](auto k) { own[k] = b[k]; });
+    double b[P];
+    unrolled<P>([&](auto k) { b[k] = x[own[k]]; });
+    if (order) {
+      reorder<P>(order, p, b, t);
+      unrolled<P>([&](auto k) { x[own[k]] = b[k]; });
+    }
     for (int row = 0; row < rows; row += kLanes) {
-      Vec sum = load(L + row) * own[0];
+      Vec sum = load(L + row) * b[0];
       unrolled<P>([&](auto k) {
-        if constexpr (k > 0) sum += load(L + k * rows + row) * own[k];
+        if constexpr (k > 0) sum += load(L + k * rows + row) * b[k];
       });
-      store(t + row, sum);
+      unrolled<kLanes>([&](auto i) { x[other[row + i]] -= sum[i.value]; });
     }
   } else {
+    double* b = t + rows;
+    for (int k = 0; k < p; ++k) b[k] = x[own[order ? order[k] : k]];
+    for (int k = 0; k < p; ++k) x[own[k]] = b[k];
     std::fill_n(t, rows, 0.0);
     for (int k = 0; k < p; ++k)
       for (int i = 0; i < rows; ++i) t[i] += L[k * rows + i] * b[k];
+    for (int i = 0; i < f.others; ++i) x[other[i]] -= t[i];
   }
-  for (int i = 0; i < m; ++i) x[position[i]] -= t[i];
 }
 
+// Columns of U are loaded as whole vectors: what follows a column comes along and is not used.
 template <int P>
-inline void backward(const double* D, const Front& f, const int* position, double* x) {
-  const int p = P ? P : f.pivots, m = f.others;
-  const double* U = D + p * (p + f.rows);
-  double* b = x + f.first;
+[[gnu::flatten]] void backward(const Pass& pass, const Front& f) {
+  const int p = P ? P : f.pivots;
+  const double *D = pass.store + f.store, *U = D + p * (p + f.rows);
+  const int *own = pass.unknown + f.first, *other = pass.other + f.list, *end = other + f.others;
+  double *x = pass.x, *t = pass.t;
   if constexpr (P > 0) {
-    double own[P];
-    unrolled<P>([&](auto k) { own[k] = b[k]; });
-    for (int j = 0; j < m; ++j, U += P) {
-      const double xj = x[position[j]];
-      unrolled<P>([&](auto k) { own[k] -= U[k] * xj; });
+    constexpr int C = padded(P) / kLanes;
+    Vec sum[C] = {};
+    unrolled<P>([&](auto k) { sum[k.value / kLanes][k.value % kLanes] = x[own[k]]; });
+    const auto take = [&](const double* column, double xj) {
+      unrolled<C>([&](auto c) { sum[c] -= load(column + c * kLanes) * xj; });
+    };
+    for (; end - other >= 2; other += 2, U += 2 * P) {
+      take(U, x[other[0]]);
+      take(U + P, x[other[1]]);
     }
+    if (other != end) take(U, x[*other]);
+    double b[P];
+    unrolled<P>([&](auto k) { b[k] = sum[k.value / kLanes][k.value % kLanes]; });
     unrolled<P>([&](auto k) {
       unrolled<P>([&](auto i) {
-        if constexpr (i > k) own[i] -= D[k * P + i] * own[k];
+        if constexpr (i > k) b[i] -= D[k * P + i] * b[k];
       });
     });
     unrolled<P>([&](auto back) {
       constexpr int k = P - 1 - back;
-      own[k] *= D[k * P + k];
+      b[k] *= D[k * P + k];
       unrolled<P>([&](auto i) {
-        if constexpr (i < k) own[i] -= D[k * P + i] * own[k];
+        if constexpr (i < k) b[i] -= D[k * P + i] * b[k];
       });
     });
-    std::copy_n(own, P, b);
+    unrolled<P>([&](auto k) { x[own[k]] = b[k]; });
   } else {
-    for (int j = 0; j < m; ++j) {
-      const double xj = x[position[j]];
-      for (int k = 0; k < p; ++k) b[k] -= U[j * p + k] * xj;
-    }
+    for (int k = 0; k < p; ++k) t[k] = x[own[k]];
+    for (; other != end; ++other, U += p)
+      for (int k = 0; k < p; ++k) t[k] -= U[k] * x[*other];
     for (int k = 0; k < p; ++k)
-      for (int i = k + 1; i < p; ++i) b[i] -= D[k * p + i] * b[k];
+      for (int i = k + 1; i < p; ++i) t[i] -= D[k * p + i] * t[k];
     for (int k = p - 1; k >= 0; --k) {
-      b[k] *= D[k * p + k];
-      for (int i = 0; i < k; ++i) b[i] -= D[k * p + i] * b[k];
+      t[k] *= D[k * p + k];
+      for (int i = 0; i < k; ++i) t[i] -= D[k * p + i] * t[k];
     }
+    for (int k = 0; k < p; ++k) x[own[k]] = t[k];
   }
 }
 

@@ -53,6 +53,7 @@ class Builder {
     number(schedule);
     if (!lay_out(schedule)) return false;
     assign_values(schedule);
+    name_others(schedule);
     return true;
   }
 
@@ -156,12 +157,12 @@ class Builder {
 
   bool lay_out(Schedule& s) {
     s.n = layout_.n;
-    s.fronts.clear(), s.position.clear(), s.stretches.clear(), s.children.clear();
+    s.fronts.clear(), s.other.clear(), s.stretches.clear(), s.children.clear();
     s.store_size = s.stack_size = s.factor_nonzeros = 0;
     s.largest_update = s.largest_pivots = s.largest_rows = 0;
     std::size_t entries = 0;
     for (const int k : postorder_) entries += index(nodes_[index(k)].others);
-    s.fronts.reserve(postorder_.size()), s.position.reserve(entries);
+    s.fronts.reserve(postorder_.size()), s.other.reserve(entries);
     s.children.reserve(postorder_.size());
     std::int64_t top = 0;
     int first = 0;
@@ -170,9 +171,9 @@ class Builder {
       Front f{};
       f.pivots = node.pivots, f.others = node.others, f.rows = padded(f.others);
       f.first = first, first += f.pivots;
-      f.list = count(s.position);
-      for (const int other : others(node)) s.position.push_back(position_[index(unknown_[index(other)])]);
-      std::sort(s.position.begin() + f.list, s.position.end());
+      f.list = count(s.other);
+      for (const int other : others(node)) s.other.push_back(position_[index(unknown_[index(other)])]);
+      std::sort(s.other.begin() + f.list, s.other.end());
       for (int child = node.child; child >= 0; child = nodes_[index(child)].sibling) {
         s.children.push_back(front_of_[index(child)]);
         const Front& c = s.fronts[index(front_of_[index(child)])];
@@ -202,7 +203,7 @@ class Builder {
       const int parent = parent_of[k], pivots = s.fronts[index(parent)].pivots;
       int before = -2;
       for (int i = 0; i < f.others; ++i) {
-        const int place = local(s, parent, s.position[index(f.list + i)]);
+        const int place = local(s, parent, s.other[index(f.list + i)]);
         const bool outer = place >= pivots;
         if (place != before + 1 || place == pivots) {
           s.stretches.push_back(
@@ -224,7 +225,7 @@ class Builder {
   static int local(const Schedule& s, int front, int position) {
     const Front& f = s.fronts[index(front)];
     if (position < f.first + f.pivots) return position - f.first;
-    const auto begin = s.position.begin() + f.list, end = begin + f.others;
+    const auto begin = s.other.begin() + f.list, end = begin + f.others;
     return f.pivots + static_cast<int>(std::lower_bound(begin, end, position) - begin);
   }
 
@@ -245,6 +246,20 @@ class Builder {
       std::copy_n(next.begin() + static_cast<std::ptrdiff_t>(kKinds * f + 1), kKinds, s.fronts[f].runs.begin());
     s.runs.assign(index(next.back()), Run{});
     visit_runs(s, front_at, [&](int front, const Run& run) { s.runs[index(next[place_of(front, run)]++)] = run; });
+  }
+
+  // Positions become unknowns.
+  static void name_others(Schedule& s) {
+    std::vector<int> named;
+    std::size_t entries = 0;
+    for (const Front& f : s.fronts) entries += index(f.rows);
+    named.reserve(entries);
+    for (Front& f : s.fronts) {
+      const int* position = s.other.data() + f.list;
+      f.list = count(named);
+      for (int i = 0; i < f.rows; ++i) named.push_back(s.unknown[index(i < f.others ? position[i] : f.first)]);
+    }
+    s.other.swap(named);
   }
 
   // Calls visit(front, run) for stretches of the values that stay together in the store of a front.

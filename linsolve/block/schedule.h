@@ -23,7 +23,7 @@ namespace poinsot::block {
 struct Front {
   int pivots, others, rows;  // p, m, m padded
   int first;                 // position of the first pivot in the order of elimination
-  int list;                  // where its m entries of `position` and `target` start
+  int list;                  // where its entries of `other` start
   int inner;                 // how many of the m unknowns are pivots of the parent: they come first
   int first_stretch, first_outer_stretch, last_stretch;  // of its update in the parent: pivots there, others there, end
   // Ends of its runs of length 1, 2, 3, 4 and others; they start where those of the front before end.
@@ -49,8 +49,10 @@ struct Stretch {
 struct Schedule {
   int n = 0;
   std::vector<Front> fronts;
-  std::vector<int> unknown;   // by position
-  std::vector<int> position;  // of the m other unknowns of each front, ascending
+  std::vector<int> unknown;  // by position in the order of elimination
+  // Of each front its m other unknowns, in the order of elimination, and as many times its first pivot as `rows` are
+  // more: what the padding rows of L, which are zero, take from it is nothing.
+  std::vector<int> other;
   std::vector<Stretch> stretches;
   std::vector<Run> runs;
   std::vector<int> children;

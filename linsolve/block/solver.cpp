@@ -8,6 +8,9 @@
 //              then Bauer's condition (condition.h) and the residual of a solve decide;
 //   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
 //
+// Where the fresh one left more than rounding, solutions are looked at, too: all of them where it left much, else all
+// until they turn out good without refinement.
+//
 // Where this does not lead to a trustworthy answer the same values are handed over to klu, whose word counts, singular
 // included; so are all matrices without a saddle point's symmetric structure (kinematics). Each is counted, and
 // helper() shows who took them.
@@ -45,6 +48,10 @@ constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not a
 // Part of its size that is left of a pivot. Of 16 digits 10 remain at the first, which refinement makes good, though
 // another order may do without; at the second no more than 6, of which refinement may converge to anything.
 constexpr double kCancelled = 1e-6, kRounding = 1e-10;
+// Solutions along a motion are like one another. Where the residuals of random right sides are within what is accepted
+// and those of so many solutions in a row were good, one in so many is looked at; both steps of two Newton iterations
+// come by turns, the second number being odd.
+constexpr int kCalm = 16, kSeldom = 7;
 constexpr int kRefinements = 3;  // each gains three digits or more of kFairResidual; beyond, they do not converge
 constexpr int kRepairs = 8;      // each fuses all that is bad at the time and costs an analysis
 constexpr int kPatience = 3;     // times in a row that klu has to help before it takes over
@@ -53,6 +60,7 @@ constexpr int kPatience = 3;     // times in a row that klu has to help before i
 enum class Answer {
   open,         // pivots are examined at the next factorization
   trusted,      // given out unseen
+  sampled,      // the residual of each is looked at until many in a row were good, then of a few
   checked,      // the residual of each is looked at
   helped,       // by klu; the next values are tried here again
   handed_over,  // by klu, and all that follow
@@ -66,6 +74,7 @@ class Solver final : public LinearSolver {
     slots_ = layout_.slots;
     std::vector<int>().swap(layout_.slots);
     node_ = pattern.node;
+    residual_.resize(layout_);
     values_.assign(index(layout_.nonzeros()), 0);
     statistics_.nonzeros = layout_.nonzeros();
     klu_.reset();
@@ -86,11 +95,11 @@ class Solver final : public LinearSolver {
 
   LinearStatus do_factor() override {
     if (answer_ == Answer::handed_over) return factor_by_klu();
-    const bool examined = answer_ == Answer::trusted || answer_ == Answer::checked;
+    const bool examined = answer_ == Answer::trusted || answer_ == Answer::sampled || answer_ == Answer::checked;
     const Drift drift = factor_.factor(*schedule_, values_, examined);
     if (!examined || !within(drift, kFar)) return factor_fresh();
     ++statistics_.refactorizations;
-    answer_ = watched_ || !within(drift, kNear) ? Answer::checked : Answer::trusted;
+    answer_ = within(drift, kNear) ? near_ : Answer::checked;
     return {};
   }
 
@@ -121,9 +130,10 @@ class Solver final : public LinearSolver {
     // A pivot that is rounding may still pass for one in a system of very different masses; klu sees it at its own
     // size.
     if (!cancelled_pivots(*schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
-    watched_ = watched_ || !cancelled_pivots(*schedule_, values_, weight_, kCancelled).empty();
+    if (!cancelled_pivots(*schedule_, values_, weight_, kCancelled).empty()) near_ = Answer::checked;
     factor_.keep_pivots(*schedule_);
-    answer_ = watched_ ? Answer::checked : Answer::trusted;
+    answer_ = near_;
+    good_ = 0;
     helped_ = 0;
     return {};
   }
@@ -153,7 +163,7 @@ class Solver final : public LinearSolver {
       if (!std::isfinite(estimate)) return false;
       std::ranges::transform(rows, x.begin(), [](double row) { return 1 / row; });
       solve(x);
-      watched_ = size > kSmallResidual;
+      near_ = size <= kSmallResidual ? Answer::trusted : size <= kLargeResidual ? Answer::sampled : Answer::checked;
       if (estimate < kSingularCondition &&
           (size <= kFairResidual || (last && refine(x, corrections) <= kLargeResidual)))
         return true;
@@ -195,14 +205,17 @@ class Solver final : public LinearSolver {
 
   LinearStatus do_solve(std::span<double> b) override {
     if (answer_ == Answer::helped || answer_ == Answer::handed_over) return klu_->solve(b);
-    if (answer_ == Answer::trusted) {
+    if (answer_ == Answer::trusted || (answer_ == Answer::sampled && good_ >= kCalm && good_ % kSeldom != 0)) {
+      ++good_;
       factor_.solve(*schedule_, b);
       return {};
     }
     b_.assign(b.begin(), b.end());
     factor_.solve(*schedule_, b);
     const double size = residual(b_, b);
+    ++good_;
     if (size <= kGoodResidual) return {};
+    good_ = 0;
     if (size <= kLargeResidual) {  // factors that leave so little leave no more than rounding of a correction
       correct(b);
       ++statistics_.refinements;
@@ -263,8 +276,9 @@ class Solver final : public LinearSolver {
   std::vector<double> b_;
   std::vector<double> weight_;  // of rows in the choice of pivots
   Answer answer_ = Answer::open;
-  bool watched_ = false;  // the last fresh factorization left larger residuals or cancelled much: all are looked at
-  int helped_ = 0;        // by klu, times in a row
+  Answer near_ = Answer::trusted;  // with pivots near those of the last fresh factorization, by what that one left
+  std::int64_t good_ = 0;          // solutions since one was not, as far as was looked
+  int helped_ = 0;                 // by klu, times in a row
 };
 
 }  // namespace
