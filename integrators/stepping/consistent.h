@@ -47,7 +47,8 @@ class Consistent {
   // M a + Gᵀλ − Q and G a − γ of a state the problem stands at.
   void residual(const State& at, std::span<double> out);
   // Moves q and v onto the constraints with the factorization at hand, which belongs to a state nearby, and says
-  // whether they moved; the problem stands at the result.
+  // whether they moved; the problem stands at the result. Fails with singular_position, without words, where rounding
+  // would decide about velocities.
   Status project(State& at, bool& moved);
   // How far project() moved the last state, δq and then δv.
   std::span<const double> moved_by() const { return span(moved_by_); }
@@ -101,7 +102,7 @@ class Consistent {
     double t = 0, usual = 0;
     Eigen::VectorXd v;
   } calm_;
-  double off_ = 0;  // largest |Φ| that the last position_correction() was for
+  double off_ = 0;  // largest |Φ| or |G v − ν| that the last correction was for
   const std::size_t nv_, nc_;
   Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_;
 };

@@ -346,6 +346,11 @@ Status RadauStepper::complete(double& error, double most) {
   return {};
 }
 
+void RadauStepper::take_back() {
+  state_ = before_;
+  h_before_ = 0;
+}
+
 Status RadauStepper::interpolate(double t) {
   within_.h = 0;
   const bool fast = fast_;
