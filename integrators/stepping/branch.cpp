@@ -69,13 +69,20 @@ Departure departure(Problem& problem, const LinearChoice& choice, const StepEnd&
   rates(to, span(now));
   problem.set_velocity(span(to.v));
   rhs.tail(nc) -= now;
+  const Eigen::Index rows = static_cast<Eigen::Index>(problem.model_rows().size());  // of the scene, which come first
+  const auto departed = [&](double share) {
+    Eigen::Index row = 0;
+    rhs.segment(nv, rows).cwiseAbs().maxCoeff(&row);
+    return Departure{share, static_cast<int>(nv + row)};
+  };
   Consistent consistent(problem, choice);
-  if (!consistent.factor(to.t).ok() || !consistent.solve(to.t, span(rhs)).ok()) return {};
+  if (!consistent.factor(to.t).ok() || !consistent.solve(to.t, span(rhs)).ok()) return departed(HUGE_VAL);
   const Most delta = most(problem, rhs), before = most(problem, from.v), after = most(problem, to.v);
-  Eigen::Index row = 0;  // of the scene: what formulations add comes last
-  rhs.segment(nv, static_cast<Eigen::Index>(problem.model_rows().size())).cwiseAbs().maxCoeff(&row);
-  return {std::max(delta.way / std::max(before.way, after.way), delta.turn / std::max(before.turn, after.turn)),
-          static_cast<int>(nv + row)};
+  const auto share = [&](double Most::*of) {
+    const double size = std::max(before.*of, after.*of);
+    return size > 0 ? delta.*of / size : 0;
+  };
+  return departed(std::max(share(&Most::way), share(&Most::turn)));
 }
 
 }  // namespace poinsot

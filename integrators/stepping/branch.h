@@ -30,7 +30,8 @@ class BranchWatch {
 };
 
 struct Departure {
-  double share = 0;  // |δ|/|v|: of the larger one of v_n and v, points and turns each for itself
+  double share = 0;  // |δ|/|v|: of the larger one of v_n and v, points and turns each for itself; infinite where it
+                     // ends in a singular position
   int row = 0;       // whose impulse μ is the largest, as an unknown of the problem
 };
 struct StepEnd {

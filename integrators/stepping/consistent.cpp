@@ -188,22 +188,27 @@ bool Consistent::beside_singular() {
   return std::exchange(beside_singular_, false);
 }
 
-bool Consistent::leaves_branch(const State& at) {
-  constexpr double kUnusual = 1e4, kAccounted = 1e3, kOther = 0.01, kExplained = 10;
+bool Consistent::made_of_rounding(const State& at) {
+  constexpr double kUnusual = 1e4, kAccounted = 1e3;
   const double acceleration = largest(at.a());
   if (calm_.usual == 0 || !(acceleration > kUnusual * calm_.usual)) return false;
-  double jump = 0, size = 0;
-  for (Eigen::Index k = 0; k < at.v.size(); ++k) {
-    jump = std::max(jump, std::abs(at.v[k] - calm_.v[k]));
-    size = std::max({size, std::abs(at.v[k]), std::abs(calm_.v[k])});
-  }
-  if (!(jump > kOther * size + kExplained * calm_.usual * std::abs(at.t - calm_.t))) return false;
   const std::span<const double> none = span(zeros_);
   problem_.equations_of_motion(none.first(nv_), {}, moves());  // −Q
   problem_.gamma(rows());
   const double loads = largest(moves()), gamma = largest(rows());
   problem_.momentum(at.a(), moves());
   return acceleration > kAccounted * gamma && largest(moves()) > kAccounted * loads;
+}
+
+bool Consistent::leaves_branch(const State& at) {
+  constexpr double kOther = 0.01, kExplained = 10;
+  if (!made_of_rounding(at)) return false;
+  double jump = 0, size = 0;
+  for (Eigen::Index k = 0; k < at.v.size(); ++k) {
+    jump = std::max(jump, std::abs(at.v[k] - calm_.v[k]));
+    size = std::max({size, std::abs(at.v[k]), std::abs(calm_.v[k])});
+  }
+  return jump > kOther * size + kExplained * calm_.usual * std::abs(at.t - calm_.t);
 }
 
 void Consistent::follow(const State& at) {

@@ -57,9 +57,11 @@ class Consistent {
   // ever since asked last.
   double amplification() const { return amplification_; }
   bool beside_singular();
-  // Whether a state the problem stands at has gone another way than the velocities led, next to a singular position:
-  // accelerations are far larger than they were, and than forces and γ account for, so that [M Gᵀ; G 0]⁻¹ does, and
-  // velocities differ by a hundredth from what they were before. Rounding has then chosen among branches.
+  // Whether accelerations where the problem stands are far larger than they were, and than forces and γ account for, so
+  // that [M Gᵀ; G 0]⁻¹ is what makes them, next to a singular position.
+  bool made_of_rounding(const State& at);
+  // Whether such a state has gone another way than the velocities led: they differ by a hundredth from what they were
+  // before. Rounding has then chosen among branches.
   bool leaves_branch(const State& at);
   // A step ends there that leaves none.
   void follow(const State& at);

@@ -69,6 +69,7 @@ class ExplicitStepper {
   Status run_through_stages(double to, State& at);
   void test_stiffness();
   Status prepare_dense();
+  Status put_on_constraints();
   Status by_polynomial(double t);
   Status by_short_step(double t);
 
