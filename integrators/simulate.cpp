@@ -153,10 +153,13 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
         largest, rotation.wrong, integrator.name, formulation.name, 0.9 * settings.step * rotation.wrong / largest));
   }
   const Failure failure = outcome.status.failure;
+  const bool unexplained = failure == Failure::step_size_too_small || failure == Failure::not_converged;
   if (settings.analysis == Analysis::dynamics &&
-      (failure == Failure::step_size_too_small || failure == Failure::not_converged)) {
+      (unexplained || failure == Failure::singular_matrix || failure == Failure::singular_position)) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
-    const std::string why = near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
+    std::string why = vanished_distance(*problem, state);
+    if (why.empty() && unexplained)
+      why = near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
     if (!why.empty()) outcome.status.message += "; " + why;
   }
   outcome.statistics.linear = systems.work();

@@ -133,6 +133,19 @@ TEST_P(BenchmarkProblems, DoubleFourBarBeforeTheSingularPosition) {
   });
 }
 
+// Fifteen passages of the flat position in 20 s.
+TEST_P(BenchmarkProblems, DoubleFourBarOverTwentySeconds) {
+  const auto tip = [](double end) {
+    const double theta = double_four_bar(end, 400000);
+    return Vector3(std::sin(theta), std::cos(theta), 0);
+  };
+  EXPECT_LT((tip(10) - Vector3(0.32845811154065, 0.94451853817866, 0)).norm(), 1e-9);
+  for (const double end : {10.0, 20.0}) {
+    const auto samples = motion(scene_of("double_four_bar"), controlled("dop853", GetParam(), 1e-8, end, end));
+    EXPECT_LT((2 * samples.back().bodies[0].r - tip(end)).norm(), 1e-6) << end;
+  }
+}
+
 // At θ = π/2 all links lie flat and each loop could fold. A run that comes to its end has kept to the regular branch,
 // one that does not says where it stopped and has kept what came before.
 TEST_P(BenchmarkProblems, DoubleFourBarThroughTheSingularPosition) {

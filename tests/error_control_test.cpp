@@ -286,6 +286,31 @@ TEST_P(ErrorControl, SamplesDoNotStopARun) {
   }
 }
 
+// An output time in the middle of a long step: there the ZXZ angles, which steps leave before they are singular, would
+// be. A turning body whose third axis comes to the z axis at t = 0.5; truth in closed form.
+TEST_P(ErrorControl, SamplesWhereAnglesAreSingular) {
+  for (const double least : {0.0, 1e-12, 1e-6}) {
+    Scene scene;
+    Body& body = scene.bodies.emplace_back();
+    body.name = "body", body.mass = 1, body.inertia = Vector3(1, 1, 2).asDiagonal();
+    const auto turned = [&](double t) -> Matrix3 {
+      return (Eigen::AngleAxisd(2 * t - 1, Vector3::UnitX()) * Eigen::AngleAxisd(least, Vector3::UnitY()))
+          .toRotationMatrix();
+    };
+    body.orientation = turned(0);
+    body.position = body.orientation.col(2);
+    body.velocity = Vector3(2, 0, 0).cross(body.position);
+    body.angular_velocity = body.orientation.transpose() * Vector3(2, 0, 0);
+    Joint& ball = scene.joints.emplace_back();
+    ball.name = "ball", ball.type = JointType::spherical, ball.i = kGround, ball.j = 0, ball.point = Vector3::Zero();
+    for (const double rtol : {1e-4, 1e-6})
+      for (const double every : {0.1, 0.25, 0.5})
+        for (const Snapshot& sample : motion(scene, settings(rtol, 1, every)))
+          EXPECT_LT((sample.bodies[0].A - turned(sample.t)).norm(), 200 * rtol)
+              << least << ' ' << rtol << ' ' << sample.t;
+  }
+}
+
 TEST_P(ErrorControl, StopsAtASingularStart) {
   Scene scene = scene_of("double_pendulum");  // and a rod without inertia, whose rotation nothing holds
   Body& rod = scene.bodies.emplace_back(scene.bodies[1]);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <numbers>
 
 #include "bench/stability/truths.h"
 #include "integrators/start/reactions.h"
@@ -43,6 +44,37 @@ TEST(Gallery, CrankRockerIsWhereTwoCirclesMeet) {
       EXPECT_LT((sample.bodies[2].r.head<2>() - (corner + far) / 2).norm(), 1e-8) << named(settings) << sample.t;
       EXPECT_LT(std::abs(sample.bodies[1].r.z()), 1e-10) << named(settings);
     }
+  }
+}
+
+// To the left of the way from A to B for side 1, to its right for −1.
+Vector2d meeting(const Vector2d& A, double a, const Vector2d& B, double b, double side) {
+  const Vector2d way = B - A;
+  const double D = way.norm(), along = (a * a - b * b + D * D) / (2 * D);
+  return A + along / D * way + side * std::sqrt(a * a - along * along) / D * Vector2d(-way.y(), way.x());
+}
+
+TEST(Gallery, JansensLegWalksByCircles) {
+  const Vector2d frame(-0.38, -0.078);
+  for (Settings settings : ways(1)) {
+    settings.every = 0.05;
+    double lowest = 0;
+    for (const Snapshot& sample : motion(scene_of("jansen"), settings)) {
+      const double q = 2 * std::numbers::pi * sample.t;
+      const Vector2d pin = 0.15 * Vector2d(std::cos(q), std::sin(q));
+      const Vector2d upper = meeting(frame, 0.415, pin, 0.5, 1), lower = meeting(frame, 0.393, pin, 0.619, -1);
+      const Vector2d heel = meeting(frame, 0.401, upper, 0.558, 1), shin = meeting(heel, 0.394, lower, 0.367, -1);
+      const Vector2d foot = meeting(shin, 0.657, lower, 0.49, -1);
+      const BodyState& plate = sample.bodies[6];
+      const Vector3 centre((lower + shin + foot).x() / 3, (lower + shin + foot).y() / 3, 0);
+      EXPECT_LT((plate.r - centre).norm(), 1e-8) << named(settings) << " at " << sample.t;
+      // Of the plate's frame, which lay along the axes at the start.
+      const Vector3 foot_in_plate(-0.00045533018407173387, -0.36648588483805833, 0);
+      EXPECT_LT((plate.r + plate.A * foot_in_plate - Vector3(foot.x(), foot.y(), 0)).norm(), 1e-8)
+          << named(settings) << " at " << sample.t;
+      lowest = std::min(lowest, foot.y());
+    }
+    EXPECT_NEAR(lowest, -0.918, 1e-3);
   }
 }
 

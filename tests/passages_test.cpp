@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "integrators/integrator.h"
 #include "tests/support/loops.h"
 #include "tests/support/simulation.h"
@@ -66,6 +68,71 @@ TEST_P(Passages, OfErrorControl) {
       ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
       EXPECT_LT(passage.off(r.samples.back().bodies[0]), 10 * rtol);
       EXPECT_LT(r.outcome.statistics.rejected_steps, 100);
+    }
+  }
+}
+
+// Here a time of the grid lies beside the flat position, where a tolerance of 1e-3 leaves much of the velocities open:
+// whole steps went on from there on another branch, with a post at rest. Couplers turn on those alone.
+TEST_P(Passages, OfStepsThatEndBesideThePosition) {
+  struct Start {
+    int loops;
+    double angle, step;
+  };
+  int ended = 0;
+  for (const auto& [loops, angle, step] : {Start{2, 0.281197, 1e-2}, Start{2, 0.361521, 1e-2}, Start{2, 0.889502, 1e-2},
+                                           Start{2, 1.03863, 1e-2}, Start{1, 0.562883, 2e-2}}) {
+    for (const IntegratorEntry& integrator : integrators()) {
+      if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;
+      SCOPED_TRACE(::testing::Message() << integrator.name << ", " << loops << " loops from " << angle);
+      Settings settings = dynamics(GetParam(), step, 2, 2);
+      settings.integrator = integrator.name;
+      settings.stopping = Settings{}.stopping;
+      settings.tolerance = 1e-3;
+      settings.max_iterations = Settings{}.max_iterations;
+      const Recorded r = run(posts(loops, angle, kSpin, false), settings);
+      if (!r.outcome.status.ok()) {
+        EXPECT_EQ(r.outcome.status.failure, Failure::singular_position) << r.outcome.status.message;
+        EXPECT_THAT(r.outcome.status.message, testing::HasSubstr("another branch"));
+        continue;
+      }
+      ++ended;
+      for (int k = 0; k < loops; ++k) {
+        const Matrix3& A = r.samples.back().bodies[static_cast<std::size_t>(loops + 1 + k)].A;
+        EXPECT_LT((A - Matrix3::Identity()).norm(), 1e-2);
+      }
+    }
+  }
+  EXPECT_GE(ended, 20) << "of 25";
+}
+
+// A rod turned about z by its direction's cosine alone, which says nothing of its rate at a quarter turn: an instant of
+// the grid and an output time. What is given out is right, and so is what comes after, or the run stops.
+TEST_P(Passages, OfADirectionThatTurnsRoundAtAStepsEnd) {
+  for (const double off_centre : {0.0, 1.0}) {
+    Scene scene;
+    scene.gravity = {0, -9.81 * off_centre, 0};
+    Body& rod = scene.bodies.emplace_back();
+    rod.name = "rod", rod.mass = 1, rod.inertia = Matrix3::Identity(), rod.angular_velocity = {0, 0, 1};
+    rod.position = {off_centre, 0, 0}, rod.velocity = {0, off_centre, 0};
+    Joint& hinge = scene.joints.emplace_back();
+    hinge.name = "hinge", hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
+    Constraint& sine = scene.constraints.emplace_back();
+    sine.name = "sine", sine.type = ConstraintType::DP1, sine.i = kGround, sine.j = 0;
+    sine.a_i = {0, 1, 0}, sine.a_j = {1, 0, 0}, sine.f = Expression::parse("sin(t)");
+    for (const IntegratorEntry& integrator : integrators()) {
+      if (integrator.analysis != Analysis::dynamics || refusal_of(integrator, GetParam())) continue;
+      for (const int steps : {10, 16}) {
+        SCOPED_TRACE(::testing::Message() << integrator.name << ", a quarter turn in " << steps);
+        const double h = std::numbers::pi / 2 / steps;
+        Settings settings = controlled(integrator.name, GetParam(), 1e-6, std::numbers::pi, h);
+        settings.step = h;
+        const Recorded r = run(scene, settings);
+        for (const Snapshot& s : r.samples) {
+          EXPECT_LT((s.bodies[0].A.col(0) - Vector3(std::cos(s.t), std::sin(s.t), 0)).norm(), 0.02) << s.t;
+          EXPECT_NEAR(s.bodies[0].w.z(), 1, 0.02) << s.t;
+        }
+      }
     }
   }
 }

@@ -54,16 +54,8 @@ TEST(StabilityVerdicts, AreWhatIsKnownOfTheEdges) {
     return cells(require_family(family), {true, {formulation}, {integrator}}, 1);
   };
   for (const Cell& cell : of("euler_angles", "dop853", "rp")) EXPECT_EQ(cell.verdict, Verdict::accurate) << text(cell);
-  // Euler angles may be singular within a step; which body's, and who is never so, is said.
-  int stopped = 0;
-  for (const Cell& cell : of("euler_angles", "dop853", "reps")) {
-    if (cell.verdict != Verdict::stop) continue;
-    ++stopped;
-    EXPECT_NE(text(cell).find(", whose orientation is singular in formulation reps there, but not in rA, rp"),
-              std::string::npos)
-        << text(cell);
-  }
-  EXPECT_GT(stopped, 0);
+  // Steps that would come to singular Euler angles are made shorter.
+  for (const Cell& cell : of("euler_angles", "dop853", "reps")) EXPECT_NE(cell.verdict, Verdict::stop) << text(cell);
   for (const Cell& cell : of("flat_redundant", "generalized_alpha", "rA"))
     EXPECT_EQ(cell.verdict, Verdict::accurate) << text(cell);
   for (const Cell& cell : of("pulse", "dop853", "rA")) EXPECT_EQ(cell.verdict, Verdict::accurate) << text(cell);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formulations/gradient.h"
+#include "integrators/stepping/vectors.h"
 
 namespace poinsot {
 namespace {
@@ -61,6 +62,30 @@ std::string near_singular_position(Problem& problem, int rows, std::span<const d
       "constraints' but for {:.1g} of its length (at the start for {:.1g}); dopri5 and dop853 step over most of such "
       "positions at larger tolerances, fixed steps may",
       problem.describe_unknown(problem.nv() + static_cast<int>(row)), now[row], before[row]);
+}
+
+std::string vanished_distance(Problem& problem, const State& state) {
+  constexpr double kVanished = 1e-3;
+  const Model& model = problem.model();
+  problem.set_position(state.t, span(state.q));
+  problem.set_velocity(span(state.v));
+  std::vector<BodyState> bodies(model.bodies.size());
+  problem.to_bodies(state.a(), bodies);
+  const auto point = [&](int body, const Vector3& s) -> Vector3 {
+    return body == kGround ? s : bodies[index(body)].r + bodies[index(body)].A * s;
+  };
+  for (const int k : problem.model_rows()) {
+    const Row& row = model.rows[index(k)];
+    if (row.type != RowType::D) continue;
+    const Vector3 of_i = point(row.i, row.s_i), of_j = point(row.j, row.s_j);
+    const double arm = std::max(row.s_i.norm(), row.s_j.norm()), length = (of_j - of_i).norm();
+    if (!(length < kVanished * (arm > 0 ? arm : 1))) continue;
+    return fmt::format(
+        "{} has come to a length of {:.2g} m: at 0 its gradient vanishes, and it does not say in which direction the "
+        "points come together or part; three CD constraints in its place, one for each axis, do",
+        describe_row(model, k), length);
+  }
+  return {};
 }
 
 }  // namespace poinsot

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "formulations/problem.h"
+#include "integrators/state.h"
 
 namespace poinsot {
 
@@ -26,5 +27,9 @@ struct DependentRow {
   double share = 1;
 };
 DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q);
+
+// A sentence about a distance (D) that has come to zero where a run stopped, relative to the longer of its two arms, or
+// to a metre where it has none; else empty. The problem stands there afterwards.
+std::string vanished_distance(Problem& problem, const State& state);
 
 }  // namespace poinsot

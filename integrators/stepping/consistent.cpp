@@ -18,6 +18,9 @@ constexpr int kCorrections = 6;
 constexpr double kRounding = 1e-15;    // product of two corrections that leaves nothing to correct
 constexpr double kJump = 1e-9;         // relative to the largest coordinate: more than rounding of a time leads to
 constexpr double kNegligible = 1e-14;  // a correction of this size is the rounding of the coordinates
+// Relative to velocities. Where the gradient of a row vanishes its position is known to √ε only, and G v = ν to so
+// much: a correction of a hundredth for what is off by less is made of rounding.
+constexpr double kUnseen = 1e-7, kOther = 0.01;
 
 }  // namespace
 
@@ -79,6 +82,7 @@ Status Consistent::position_correction(double t) {
 Status Consistent::velocity_correction(double t) {
   std::ranges::fill(moves(), 0.0);
   problem_.velocity_residual(rows());
+  off_ = largest(rows());
   for (double& x : rows()) x = -x;
   return system_.solve(t, span(rhs_));
 }
@@ -153,8 +157,9 @@ Status Consistent::project(State& at, bool& moved) {
   }
   for (int k = 0; k < kCorrections; ++k) {
     if (Status status = velocity_correction(at.t); !status.ok()) return status;
-    const double correction = largest(moves());
-    if (correction <= kNegligible * std::max(1.0, largest(span(at.v)))) break;
+    const double correction = largest(moves()), speed = std::max(1.0, largest(span(at.v)));
+    if (correction <= kNegligible * speed) break;
+    if (off_ <= kUnseen * speed && correction > kOther * speed) return {Failure::singular_position, at.t, {}};
     at.v += rhs_.head(problem_.nv());
     moved_by_.tail(problem_.nv()) += rhs_.head(problem_.nv());
     problem_.set_velocity(span(at.v));
@@ -183,22 +188,27 @@ bool Consistent::beside_singular() {
   return std::exchange(beside_singular_, false);
 }
 
-bool Consistent::leaves_branch(const State& at) {
-  constexpr double kUnusual = 1e4, kAccounted = 1e3, kOther = 0.01, kExplained = 10;
+bool Consistent::made_of_rounding(const State& at) {
+  constexpr double kUnusual = 1e4, kAccounted = 1e3;
   const double acceleration = largest(at.a());
   if (calm_.usual == 0 || !(acceleration > kUnusual * calm_.usual)) return false;
-  double jump = 0, size = 0;
-  for (Eigen::Index k = 0; k < at.v.size(); ++k) {
-    jump = std::max(jump, std::abs(at.v[k] - calm_.v[k]));
-    size = std::max({size, std::abs(at.v[k]), std::abs(calm_.v[k])});
-  }
-  if (!(jump > kOther * size + kExplained * calm_.usual * std::abs(at.t - calm_.t))) return false;
   const std::span<const double> none = span(zeros_);
   problem_.equations_of_motion(none.first(nv_), {}, moves());  // −Q
   problem_.gamma(rows());
   const double loads = largest(moves()), gamma = largest(rows());
   problem_.momentum(at.a(), moves());
   return acceleration > kAccounted * gamma && largest(moves()) > kAccounted * loads;
+}
+
+bool Consistent::leaves_branch(const State& at) {
+  constexpr double kOther = 0.01, kExplained = 10;
+  if (!made_of_rounding(at)) return false;
+  double jump = 0, size = 0;
+  for (Eigen::Index k = 0; k < at.v.size(); ++k) {
+    jump = std::max(jump, std::abs(at.v[k] - calm_.v[k]));
+    size = std::max({size, std::abs(at.v[k]), std::abs(calm_.v[k])});
+  }
+  return jump > kOther * size + kExplained * calm_.usual * std::abs(at.t - calm_.t);
 }
 
 void Consistent::follow(const State& at) {

@@ -47,7 +47,8 @@ class Consistent {
   // M a + Gᵀλ − Q and G a − γ of a state the problem stands at.
   void residual(const State& at, std::span<double> out);
   // Moves q and v onto the constraints with the factorization at hand, which belongs to a state nearby, and says
-  // whether they moved; the problem stands at the result.
+  // whether they moved; the problem stands at the result. Fails with singular_position, without words, where rounding
+  // would decide about velocities.
   Status project(State& at, bool& moved);
   // How far project() moved the last state, δq and then δv.
   std::span<const double> moved_by() const { return span(moved_by_); }
@@ -56,9 +57,11 @@ class Consistent {
   // ever since asked last.
   double amplification() const { return amplification_; }
   bool beside_singular();
-  // Whether a state the problem stands at has gone another way than the velocities led, next to a singular position:
-  // accelerations are far larger than they were, and than forces and γ account for, so that [M Gᵀ; G 0]⁻¹ does, and
-  // velocities differ by a hundredth from what they were before. Rounding has then chosen among branches.
+  // Whether accelerations where the problem stands are far larger than they were, and than forces and γ account for, so
+  // that [M Gᵀ; G 0]⁻¹ is what makes them, next to a singular position.
+  bool made_of_rounding(const State& at);
+  // Whether such a state has gone another way than the velocities led: they differ by a hundredth from what they were
+  // before. Rounding has then chosen among branches.
   bool leaves_branch(const State& at);
   // A step ends there that leaves none.
   void follow(const State& at);
@@ -101,7 +104,7 @@ class Consistent {
     double t = 0, usual = 0;
     Eigen::VectorXd v;
   } calm_;
-  double off_ = 0;  // largest |Φ| that the last position_correction() was for
+  double off_ = 0;  // largest |Φ| or |G v − ν| that the last correction was for
   const std::size_t nv_, nc_;
   Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_;
 };

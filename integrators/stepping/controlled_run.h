@@ -2,9 +2,9 @@
 // jumps of the data stepped onto, pulses not stepped over, an exact end.
 //
 // A Method is a stepper with: Status attempt(to, rejections, error), Status complete(error), Status interpolate(t),
-// interpolated(), settle(), cross(t), state(); double first_step(end, singular_for), Run's; double retry(h, rejections,
-// usual), the step to try after so many rejections in a row; double adopt(h, wanted), the step after a completed one of
-// length h.
+// interpolated(), take_back(), settle(), cross(t), state(); double first_step(end, singular_for), Run's; double
+// retry(h, rejections, usual), the step to try after so many rejections in a row; double adopt(h, wanted), the step
+// after a completed one of length h.
 #pragma once
 
 #include <algorithm>
@@ -95,8 +95,18 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
       creeping.completed(h);
       h = method.adopt(h, controller.accepted(h, error));
       for (; !course.every_step && times.next() < to; times.pass()) {
-        if (status = method.interpolate(times.next()); !status.ok()) return status;
+        if (status = method.interpolate(times.next()); !status.ok()) break;
         course.give_out(method.interpolated());
+      }
+      if (!status.ok()) {  // the step went over a place where no state can be found, as of angles that are singular
+        if (status.failure == Failure::refused) return status;
+        if (status.failure == Failure::singular_position) return singular_sample(times.next());
+        method.take_back();
+        --course.statistics().steps;
+        ++course.statistics().rejected_steps;
+        h = method.retry(controller.failed(to - t), ++rejections, 0);
+        if (h < smallest) return step_too_small(t, h, status);
+        continue;
       }
     }
     const bool crosses = to == turn.before;

@@ -135,17 +135,17 @@ Status ExplicitStepper::first_step(double end, double& h) {
 }
 
 // y_{n+1} of a step from the point (t_n, q_n, y_n) with f in column 0.
-Status ExplicitStepper::run_through_stages(double to) {
+Status ExplicitStepper::run_through_stages(double to, State& at) {
   const double h = to - t_n_;
   for (std::size_t i = 1; i < pair_.stages.size(); ++i) {
     const Stage& stage = pair_.stages[i];
     advance(h, stage.a, y_);
-    next_.t = stage.c == 1 ? to : t_n_ + stage.c * h;
-    if (Status status = evaluate(next_, y_, static_cast<Eigen::Index>(i)); !status.ok()) return status;
+    at.t = stage.c == 1 ? to : t_n_ + stage.c * h;
+    if (Status status = evaluate(at, y_, static_cast<Eigen::Index>(i)); !status.ok()) return status;
   }
   g_ = y_;
   advance(h, pair_.b, y_);
-  next_.t = to;
+  at.t = to;
   return {};
 }
 
@@ -174,7 +174,7 @@ Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
   y_n_.head(nv).setZero();
   y_n_.tail(nv) = state_.v;
   k_.col(0) << state_.v, state_.z.head(nv);
-  if (Status status = run_through_stages(to); !status.ok()) return status;
+  if (Status status = run_through_stages(to, next_); !status.ok()) return status;
   if (end_is_evaluated()) {
     if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
   } else {
@@ -209,6 +209,11 @@ Status ExplicitStepper::complete(double& error, double most) {
   std::swap(state_, next_);
   elsewhere_ = false;
   return {};
+}
+
+void ExplicitStepper::take_back() {
+  std::swap(state_, next_);
+  elsewhere_ = true;
 }
 
 Status ExplicitStepper::prepare_dense() {
@@ -247,15 +252,20 @@ Status ExplicitStepper::by_polynomial(double t) {
   sample_.t = t;
   sample_.v = y_n_.tail(problem_.nv()) + combined_.tail(problem_.nv());
   problem_.retract(span(q_n_), std::span<const double>(span(combined_)).first(nv_), span(sample_.q));
-  return consistent_.complete(sample_);
+  return put_on_constraints();
+}
+
+// Of a sample.
+Status ExplicitStepper::put_on_constraints() {
+  if (Status status = consistent_.complete(sample_); !status.ok()) return status;
+  return consistent_.made_of_rounding(sample_) ? Status{Failure::singular_position, sample_.t, {}} : Status{};
 }
 
 Status ExplicitStepper::by_short_step(double t) {
-  if (Status status = run_through_stages(t); !status.ok()) return status;
-  sample_.t = t;
+  if (Status status = run_through_stages(t, sample_); !status.ok()) return status;
   sample_.v = y_.tail(problem_.nv());
   problem_.retract(span(q_n_), span(y_).first(nv_), span(sample_.q));
-  return consistent_.complete(sample_);
+  return put_on_constraints();
 }
 
 }  // namespace poinsot

@@ -45,6 +45,8 @@ class ExplicitStepper {
   // The motion within the completed step at time t, consistent, in interpolated(). The problem stands there. Where the
   // step is so long that the polynomial is too far off the constraints, a shorter step from where that one began.
   Status interpolate(double t);
+  // Makes the state what it was before the completed step.
+  void take_back();
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
   Status settle();
   // Goes over a switch of the data, on to the time just past it.
@@ -66,9 +68,10 @@ class ExplicitStepper {
   // Within the attempt, where the error asks for it.
   bool end_is_evaluated() const { return error_needs_last_ || project_stages_; }
   Status evaluate(State& at, const Vector& y, Eigen::Index k);
-  Status run_through_stages(double to);
+  Status run_through_stages(double to, State& at);
   void test_stiffness();
   Status prepare_dense();
+  Status put_on_constraints();
   Status by_polynomial(double t);
   Status by_short_step(double t);
 

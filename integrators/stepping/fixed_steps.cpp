@@ -16,7 +16,8 @@ constexpr int kHalvings = 10;  // of a step that fails
 
 // What the size of a step has a part in.
 bool may_be_too_long(Failure failure) {
-  return failure == Failure::not_converged || failure == Failure::not_finite || failure == Failure::singular_matrix;
+  return failure == Failure::not_converged || failure == Failure::not_finite || failure == Failure::singular_matrix ||
+         failure == Failure::singular_position;
 }
 
 // Parts of a step creep up to a singular position, where a whole step goes over it: there rounding may choose the
@@ -85,11 +86,13 @@ Status FixedSteps::reach(double t, bool sampled) {
   v_n_.swap(x_.v);
   Status status = step(t);
   if (status.ok()) status = measure_rotation(last_seen(), t);
+  if (status.ok()) status = check_branch(last_seen(), t);
   if (!status.ok()) {
     x_.q.swap(q_n_);
     x_.v.swap(v_n_);
     return status;
   }
+  branch_.follow();
   x_.t = t;
   ++run_.statistics.steps;
   if (!discrete_ && !sampled) return {};
@@ -153,6 +156,26 @@ Status FixedSteps::check_velocity(Problem& problem, double t) {
   problem.set_velocity(span(x_.v));
   if (unexpected < kMostUnexpected) return {};
   return turned_unexpectedly(problem, x_.a(), t, h_, unexpected);
+}
+
+// Beyond kTurns turns of a step a branch is left; within, bodies that whip round are as likely.
+Status FixedSteps::check_branch(Problem& problem, double t) {
+  constexpr double kComparable = 0.2, kTurns = 2;
+  if (!branch_.suspects(problem, v_n_, x_.v, h_)) return {};
+  const auto [share, row] = departure(problem, settings_.linear(), {x_.t, q_n_, v_n_}, {t, x_.q, x_.v});
+  if (share > kComparable + kTurns * rotation_) {
+    return {Failure::singular_position, t,
+            fmt::format("at t = {:.9g} s, beside a singular position of the constraints, the step ends on another "
+                        "branch than its velocities lead to, by {} most of all; try another step or dop853",
+                        t, problem.describe_unknown(row))};
+  }
+  if (share > kComparable + rotation_ && !std::exchange(doubted_, true)) {
+    run_.tell(
+        fmt::format("at t = {:.6g} s the velocities that {} allows change by more than the step of {:g} s "
+                    "follows: that it ends on the branch they lead to is not certain; try a tenth of it or dop853",
+                    t, problem.describe_unknown(row), h_));
+  }
+  return {};
 }
 
 Status FixedSteps::begin() {

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "integrators/stepping/branch.h"
 #include "integrators/stepping/index1_output.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/time_grid.h"
@@ -41,6 +42,8 @@ class FixedSteps {
   virtual Status check_turns(Problem& problem, double t);
   // Whether its velocity goes on from that before, as far as it turns bodies.
   virtual Status check_velocity(Problem& problem, double t);
+  // Whether it ends on the branch that its velocities lead to.
+  virtual Status check_branch(Problem& problem, double t);
   // Brings the discrete state up to date; `problem` stands at x_ before and after.
   virtual Status accept(Problem& problem);
   // Before the step that follows an accept() which has rewritten coordinates or rows.
@@ -91,6 +94,8 @@ class FixedSteps {
   double shortest_ = 0;          // of the steps done
   double rotation_ = 0;          // of the last step, the largest of a body
   Vector change_;
+  BranchWatch branch_;
+  bool doubted_ = false;  // of a branch, and told
   Index1Output output_;
 };
 

@@ -346,6 +346,11 @@ Status RadauStepper::complete(double& error, double most) {
   return {};
 }
 
+void RadauStepper::take_back() {
+  state_ = before_;
+  h_before_ = 0;
+}
+
 Status RadauStepper::interpolate(double t) {
   within_.h = 0;
   const bool fast = fast_;
@@ -354,7 +359,8 @@ Status RadauStepper::interpolate(double t) {
   fast_ = fast;
   convergence_ = convergence;
   end_of_step(before_, t, sample_);
-  return consistent_.complete(sample_);
+  if (Status status = consistent_.complete(sample_); !status.ok()) return status;
+  return consistent_.made_of_rounding(sample_) ? Status{Failure::singular_position, sample_.t, {}} : Status{};
 }
 
 }  // namespace poinsot

@@ -51,6 +51,8 @@ class RadauStepper {
   // began, because the collocation polynomial has order 3 only; that polynomial where Newton's method does not take the
   // shorter step.
   Status interpolate(double t);
+  // Makes the state what it was before the completed step.
+  void take_back();
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
   Status settle();
   // Goes over a switch of the data, on to the time just past it.

@@ -1,0 +1,88 @@
+#include "integrators/stepping/branch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/stepping/consistent.h"
+#include "integrators/stepping/vectors.h"
+
+namespace poinsot {
+namespace {
+
+// Of a velocity, the largest of a body: of its point, and of its turn in the formulation's coordinates.
+struct Most {
+  double way, turn;
+};
+
+// `of`: number k of a velocity.
+template <class Velocity>
+Most most(const Problem& problem, Velocity&& of) {
+  const Eigen::Index nv = problem.nv(), per_body = nv / problem.bodies();
+  double way = 0, turn = 0;
+  for (Eigen::Index b = 0; b < nv; b += per_body) {
+    double squares[2] = {0, 0};
+    for (Eigen::Index k = 0; k < per_body; ++k) squares[k > 2] += of(b + k) * of(b + k);
+    way = std::max(way, squares[0]);
+    turn = std::max(turn, squares[1]);
+  }
+  return {std::sqrt(way), std::sqrt(turn)};
+}
+
+Most most(const Problem& problem, const Eigen::VectorXd& v) {
+  return most(problem, [&](Eigen::Index k) { return v[k]; });
+}
+
+}  // namespace
+
+bool BranchWatch::suspects(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h) {
+  constexpr double kUnusual = 4, kFraction = 0.2, kMoved = 0.1;
+  const Most change = most(problem, [&](Eigen::Index k) { return v[k] - v_n[k]; });
+  const bool unusual = change.way > kUnusual * h * usual_way_ || change.turn > kUnusual * h * usual_turn_;
+  way_ = change.way / h, turn_ = change.turn / h;
+  if (!unusual || !begun_) return false;
+  const Most before = most(problem, v_n), after = most(problem, v);
+  const auto large = [&](double Most::*of) {  // and no start from rest, which has no branch to leave
+    return change.*of > kFraction * std::max(before.*of, after.*of) && before.*of > kMoved * after.*of;
+  };
+  return large(&Most::way) || large(&Most::turn);
+}
+
+void BranchWatch::follow() {
+  const double share = begun_ ? 0.1 : 1;
+  begun_ = true;
+  usual_way_ += share * (way_ - usual_way_);
+  usual_turn_ += share * (turn_ - usual_turn_);
+}
+
+Departure departure(Problem& problem, const LinearChoice& choice, const StepEnd& from, const StepEnd& to) {
+  const Eigen::Index nv = problem.nv(), nc = problem.nc();
+  Eigen::VectorXd rhs = Eigen::VectorXd::Zero(nv + nc), now(nc), nu(nc);
+  // G v_n at the place set.
+  const auto rates = [&](const StepEnd& at, std::span<double> out) {
+    problem.set_position(at.t, span(at.q));
+    problem.set_velocity(span(from.v));
+    problem.velocity_residual(out);
+    problem.nu(span(nu));
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] += span(nu)[k];
+  };
+  rates(from, span(rhs, nv, nc));
+  rates(to, span(now));
+  problem.set_velocity(span(to.v));
+  rhs.tail(nc) -= now;
+  const Eigen::Index rows = static_cast<Eigen::Index>(problem.model_rows().size());  // of the scene, which come first
+  const auto departed = [&](double share) {
+    Eigen::Index row = 0;
+    rhs.segment(nv, rows).cwiseAbs().maxCoeff(&row);
+    return Departure{share, static_cast<int>(nv + row)};
+  };
+  Consistent consistent(problem, choice);
+  if (!consistent.factor(to.t).ok() || !consistent.solve(to.t, span(rhs)).ok()) return departed(HUGE_VAL);
+  const Most delta = most(problem, rhs), before = most(problem, from.v), after = most(problem, to.v);
+  const auto share = [&](double Most::*of) {
+    const double size = std::max(before.*of, after.*of);
+    return size > 0 ? delta.*of / size : 0;
+  };
+  return departed(std::max(share(&Most::way), share(&Most::turn)));
+}
+
+}  // namespace poinsot
