@@ -1,5 +1,6 @@
 // Interrupted and killed: what was computed is kept in complete rows and marked, nothing half-written remains, and the
 // exit status says by which signal. As the user of the tests, and where that is root as nobody, too.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 
@@ -122,9 +123,14 @@ TEST_P(Interrupted, WithNothingComputedNothingIsWritten) {
   fs::permissions(folder() / "scene.json", fs::perms(0666));
   const auto before = files();
   const pid_t child = start({"run", "scene.json", "--out", "new/a.csv"});
-  usleep(100000);
+  int writer = -1;  // there is none before somebody reads
+  ASSERT_TRUE(wait_for([&] {
+    writer = open((folder() / "scene.json").c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+    return writer >= 0;
+  }));
   kill(child, SIGINT);
   const Result result = finish(child);
+  close(writer);
   EXPECT_EQ(result.status, 130);
   EXPECT_EQ(result.err, "poinsot: interrupted by SIGINT\n");
   EXPECT_EQ(files(), before);
