@@ -6,8 +6,8 @@
   python3 tests/mutation.py --check            only whether every text is found exactly once (in ctest, too)
 
 A mutation is a text that stands exactly once in a file, what takes its place, and the tests that should fail on it:
-"TARGET" or "TARGET:GTEST_FILTER". They are applied to a copy of the sources (build/mutation), in which only the targets
-named are built, with the project's warnings: what a mutation leaves unused is an error. Printed is which were caught, by
+"FILE" of tests/, all of it, or "FILE:GTEST_FILTER". They are applied to a copy of the sources (build/mutation), in which
+only the executables that hold them are built, with the project's warnings: what a mutation leaves unused is an error. Printed is which were caught, by
 which test, and which escaped; a mutation that escapes, does not compile or does not apply any more is a failure: a test
 is missing, or the list has to follow the source.
 """
@@ -59,8 +59,30 @@ class Scratch:
         self.copy()
         if not (self.build / "build.ninja").exists():
             launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-            subprocess.run(["cmake", "--preset", "release", "-DCMAKE_UNITY_BUILD=OFF", "-G", "Ninja", "--log-level=WARNING",
+            subprocess.run(["cmake", "--preset", "release", "-G", "Ninja", "--log-level=WARNING",
                             "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", *launcher], cwd=folder, check=True)
+        self.holders = self.holders_of_tests()
+
+    def holders_of_tests(self):
+        """The executable that a file of tests is compiled into, with others."""
+        found = {}
+        for group in self.build.glob("tests/CMakeFiles/*.dir/Unity/unity_*.cxx"):
+            for name in re.findall(r'/tests/(\w+)\.cpp"', group.read_text(encoding="utf-8")):
+                found[name] = group.parent.parent.name.removesuffix(".dir")
+        return found
+
+    def holder(self, test):
+        name = test.partition(":")[0]
+        return self.holders.get(name, name)
+
+    def filter(self, test):
+        """That of the test, or of all that stands in its file."""
+        name, _, chosen = test.partition(":")
+        if chosen:
+            return chosen
+        text = (self.folder / "tests" / f"{name}.cpp").read_text(encoding="utf-8")
+        suites = sorted(set(re.findall(r"^TEST(_F|_P)?\((\w+),", text, re.MULTILINE)))
+        return ":".join(f"*/{suite}.*" if kind == "_P" else f"{suite}.*" for kind, suite in suites)
 
     def copy(self):
         """Of what has changed only, so that nothing else is built again."""
@@ -76,13 +98,12 @@ class Scratch:
                     shutil.copy(source, target)
 
     def make(self, tests):
-        targets = sorted({test.split(":")[0] for test in tests})
+        targets = sorted({self.holder(test) for test in tests})
         return subprocess.run(["ninja", "-C", str(self.build), f"-j{self.jobs}", *targets], capture_output=True,
                               text=True)
 
     def passes(self, test):
-        target, _, chosen = test.partition(":")
-        command = [str(self.build / "tests" / target)] + ([f"--gtest_filter={chosen}"] if chosen else [])
+        command = [str(self.build / "tests" / self.holder(test)), f"--gtest_filter={self.filter(test)}"]
         environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
         try:
             run = subprocess.run(command, cwd=self.build / "tests", capture_output=True, env=environment,
