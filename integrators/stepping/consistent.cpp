@@ -201,14 +201,14 @@ bool Consistent::made_of_rounding(const State& at) {
 }
 
 bool Consistent::leaves_branch(const State& at) {
-  constexpr double kOther = 0.01, kExplained = 10;
+  constexpr double kJumped = 0.01, kExplained = 10;
   if (!made_of_rounding(at)) return false;
   double jump = 0, size = 0;
   for (Eigen::Index k = 0; k < at.v.size(); ++k) {
     jump = std::max(jump, std::abs(at.v[k] - calm_.v[k]));
     size = std::max({size, std::abs(at.v[k]), std::abs(calm_.v[k])});
   }
-  return jump > kOther * size + kExplained * calm_.usual * std::abs(at.t - calm_.t);
+  return jump > kJumped * size + kExplained * calm_.usual * std::abs(at.t - calm_.t);
 }
 
 void Consistent::follow(const State& at) {
