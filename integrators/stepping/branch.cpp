@@ -36,6 +36,7 @@ Most most(const Problem& problem, const Eigen::VectorXd& v) {
 
 bool BranchWatch::suspects(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h) {
   constexpr double kUnusual = 4, kFraction = 0.2, kMoved = 0.1;
+  if (problem.model_rows().empty()) return false;  // no constraints, no branches
   const Most change = most(problem, [&](Eigen::Index k) { return v[k] - v_n[k]; });
   const bool unusual = change.way > kUnusual * h * usual_way_ || change.turn > kUnusual * h * usual_turn_;
   way_ = change.way / h, turn_ = change.turn / h;
