@@ -158,12 +158,13 @@ Status FixedSteps::check_velocity(Problem& problem, double t) {
   return turned_unexpectedly(problem, x_.a(), t, h_, unexpected);
 }
 
-// Beyond kTurns turns of a step a branch is left; within, bodies that whip round are as likely.
+// Beyond kTurns turns of a step a branch is left; within, bodies that whip round are as likely. So they are in steps
+// that turn by more than kFine: a crank-rocker beside its dead centre changes all its velocities in one of them.
 Status FixedSteps::check_branch(Problem& problem, double t) {
-  constexpr double kComparable = 0.2, kTurns = 2;
+  constexpr double kComparable = 0.2, kTurns = 2, kFine = 0.1;
   if (!branch_.suspects(problem, v_n_, x_.v, h_)) return {};
   const auto [share, row] = departure(problem, settings_.linear(), {x_.t, q_n_, v_n_}, {t, x_.q, x_.v});
-  if (share > kComparable + kTurns * rotation_) {
+  if (share > kComparable + kTurns * rotation_ && rotation_ <= kFine) {
     return {Failure::singular_position, t,
             fmt::format("at t = {:.9g} s, beside a singular position of the constraints, the step ends on another "
                         "branch than its velocities lead to, by {} most of all; try another step or dop853",
