@@ -56,6 +56,7 @@ class GeneralizedAlpha : public FixedSteps {
   double index3_scale() const override { return scale_.position; }
   // Beside a singular position, where steps fail, stabilized index 2 has made velocities of noise in steps before.
   bool divides() const override { return form_ == Form::index3; }
+  bool remembers() const override { return true; }
   // a belongs to t + shift h, and is v̇ there; where the line through the last two v̇ begins, to t − h.
   void resize(double before) override {
     scale_ = scale();

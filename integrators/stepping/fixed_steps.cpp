@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/interruption.h"
@@ -55,7 +56,9 @@ Status FixedSteps::march() {
   if (Status status = prepare(); !status.ok()) return status;
   Status status = begin();
   if (status.ok()) status = measure_rotation(problem_, 0);
-  const int halvings = settings_.retry && divides() ? kHalvings : 0;
+  divides_ = settings_.retry && divides();
+  repeats_ = divides_ && !remembers();
+  const int halvings = divides_ ? kHalvings : 0;
   for (std::int64_t n = 1; n <= grid_.steps && status.ok(); ++n) {
     if (interruption_requested) {
       status = interrupted(x_.t);
@@ -103,7 +106,9 @@ Status FixedSteps::reach(double t, bool sampled) {
 Status FixedSteps::reach_in_halves(double t, bool sampled, int halvings) {
   if (halvings > 0) z_began_ = x_.z;
   const double began = x_.t;
+  departs_ = false;
   const Status as_one = reach(t, sampled);
+  const bool departs = departs_;
   if (as_one.ok() || halvings == 0 || !may_be_too_long(as_one.failure) || x_.t > began) return as_one;
   const double h = h_, half = began + 0.5 * (t - began);
   if (!(began < half && half < t)) return as_one;
@@ -112,6 +117,8 @@ Status FixedSteps::reach_in_halves(double t, bool sampled, int halvings) {
   const bool outermost = halvings == kHalvings;
   const std::vector<BodyState> before = outermost ? bodies() : std::vector<BodyState>{};
   const State state = x_;
+  const double shortest = shortest_;
+  const std::int64_t steps = run_.statistics.steps;
   set_step(0.5 * h);
   Status status = reach_in_halves(half, false, halvings - 1);
   if (status.ok()) status = reach_in_halves(t, sampled, halvings - 1);
@@ -119,8 +126,16 @@ Status FixedSteps::reach_in_halves(double t, bool sampled, int halvings) {
   set_step(h);
   if (status.ok() && outermost && jumps(before, bodies())) {
     x_ = state;
-    return as_one;
+    status = as_one;
   }
+  if (status.ok() || !outermost || !departs) return status;
+  x_ = state;
+  shortest_ = shortest;
+  run_.statistics.steps = steps;
+  if (!forget().ok()) return status;
+  as_it_is_ = true;
+  status = reach(t, sampled);
+  as_it_is_ = false;
   return status;
 }
 
@@ -158,13 +173,17 @@ Status FixedSteps::check_velocity(Problem& problem, double t) {
   return turned_unexpectedly(problem, x_.a(), t, h_, unexpected);
 }
 
-// Beyond kTurns turns of a step a branch is left; within, bodies that whip round are as likely. So they are in steps
-// that turn by more than kFine: a crank-rocker beside its dead centre changes all its velocities in one of them.
+// Beyond kTurns turns of a step a branch may be left; within, bodies that whip round are as likely. So they are beyond
+// it beside a dead centre, and in steps that turn by more than kFine: such a step is done in parts where that is
+// better, and what then is not certain is told. Motions that turn round, or have no velocities where they come to, have
+// left it.
 Status FixedSteps::check_branch(Problem& problem, double t) {
-  constexpr double kComparable = 0.2, kTurns = 2, kFine = 0.1;
+  constexpr double kComparable = 0.2, kTurns = 2, kFine = 0.1, kReversed = 1.5;
   if (!branch_.suspects(problem, v_n_, x_.v, h_)) return {};
   const auto [share, row] = departure(problem, settings_.linear(), {x_.t, q_n_, v_n_}, {t, x_.q, x_.v});
-  if (share > kComparable + kTurns * rotation_ && rotation_ <= kFine) {
+  const bool fine = rotation_ <= kFine, left = fine && share > kReversed;
+  if (left || (fine && share > kComparable + kTurns * rotation_ && repeats_ && !as_it_is_)) {
+    departs_ = !left;
     return {Failure::singular_position, t,
             fmt::format("at t = {:.9g} s, beside a singular position of the constraints, the step ends on another "
                         "branch than its velocities lead to, by {} most of all; try another step or dop853",

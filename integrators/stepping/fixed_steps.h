@@ -55,6 +55,8 @@ class FixedSteps {
   virtual double index3_scale() const { return 0; }
   // Whether a step that fails may be done in parts, of other lengths than the rest.
   virtual bool divides() const { return true; }
+  // Whether a step depends on more of those before it than x_.
+  virtual bool remembers() const { return false; }
   // The next step is one of h_, which has been `before`.
   virtual void resize(double /*before*/) {}
   // The step failed: x_ is what it was before, and so is to be all else.
@@ -95,7 +97,11 @@ class FixedSteps {
   double rotation_ = 0;          // of the last step, the largest of a body
   Vector change_;
   BranchWatch branch_;
-  bool doubted_ = false;  // of a branch, and told
+  bool divides_ = false;   // steps that fail are done in parts
+  bool repeats_ = false;   // and may be done as they were after that
+  bool departs_ = false;   // the last step may have left its branch
+  bool as_it_is_ = false;  // that step in parts did no better
+  bool doubted_ = false;   // of a branch, and told
   Index1Output output_;
 };
 
