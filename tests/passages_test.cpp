@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "integrators/integrator.h"
@@ -73,13 +74,14 @@ TEST_P(Passages, OfErrorControl) {
 }
 
 // Here a time of the grid lies beside the flat position, where a tolerance of 1e-3 leaves much of the velocities open:
-// whole steps went on from there on another branch, with a post at rest. Couplers turn on those alone.
+// whole steps went on from there on another branch, with a post at rest. Couplers turn on those alone. Where a step
+// turns by more than a tenth of a radian it is no more than told that it may have left the branch.
 TEST_P(Passages, OfStepsThatEndBesideThePosition) {
   struct Start {
     int loops;
     double angle, step;
   };
-  int ended = 0;
+  int ended = 0, told = 0;
   for (const auto& [loops, angle, step] : {Start{2, 0.281197, 1e-2}, Start{2, 0.361521, 1e-2}, Start{2, 0.889502, 1e-2},
                                            Start{2, 1.03863, 1e-2}, Start{1, 0.562883, 2e-2}}) {
     for (const IntegratorEntry& integrator : integrators()) {
@@ -97,13 +99,18 @@ TEST_P(Passages, OfStepsThatEndBesideThePosition) {
         continue;
       }
       ++ended;
+      double turned = 0;
       for (int k = 0; k < loops; ++k) {
         const Matrix3& A = r.samples.back().bodies[static_cast<std::size_t>(loops + 1 + k)].A;
-        EXPECT_LT((A - Matrix3::Identity()).norm(), 1e-2);
+        turned = std::max(turned, (A - Matrix3::Identity()).norm());
       }
+      if (turned < 1e-2) continue;
+      ++told;
+      EXPECT_THAT(r.outcome.notices, testing::Contains(testing::HasSubstr("is not certain")));
     }
   }
   EXPECT_GE(ended, 20) << "of 25";
+  EXPECT_LE(told, 1);
 }
 
 // A rod turned about z by its direction's cosine alone, which says nothing of its rate at a quarter turn: an instant of
