@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check.h"
 #include "core/index.h"
 #include "linsolve/finite.h"
 #include "linsolve/lanes.h"
@@ -67,6 +68,7 @@ void Residual::measure_by(std::span<const double> rows, std::span<const double> 
 
 void Residual::find(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
                     std::span<const double> x) {
+  check(panels_.empty() == (layout.n == 0), "the residual knows the structure of its matrix");
   r_.assign(b.begin(), b.end());
   const double* xj = x.data();
   const int* start = layout.start.data();

@@ -2,13 +2,14 @@
 //
 // Where branches meet, what Newton's method finds at the end of a step may lie on any of them: the constraints hold on
 // all. The velocities that a position allows, G v = ν, are continuous along a branch and others on another. So a step
-// has left its branch where what its last position takes from its first velocity,
+// may have left its branch where what its last position takes from its first velocity,
 //
 //   M δ + Gᵀμ = 0,   G δ = (G(q_n) − G) v_n,   G = G(q)
 //
-// is comparable to v_n though bodies have turned by little: along a branch δ is of the order of that turn. It is asked
-// for, at the price of a factorization, after a step that changes velocities by a fifth of them, and by several times
-// what steps before it did. Sudden loads and kinks of drivers do that, too, and leave no such δ.
+// is comparable to v_n though bodies have turned by little: along a branch δ is of the order of that turn, except
+// beside a dead centre, where it may be as large on the right one. It is asked for, at the price of a factorization,
+// after a step that changes velocities by a fifth of them, and by several times what steps before it did. Sudden loads
+// and kinks of drivers do that, too, and leave no such δ. What follows is decided in fixed_steps.cpp.
 #pragma once
 
 #include "formulations/problem.h"
