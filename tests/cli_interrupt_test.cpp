@@ -7,55 +7,11 @@
 #include <chrono>
 #include <csignal>
 
-#include "command_line.h"
+#include "support/interrupted.h"
 
 namespace poinsot::test {
 namespace {
 namespace fs = std::filesystem;
-
-class Interrupted : public CommandLine, public testing::WithParamInterface<const char*> {
- protected:
-  Interrupted() { write("pendulum.json", kPendulum); }
-  void SetUp() override {
-    if (std::string_view(GetParam()) == "nobody" && !become_nobody())
-      GTEST_SKIP() << "the tests are not run by root: as whom they run is tested";
-  }
-
-  template <class Condition>
-  static bool wait_for(const Condition& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-    while (!condition() && std::chrono::steady_clock::now() < deadline) usleep(2000);
-    return condition();
-  }
-
-  bool exists(const std::string& file) const { return fs::exists(folder() / file); }
-  std::uintmax_t size(const std::string& file) const { return exists(file) ? fs::file_size(folder() / file) : 0; }
-
-  void expect_complete_rows(const std::string& file) const {
-    const std::string text = read(file);
-    ASSERT_FALSE(text.empty()) << file;
-    EXPECT_EQ(text.back(), '\n') << file;
-    const std::vector<std::string> rows = lines(text);
-    for (const std::string& row : rows) ASSERT_EQ(fields(row).size(), fields(rows[0]).size()) << file << row;
-  }
-
-  // Files of other names, at any depth.
-  std::vector<std::string> leftovers() const {
-    std::vector<std::string> found;
-    for (const auto& entry : fs::recursive_directory_iterator(folder()))
-      if (entry.path().filename().string().starts_with(".poinsot")) found.push_back(entry.path());
-    return found;
-  }
-
-  // The whole of a command in the folder, as a shell takes it; POINSOT is the program.
-  int shell(const std::string& commands) const {
-    const std::string as = program() == POINSOT_PROGRAM ? "" : "setpriv --reuid=65534 --regid=65534 --clear-groups ";
-    const std::string line = fmt::format("cd '{}' && export POINSOT='{}' && {}bash -c '{}' 2> .said.shell",
-                                         folder().string(), program(), as, commands);
-    const int status = std::system(line.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-};
 
 const std::vector<std::string> kLongRun{"run", "pendulum.json", "--end", "1e6",         "--every",
                                         "0.1", "--out",         "a.csv", "--reactions", "r.csv"};
@@ -149,76 +105,6 @@ TEST_P(Interrupted, AReaderThatGoesAwayEndsTheRun) {
   EXPECT_EQ(shell("$POINSOT list | true; exit ${PIPESTATUS[0]}") % (128 + SIGPIPE), 0);
 }
 
-// A limit on the size of files stands for a full disk; with the signal ignored it is one.
-TEST_P(Interrupted, AFullDiskKeepsTheRowsThereWasRoomFor) {
-  const std::string run = "ulimit -f 64; $POINSOT run pendulum.json --integrator implicit_euler --end 10 --out a.csv";
-  EXPECT_EQ(shell("trap \"\" XFSZ; " + run), 3);
-  const std::string said = read(".said.shell");
-  expect_complete_rows("a.csv");
-  const std::size_t rows = lines(read("a.csv")).size() - 1;
-  EXPECT_GT(rows, 100u);
-  EXPECT_NE(
-      said.find(fmt::format("a.csv: cannot be written: File too large; what is kept of it ends with row {}", rows)),
-      std::string::npos)
-      << said;
-  EXPECT_EQ(read_json("a.run.json")["incomplete"], true);
-  EXPECT_EQ(read_json("a.run.json")["status"], "interrupted");
-  EXPECT_EQ(shell(run), 128 + SIGXFSZ);
-  expect_complete_rows("a.csv");
-  EXPECT_EQ(leftovers(), std::vector<std::string>{});
-  // A state is whole, or as it was.
-  write("s.json", "before");
-  EXPECT_EQ(shell("$POINSOT make chain --bodies 50 --out c.json; ulimit -f 1; trap \"\" XFSZ; "
-                  "$POINSOT run c.json --integrator implicit_euler --end 0.01 --save-state s.json > /dev/null"),
-            3);
-  EXPECT_NE(read(".said.shell").find("s.json: cannot be written: File too large"), std::string::npos);
-  EXPECT_EQ(read("s.json"), "before");
-  EXPECT_EQ(leftovers(), std::vector<std::string>{});
-}
-
-// The disk is one for all: what the files keep of the run is the same rows, and the record beside them says so.
-TEST_P(Interrupted, AFullDiskIsSharedByAllFiles) {
-  if (geteuid() != 0 || std::system("unshare --mount true 2> /dev/null") != 0)
-    GTEST_SKIP() << "only root can make a small disk";
-  fs::create_directory(folder() / "kept");
-  fs::create_directory(folder() / "disk");
-  fs::permissions(folder() / "kept", fs::perms(0777));
-  write("commands.sh",
-        "\"$POINSOT\" run pendulum.json --integrator implicit_euler --quiet "
-        "--out disk/a.csv --reactions disk/r.csv --signals disk/s$NPY \"$@\" 2> kept/said");
-  for (const char* options :
-       {"--end 1", "--end 1e6 --step 1e-4"})  // shorter and longer than files wait for their names
-    for (const char* npy : {".csv", ".npy"}) {
-      SCOPED_TRACE(fmt::format("{} {}", options, npy));
-      const std::string as = program() == POINSOT_PROGRAM ? "" : "setpriv --reuid=65534 --regid=65534 --clear-groups ";
-      const int status = std::system(
-          fmt::format(
-              "cd '{}' && rm -rf kept/* && export POINSOT='{}' NPY={} && unshare --mount bash -c 'mount -t tmpfs "
-              "-o size=96k none disk && chmod 777 disk && {}bash commands.sh {}; s=$?; cp -r disk/. kept; exit $s'",
-              folder().string(), program(), npy, as, options)
-              .c_str());
-      EXPECT_EQ(WEXITSTATUS(status), 3) << read("kept/said");
-      const std::size_t rows = lines(read("kept/a.csv")).size() - 1;
-      EXPECT_GT(rows, 10u);
-      expect_complete_rows("kept/a.csv");
-      expect_complete_rows("kept/r.csv");
-      EXPECT_EQ(lines(read("kept/r.csv")).size() - 1, rows);
-      const std::string signals = read(std::string("kept/s") + npy);
-      if (npy == std::string_view(".csv"))
-        EXPECT_EQ(lines(signals).size() - 1, rows);
-      else
-        EXPECT_NE(signals.find(fmt::format("'shape': ({}, ", rows)), std::string::npos) << signals.substr(0, 200);
-      const nlohmann::json record = read_json("kept/a.run.json");
-      EXPECT_EQ(record["incomplete"], true);
-      EXPECT_EQ(record["status"], "interrupted");
-      EXPECT_NE(read("kept/said")
-                    .find(fmt::format("No space left on device; what is kept of all files ends with row {}\n", rows)),
-                std::string::npos)
-          << read("kept/said");
-      EXPECT_EQ(leftovers(), std::vector<std::string>{});
-    }
-}
-
 TEST_P(Interrupted, AChartSaysThatItIsNotFinishedAndGoesOn) {
   std::size_t rows = 0;
   for (int time = 0; time < 2; ++time) {
@@ -308,8 +194,7 @@ TEST_P(Interrupted, AnExistingFileKeepsItsModeAndIsReplacedAtOnce) {
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
 }
 
-INSTANTIATE_TEST_SUITE_P(As, Interrupted, testing::Values("tester", "nobody"),
-                         [](const auto& test) { return std::string(test.param); });
+INSTANTIATE_TEST_SUITE_P(As, Interrupted, testing::ValuesIn(kUsers), name_of_user);
 
 }  // namespace
 }  // namespace poinsot::test

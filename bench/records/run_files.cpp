@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <limits>
 
 #include "core/interruption.h"
@@ -48,6 +50,17 @@ void RunFiles::open_record() {
     if (!record_ && !record_name_.empty()) record_.emplace(record_name_);
   } catch (const std::exception&) {  // it is tried again at the end
   }
+}
+
+// The run is over: a record with no room would leave rows of which nothing says how they came to be.
+void RunFiles::make_sure_of_the_record() {
+  bool rows = false;
+  with_files([&](OutputFile& file) { rows = rows || file.is_file(); });
+  if (!rows || torn_) return;
+  open_record();
+  if (!record_ || record_->reserve(running_().size() + kRecordGrows)) return;
+  lost_ = cannot_be_written(record_name_, std::strerror(ENOSPC));
+  torn_ = true;
 }
 
 void RunFiles::end_together() {
@@ -110,6 +123,7 @@ void RunFiles::flush() {
 
 void RunFiles::complete(bool ended) {
   with_files(&OutputFile::drain);
+  make_sure_of_the_record();
   if (torn_) end_together();
   with_files(&OutputFile::complete);
   if (state_ && ended && lost_.empty())
@@ -117,6 +131,8 @@ void RunFiles::complete(bool ended) {
       state_->write();
       state_->file().complete();
     });
+  else if (state_ && ended)
+    lost_ += "; the state at the end is not written";
   if (!ended || !lost_.empty()) state_.reset();
 }
 

@@ -48,6 +48,7 @@ class RunFiles {
   // Does it with every file that grows.
   void with_files(const std::function<void(study::OutputFile&)>& act);
   void open_record();
+  void make_sure_of_the_record();
   void end_together();
 
   using Clock = std::chrono::steady_clock;

@@ -27,15 +27,15 @@ std::string shown(const fs::path& target) {
   return target == "-" ? "standard output" : target.string();
 }
 
-std::string cannot_be_written(const fs::path& target, std::string_view reason) {
-  return fmt::format("{}: cannot be written: {}", shown(target), reason);
-}
-
 [[noreturn]] void refuse(const fs::path& target, std::string_view reason) {
   throw InputError(cannot_be_written(target, reason));
 }
 
 }  // namespace
+
+std::string cannot_be_written(const fs::path& target, std::string_view reason) {
+  return fmt::format("{}: cannot be written: {}", shown(target), reason);
+}
 
 bool is_device(const fs::path& file) {
   const OutputPlace place = output_place(file);

@@ -77,6 +77,8 @@ class OutputFile {
   std::string buffer_;
 };
 
+// "FILE: cannot be written: reason".
+std::string cannot_be_written(const std::filesystem::path& target, std::string_view reason);
 // Whether it is written as it is: "-", a device, a pipe, a descriptor that stands open.
 bool is_device(const std::filesystem::path& file);
 // Of a name like /dev/stdout, or "-"; -1 of any other.

@@ -5,8 +5,10 @@ numbers (processor, program, compiler) goes into the foot of the picture. The sc
 compute nothing.
 """
 
+import contextlib
 import csv
 import os
+import signal
 import sys
 import textwrap
 
@@ -62,8 +64,12 @@ def save(figure, stem, notes):
                 color="#555555", va="bottom")
     for extension, options in (("svg", {"metadata": {"Date": None}}), ("png", {"dpi": 150})):
         partial = f"{stem}.{os.getpid()}.partial"
-        figure.savefig(partial, format=extension, **options)
-        os.replace(partial, f"{stem}.{extension}")
+        try:
+            figure.savefig(partial, format=extension, **options)
+            os.replace(partial, f"{stem}.{extension}")
+        finally:  # of a disk that is full, or a signal
+            with contextlib.suppress(FileNotFoundError):
+                os.unlink(partial)
     matplotlib.pyplot.close(figure)
 
 
@@ -71,6 +77,7 @@ def main(draw):
     """Calls draw(rows, notes) for every pair CSV STEM of the command line and saves the figure it returns."""
     if len(sys.argv) < 3 or len(sys.argv) % 2 == 0:
         sys.exit(f"usage: {sys.argv[0]} CSV STEM [CSV STEM ...]")
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     for path, stem in zip(sys.argv[1::2], sys.argv[2::2]):
         rows, notes = read(path)
         save(draw(rows, notes), stem, notes)
