@@ -61,6 +61,8 @@ class Scratch:
             launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
             subprocess.run(["cmake", "--preset", "release", "-G", "Ninja", "--log-level=WARNING",
                             "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", *launcher], cwd=folder, check=True)
+        else:  # a file of tests may have come or gone
+            subprocess.run(["cmake", str(self.build), "--log-level=WARNING"], check=True, stdout=subprocess.DEVNULL)
         self.holders = self.holders_of_tests()
 
     def holders_of_tests(self):
@@ -110,6 +112,8 @@ class Scratch:
                                  timeout=LONGEST)
         except subprocess.TimeoutExpired:
             return False
+        if b"Running 0 tests" in run.stdout:
+            sys.exit(f"{test}: names no test of {self.holder(test)}")
         return run.returncode == 0
 
     def outcome(self, mutation):

@@ -49,9 +49,9 @@ export function conclude() {
   process.exit(failures > 0 ? 1 : 0);
 }
 
-// Software renders WebGL where there is no graphics processor.
+// Software renders WebGL where there is no graphics processor, and puts the page together outside WebGL.
 export function launch(require, executablePath) {
-  const args = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+  const args = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing"];
   return require("playwright-core").chromium.launch({ executablePath, args });
 }
 
