@@ -116,10 +116,13 @@ try {
       }
       await close(what);
     }
-  const { page, close } = await openPage(browser, report, { width: 1000, dark: true });
+  const { page, close } = await openPage(browser, report, { width: 688, dark: true });  // A4 within usual margins
   await page.emulateMedia({ media: "print" });
   expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor) === "rgb(255, 255, 255)", "paper is light");
   expect(await page.locator("nav").isHidden(), "navigation is not printed");
+  expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing is wider than the sheet");
+  expect(await page.locator("thead th").evaluateAll((all) => all.every((one) => getComputedStyle(one).position === "static")), "headings of tables stand on every sheet");
+  expect(await page.locator("details[open]").count() === 0, "what is folded stays so");
   if (shots) await page.pdf({ path: join(shots, "report.pdf"), format: "A4" });
   await close("print");
 } finally {

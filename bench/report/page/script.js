@@ -29,11 +29,3 @@ for (const table of document.querySelectorAll("table")) {
     heading.replaceChildren(button);
   });
 }
-
-// What is folded is printed, too.
-let opened = [];
-addEventListener("beforeprint", () => {
-  opened = [...document.querySelectorAll("details:not([open])")];
-  for (const one of opened) one.open = true;
-});
-addEventListener("afterprint", () => { for (const one of opened) one.open = false; });
