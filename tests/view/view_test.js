@@ -149,7 +149,14 @@ async function keys(looker) {
   await page.emulateMedia({ media: "print", colorScheme: "dark" });
   expect(await page.evaluate(() => getComputedStyle(document.body).backgroundColor) === "rgb(255, 255, 255)", "paper is light");
   for (const id of ["play", "views", "trace"]) expect(await page.locator(`#${id}`).isHidden(), `${id} is not printed`);
-  for (const id of ["canvas", "clock", "bodies"]) expect(await page.locator(`#${id}`).isVisible(), `${id} is printed`);
+  for (const id of ["printed", "clock", "bodies"]) expect(await page.locator(`#${id}`).isVisible(), `${id} is printed`);
+  await page.pdf();
+  const colours = await page.evaluate(() => {
+    const copy = document.getElementById("printed"), data = copy.getContext("2d").getImageData(0, 0, copy.width, copy.height).data;
+    return { paper: [...data.slice(0, 4)], many: new Set(new Uint32Array(data.buffer)).size };
+  });
+  expect(colours.many > 20, `the mechanism is printed, found ${colours.many} colours`);
+  expect(colours.paper.every((one) => one === 255), `on light paper, found ${colours.paper}`);
   return looker.close("the page at 800 pixels");
 }
 

@@ -161,13 +161,19 @@ function start() {
   });
 
   const scheme = matchMedia("screen and (prefers-color-scheme: dark)");
-  const paint = () => {
-    const colours = stage.theme(scheme.matches);
+  const paint = (dark) => {
+    const colours = stage.theme(dark);
     for (const mechanism of mechanisms) mechanism.paint(colours);
     plots.redraw();
   };
-  scheme.addEventListener("change", paint);
-  paint();
+  scheme.addEventListener("change", () => paint(scheme.matches));
+  paint(scheme.matches);
+  // On paper stands a copy, in its colours: what WebGL has drawn is gone by then.
+  addEventListener("beforeprint", () => {
+    paint(false);
+    stage.copyTo(by("printed"));
+  });
+  addEventListener("afterprint", () => paint(scheme.matches));
 
   const help = () => by("keys").showModal();
   by("help").addEventListener("click", help);

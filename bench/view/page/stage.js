@@ -167,6 +167,12 @@ export class Stage {
       this.draw();
     });
   }
+  copyTo(canvas) {
+    this.draw();
+    canvas.width = this.canvas.width;
+    canvas.height = this.canvas.height;
+    canvas.getContext("2d").drawImage(this.canvas, 0, 0);
+  }
   draw() {
     this.renderer.render(this.scene, this.camera);
     ++this.frames;
