@@ -134,9 +134,14 @@ void Factor::weigh_rows(const Schedule& s, std::span<const double> weight) {
 }
 
 void Factor::keep_pivots(const Schedule& s) {
-  for (const Front& f : s.fronts)
-    for (int k = 0; k < f.pivots; ++k)
-      then_[index(f.first + k)] = in_range(std::abs(store_[index(f.store + std::int64_t{k} * (f.pivots + 1))]));
+  for (std::size_t front = 0; front < s.fronts.size(); ++front) {
+    const Front& f = s.fronts[front];
+    for (int k = 0; k < f.pivots; ++k) {
+      const int row = moved_[front] != 0 ? order_[index(f.first + k)] : k;
+      const double inverse = std::abs(store_[index(f.store + std::int64_t{k} * (f.pivots + 1))]);
+      then_[index(f.first + k)] = in_range(inverse / double{weight_[index(f.first + row)]});
+    }
+  }
 }
 
 }  // namespace poinsot::block

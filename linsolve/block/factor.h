@@ -28,7 +28,7 @@ class Factor {
 
  private:
   std::vector<double> store_, stack_, update_, t_;
-  std::vector<float> then_;    // 1/|pivot| of an examined factorization, by position
+  std::vector<float> then_;    // 1/|pivot| of an examined factorization, in the units of rows, by position
   std::vector<float> weight_;  // by position
   std::vector<std::uint16_t> order_;
   std::vector<Places> places_;  // by front: those of its first child where that lays it down

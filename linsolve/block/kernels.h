@@ -45,7 +45,8 @@ inline void store_pair(double* x, Pair v) {
 // before is kept, its pivots may fall behind as much more again.
 inline constexpr double kReluctance = 10;
 
-// How far pivots are from those of a factorization that was examined: the least and the largest |u| / |u then|.
+// How far pivots are from those of a factorization that was examined, in the units of their rows, which may have
+// changed places: the least and the largest |u| / |u then|.
 struct Drift {
   double least = 1, largest = 1, poison = 0;  // poison is 0 while all pivots are numbers
 
@@ -58,7 +59,8 @@ struct Drift {
 
 // D ← its factors, p × p, with its rows in the given order (null: as they are), in straight-line code. False, and D as
 // it was, where a candidate is more than `reluctance` times a pivot, in the units of rows given by `weight`. `then`
-// holds 1/|pivot| for Drift. Flattened, or the compiler leaves parts of it as calls, with all numbers through memory.
+// holds 1/|pivot| in these units for Drift. Flattened, or the compiler leaves parts of it as calls, with all numbers
+// through memory.
 template <int P>
 [[gnu::flatten]] inline bool factor_in_order(double* D, const std::uint16_t* order, const float* weight,
                                              double reluctance, const float* then, Drift& drift) {
@@ -81,7 +83,7 @@ template <int P>
       if constexpr (i > k) largest = std::max(largest, std::abs(a[k * P + i]) * unit[i]);
     });
     excess = std::max(excess, largest - reluctance * std::abs(a[k * P + k]) * unit[k]);
-    seen.add(std::abs(a[k * P + k]) * then[k]);
+    seen.add(std::abs(a[k * P + k]) * unit[k] * then[k]);
     const double inverse = 1 / a[k * P + k];
     a[k * P + k] = inverse;
     unrolled<P>([&](auto i) {
@@ -118,7 +120,7 @@ inline bool factor_choosing(double* D, int p, std::uint16_t* order, const float*
       std::swap(order[k], order[best]);
       moved = true;
     }
-    drift.add(std::abs(column[k]) * then[k]);
+    drift.add(std::abs(column[k]) * unit[k] * then[k]);
     const double inverse = 1 / column[k];
     column[k] = inverse;
     for (int i = k + 1; i < p; ++i) column[i] *= inverse;

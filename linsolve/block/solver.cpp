@@ -127,10 +127,12 @@ class Solver final : public LinearSolver {
       answer_ = Answer::handed_over;
       return factor_by_klu();
     }
-    // A pivot that is rounding may still pass for one in a system of very different masses; klu sees it at its own
-    // size.
-    if (!cancelled_pivots(*schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
-    if (!cancelled_pivots(*schedule_, values_, weight_, kCancelled).empty()) near_ = Answer::checked;
+    if (!cancelled_pivots(*schedule_, values_, weight_, kCancelled).empty()) {
+      // A pivot that is rounding may still pass for one in a system of very different masses; klu sees it at its own
+      // size.
+      if (!cancelled_pivots(*schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
+      near_ = Answer::checked;
+    }
     factor_.keep_pivots(*schedule_);
     answer_ = near_;
     good_ = 0;
