@@ -145,5 +145,78 @@ TEST(Gallery, A01KeepsItsEnergy) {
   }
 }
 
+// IFToMM A04 asks for the energy over 10 s. With one degree of freedom and rods that stay together it determines the
+// motion.
+TEST(Gallery, A04MovesWhereCountingLeavesNoFreedom) {
+  const Scene scene = scene_of("bricard");
+  for (Settings settings : ways(10)) {
+    SCOPED_TRACE(named(settings));
+    settings.signals = true;
+    settings.every = 0.1;
+    const Columns c = signals_of(scene, settings);
+    for (const double energy : c.at("energy")) EXPECT_NEAR(energy, c.at("energy").front(), 10 * allowed(settings));
+    double lowest = 0, highest = -2;
+    for (const Snapshot& sample : motion(scene, settings)) {
+      const BodyState &second = sample.bodies[1], &third = sample.bodies[2], &last = sample.bodies[4];
+      const Vector3 P2 = third.r - third.A * Vector3(0, 0, 0.5), P3 = third.r + third.A * Vector3(0, 0, 0.5);
+      EXPECT_LT((P2 - second.r + second.A * Vector3(0, 0.5, 0)).norm(), 1e-9);
+      EXPECT_LT((last.r + last.A * Vector3(0, 0.5, 0) - Vector3(0, 0, 1)).norm(), 1e-9);
+      EXPECT_LT((third.A.col(0) - second.A.col(0)).norm(), 1e-9);  // the hinge between them
+      lowest = std::min(lowest, P3.y()), highest = std::max(highest, P3.y());
+    }
+    EXPECT_LT(lowest, -1.5);
+    EXPECT_NEAR(highest, -1, 1e-3);
+  }
+}
+
+// IFToMM A05 asks for the height of the slider. In the angle of the rods, its height and the spin, whose momentum is
+// kept:
+//
+//   2 I_h β̈ = ½ ω² dJ/dβ − 2 m g c sin β − 2 F ∂L/∂β,   m_s s̈ = −m_s g − 2 F ∂L/∂s,   F = k (L − L₀) + d L̇
+//
+// by the classical Runge-Kutta method at steps that the damper leaves it.
+struct Governor {
+  double rod = 0.3, ball = 5, slider = 3, m = rod + ball, c = (rod / 2 + ball) / m;
+  double across = rod * 1.0001 / 12 + rod * (0.5 - c) * (0.5 - c) + ball * (1 - c) * (1 - c), along = rod * 0.0002 / 12;
+  double momentum = J(std::numbers::pi / 3) * 2 * std::numbers::pi;
+
+  double J(double beta) const {
+    const double x = 0.05 + c * std::sin(beta);
+    return along + slider * 0.02 / 12 +
+           2 * (m * x * x + across * std::sin(beta) * std::sin(beta) + along * std::cos(beta) * std::cos(beta));
+  }
+  // Of (β, s, β̇, ṡ).
+  Eigen::Vector4d rate(const Eigen::Vector4d& y) const {
+    const double sine = std::sin(y[0]), cosine = std::cos(y[0]), over = 1 - 0.5 * cosine - y[1];
+    const double L = std::sqrt(0.25 * sine * sine + over * over);
+    const double L_beta = (0.25 * sine * cosine + 0.5 * over * sine) / L, L_s = -over / L;
+    const double F = 8e5 * (L - 0.5) + 4e4 * (L_beta * y[2] + L_s * y[3]);
+    const double spin = momentum / J(y[0]);
+    const double J_beta = 2 * (2 * m * (0.05 + c * sine) * c * cosine + 2 * (across - along) * sine * cosine);
+    const double turning = spin * spin * J_beta / 2 - 2 * m * 9.81 * c * sine - 2 * F * L_beta;
+    return {y[2], y[3], turning / (2 * (across + m * c * c)), -9.81 - 2 * F * L_s / slider};
+  }
+};
+
+TEST(Gallery, A05HoldsItsSliderByStiffSprings) {
+  const Governor governor;
+  Settings settings = controlled("auto", "rA", 1e-8, 10, 0.5);
+  for (const FormulationEntry& formulation : formulations()) {
+    settings.formulation = formulation.name;
+    constexpr double h = 2e-5;
+    Eigen::Vector4d y(std::numbers::pi / 3, 0.5, 0, 0);
+    double t = 0;
+    for (const Snapshot& sample : motion(scene_of("flyball_governor"), settings)) {
+      for (; t < sample.t - h / 2; t += h) {
+        const Eigen::Vector4d k1 = governor.rate(y), k2 = governor.rate(y + h / 2 * k1),
+                              k3 = governor.rate(y + h / 2 * k2), k4 = governor.rate(y + h * k3);
+        y += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+      }
+      EXPECT_NEAR(sample.bodies[1].r.z(), y[1], 1e-6) << formulation.name << " at " << sample.t;
+      EXPECT_NEAR(sample.bodies[0].w.z(), governor.momentum / governor.J(y[0]), 1e-5) << formulation.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -24,7 +24,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 LEFT_OUT = {"build", ".git", "results", "__pycache__", "node_modules"}
 SUITES = "registry_suites_test"  # the executable of several files (CMakeLists.txt)
-LONGEST = 900  # s, of a test; one that does not come to its end has noticed, too
+LONGEST = 900  # s, of a test without a mutation
+SLOWER = 10  # times that, and half a minute: one that does not come to its end has noticed, too
 
 
 def read_mutations():
@@ -56,6 +57,7 @@ class Scratch:
 
     def __init__(self, folder, jobs):
         self.folder, self.build, self.jobs = folder, folder / "build" / "release", jobs
+        self.longest = {}  # s, by test
         self.copy()
         if not (self.build / "build.ninja").exists():
             launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
@@ -106,14 +108,16 @@ class Scratch:
 
     def passes(self, test):
         command = [str(self.build / "tests" / self.holder(test)), f"--gtest_filter={self.filter(test)}"]
+        began = time.monotonic()
         environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
         try:
             run = subprocess.run(command, cwd=self.build / "tests", capture_output=True, env=environment,
-                                 timeout=LONGEST)
+                                 timeout=self.longest.get(test, LONGEST))
         except subprocess.TimeoutExpired:
             return False
         if b"Running 0 tests" in run.stdout:
             sys.exit(f"{test}: names no test of {self.holder(test)}")
+        self.longest.setdefault(test, 30 + SLOWER * (time.monotonic() - began))
         return run.returncode == 0
 
     def outcome(self, mutation):
