@@ -68,7 +68,8 @@ Family spin() {
 }
 
 // Heavy symmetric top, J about its tip across and J₃ along its axis: w₃ and J φ̇ sin²θ + J₃ w₃ cosθ stay. A slow one is
-// moved by its weight more than by its spin: both are nudged, and it falls as fast as it nutates.
+// moved by its weight more than by its spin: both are nudged. Orientations change as it falls and spins, though its
+// axis does not: Euler parameters turn by half the angle.
 constexpr double kTopJ = 1.2, kTopJ3 = 0.3, kTopLoad = 9.81;
 Family top() {
   Family f;
@@ -95,10 +96,7 @@ Family top() {
     const double sine = std::sin(y[0]);
     return {{sine * std::sin(y[2]), -sine * std::cos(y[2]), std::cos(y[0])}};
   };
-  f.rate = [](const Place& at) {
-    const double fall = std::sqrt(2 * kTopLoad * (1 + std::cos(1.0)) / kTopJ), nutation = kTopJ3 * at.x / kTopJ;
-    return std::hypot(fall, nutation);
-  };
+  f.rate = [](const Place& at) { return std::hypot(std::sqrt(2 * kTopLoad * (1 + std::cos(1.0)) / kTopJ), at.x / 2); };
   return f;
 }
 
