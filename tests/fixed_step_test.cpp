@@ -220,6 +220,18 @@ TEST_P(FixedStep, SmallStepsSpareTheMultipliers) {
   EXPECT_LT(multipliers("generalized_alpha"), 1e-8);  // given out at index 1
 }
 
+TEST_P(FixedStep, TheEndIsGivenOutWhereTheIntervalDoesNotDivideIt) {
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;
+    Settings settings = dynamics(GetParam(), 1e-3, 0.01, 3e-3);
+    settings.integrator = integrator.name;
+    std::vector<double> times;
+    for (const Snapshot& sample : motion(scene_of("double_pendulum"), settings)) times.push_back(sample.t);
+    EXPECT_THAT(times, ::testing::Pointwise(::testing::DoubleEq(), {0.0, 0.003, 0.006, 0.009, 0.01}))
+        << integrator.name;
+  }
+}
+
 // A spring far too stiff for the step, out of rest: the start must not take its v̈ for the motion's.
 TEST(FixedStepStart, UnresolvedSpringStaysBounded) {
   Scene scene = parse_scene(R"json({"scene": 1, "name": "stiff",
