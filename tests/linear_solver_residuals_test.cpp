@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kStates = 20;
 constexpr int kSolves = 4;  // with each matrix
-constexpr double kStep = 1e-3;
+constexpr double kLength = 1e-3;  // of a step, s
 
 // The largest residual over a motion may be this much of klu's. A residual is rounding times the growth of numbers in
 // an elimination; block keeps its pivots while they stay within a decade, and twice what that may cost is allowed.
@@ -58,8 +58,8 @@ std::vector<Met> met(const Motion& motion, std::string_view formulation, MatrixK
     m.system.values.resize(static_cast<std::size_t>(size));
     std::vector<double> dq;
     if (kind == MatrixKind::exact)
-      for (const double v : at.v) dq.push_back(kStep * v);
-    problem->assemble(kind, {1, kStep, kStep * kStep}, dq, at.a, at.lambda, slots, m.system.values);
+      for (const double v : at.v) dq.push_back(kLength * v);
+    problem->assemble(kind, {1, kLength, kLength * kLength}, dq, at.a, at.lambda, slots, m.system.values);
     all.push_back(std::move(m));
   });
   EXPECT_TRUE(outcome.status.ok()) << outcome.status.message;
