@@ -10,7 +10,7 @@ namespace poinsot::test {
 namespace {
 
 constexpr int kStates = 20;
-constexpr int kSolves = 4;  // with each matrix
+constexpr int kSolves = 4;        // with each matrix
 constexpr double kLength = 1e-3;  // of a step, s
 
 // The largest residual over a motion may be this much of klu's. A residual is rounding times the growth of numbers in
