@@ -98,15 +98,18 @@ TEST_P(FullDisk, AShortRunIsMarkedWhereverTheRoomEnds) {
   if (!can_mount()) GTEST_SKIP() << kOnlyRoot;
   bool without_state = false;
   std::size_t most = 0;
-  for (int kilobytes = 16; kilobytes <= 128; kilobytes += 4) {
+  for (int kilobytes = 8; kilobytes <= 128; kilobytes += 4) {
     SCOPED_TRACE(::testing::Message() << kilobytes << " kB");
     const int status = on_disk(kilobytes,
                                "\"$POINSOT\" run pendulum.json --integrator implicit_euler --end 0.05 --quiet --out "
                                "disk/a.csv --signals disk/s.csv --save-state disk/state.json 2> kept/said");
-    const std::size_t rows = lines(read("kept/a.csv")).size() - 1;
-    expect_complete_rows("kept/a.csv");
-    expect_complete_rows("kept/s.csv");
-    EXPECT_EQ(lines(read("kept/s.csv")).size() - 1, rows);
+    const std::size_t rows = exists("kept/a.csv") ? lines(read("kept/a.csv")).size() - 1 : 0;
+    EXPECT_EQ(exists("kept/s.csv"), rows > 0);
+    if (rows > 0) {
+      expect_complete_rows("kept/a.csv");
+      expect_complete_rows("kept/s.csv");
+      EXPECT_EQ(lines(read("kept/s.csv")).size() - 1, rows);
+    }
     const nlohmann::json record = read_json("kept/a.run.json");
     EXPECT_EQ(record["status"], status == 0 ? "ok" : "interrupted");
     EXPECT_EQ(exists("kept/state.json"), status == 0);

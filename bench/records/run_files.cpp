@@ -72,12 +72,10 @@ void RunFiles::end_together() {
   for (const OutputFile* file : files) lines = std::min(lines, file->lines_given());
   open_record();
   const std::size_t record = record_ ? running_().size() + kRecordGrows : 0;
-  std::int64_t alone = 0;  // as many have room without the record; half of them are not given up for it
   for (std::int64_t fewer = 1;; fewer = std::min(2 * fewer, 1 + lines / 8)) {
     bool room = true;
     for (OutputFile* file : files) room = file->end_at(lines) && room;
-    if (room && alone == 0) alone = lines;
-    if (room && (!record_ || 2 * lines <= alone || record_->reserve(record))) break;
+    if (room && (!record_ || record_->reserve(record))) break;
     if (lines == 0) break;
     lines = std::max<std::int64_t>(0, lines - fewer);
   }
