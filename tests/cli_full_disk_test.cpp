@@ -1,7 +1,5 @@
 // Disks that are full: all files of a run end with the same row, the record beside them says so, nothing half-written
 // remains.
-#include <sys/stat.h>
-
 #include <csignal>
 
 #include "support/interrupted.h"

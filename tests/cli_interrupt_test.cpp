@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 
@@ -192,6 +193,32 @@ TEST_P(Interrupted, AnExistingFileKeepsItsModeAndIsReplacedAtOnce) {
   EXPECT_EQ(poinsot({"run", "pendulum.json", "--analysis", "kinematics", "--out", "a.csv"}).status, 2);
   EXPECT_EQ(read("a.csv"), "before");
   EXPECT_EQ(leftovers(), std::vector<std::string>{});
+}
+
+TEST_P(Interrupted, MemoryThatIsRefusedIsASentence) {
+  if (shell("ulimit -v 300000; $POINSOT --version > /dev/null") != 0)
+    GTEST_SKIP() << "sanitizers reserve more than is allowed";
+  EXPECT_EQ(shell("ulimit -v 300000; $POINSOT make chain --bodies 3000000 --out c.json"), 3);
+  EXPECT_EQ(read(".said.shell"), "poinsot: the memory does not suffice\n");
+  EXPECT_FALSE(exists("c.json"));
+  EXPECT_EQ(leftovers(), std::vector<std::string>{});
+}
+
+// Nobody can be there before: they are in the target's folder under names that differ from run to run.
+TEST_P(Interrupted, TemporaryNamesCannotBeGuessed) {
+  std::vector<std::string> names;
+  for (int time = 0; time < 2; ++time) {
+    const pid_t child = start(kLongRun);
+    std::vector<std::string> seen;
+    EXPECT_TRUE(wait_for([&] { return !(seen = leftovers()).empty(); }));
+    kill(child, SIGTERM);
+    (void)finish(child);
+    for (const std::string& name : seen) EXPECT_EQ(fs::path(name).parent_path(), folder());
+    names.insert(names.end(), seen.begin(), seen.end());
+  }
+  ASSERT_GE(names.size(), 2u);
+  std::ranges::sort(names);
+  EXPECT_EQ(std::ranges::adjacent_find(names), names.end());
 }
 
 INSTANTIATE_TEST_SUITE_P(As, Interrupted, testing::ValuesIn(kUsers), name_of_user);
