@@ -97,7 +97,8 @@ TEST_F(CliStudy, MissingAndRepeatedShardsAreTold) {
                  "27 of 80 cases have no row, the first is case 1; of 3 shards 2 is not among the parts given");
   expect_refused({"--merge", "parts", "--merge", "parts/shard-1-of-3.part", "--out", "m"}, "is given twice");
   fs::copy(folder() / "parts/shard-1-of-3.part", folder() / "again.part");
-  expect_refused({"--merge", "parts", "--merge", "again.part", "--out", "m"}, "case 0 stands in ");
+  expect_refused({"--merge", "parts", "--merge", "again.part", "--out", "m"},
+                 " stands in parts/shard-1-of-3.part and in again.part; expected each shard once");
   expect_refused({"--merge", "none", "--out", "m"}, "there is no such file");
   expect_refused({"--shard", "4/3", "--out", "m"}, "--shard: found \"4/3\", expected I/N");
   EXPECT_FALSE(fs::exists(folder() / "m"));

@@ -1,15 +1,16 @@
 #include "bench/study/temporary_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <climits>
-#include <cstdlib>
+#include <cstdint>
 #include <cstring>
-#include <string>
 
 namespace poinsot::study {
 namespace fs = std::filesystem;
@@ -36,11 +37,16 @@ void remember(const fs::path& file) {
 }  // namespace
 
 int open_temporary(const fs::path& real, fs::path& temporary) {
-  std::string name = (real.parent_path() / ".poinsot-XXXXXX").string();
-  const int descriptor = mkostemp(name.data(), O_CLOEXEC | O_NOFOLLOW);  // and O_EXCL
-  if (descriptor < 0) return -1;
-  temporary = name;
-  remember(temporary);
+  std::uint64_t random = 0;
+  if (getrandom(&random, sizeof random, 0) != sizeof random) return -1;
+  const fs::path file = real.parent_path() / fmt::format(".poinsot-{:016x}", random);
+  remember(file);  // before it is there: a signal may come between
+  const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (descriptor < 0) {
+    forget_temporary(file);
+    return -1;
+  }
+  temporary = file;
   struct stat before {};
   if (stat(real.c_str(), &before) == 0) {
     [[maybe_unused]] const int allowed = fchown(descriptor, before.st_uid, before.st_gid);  // to few
