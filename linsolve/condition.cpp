@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace poinsot {
 
@@ -53,14 +52,10 @@ double Condition::size(const std::vector<double>& x) const {
   return most;
 }
 
-// A correction as large as a tenth of the solution says that nothing is known of it.
-double Condition::attained(double error) const {
-  return error < 0.1 ? std::min(growth_, error / std::numeric_limits<double>::epsilon()) : growth_;
-}
-
 void Condition::advance(int round) {
   growth_ = 0;
   for (std::size_t i = 0; i < d_.size(); ++i) {
+    if (next_[i] == 0) next_[i] = d_[i];  // rounding took it, beside far larger ones
     const double ratio = next_[i] / d_[i];
     if (ratio <= growth_) continue;
     growth_ = std::isfinite(ratio) ? ratio : HUGE_VAL;

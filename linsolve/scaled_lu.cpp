@@ -24,6 +24,7 @@ LinearStatus ScaledLu::do_analyze(const Pattern& pattern) {
   values_.assign(static_cast<std::size_t>(layout_.nonzeros()), 0);
   scaled_.assign(values_.size(), 0);
   equilibration_.resize(layout_.n);
+  scaling_before_ = equilibration_;
   condition_.resize(layout_.n);
   statistics_.nonzeros = layout_.nonzeros();
   return do_symbolic();
@@ -64,12 +65,20 @@ LinearStatus ScaledLu::factor_fresh() {
     condition = estimate();
   }
   if (open < 0) open = condition_.suspect();
-  if (smallest_ < kDoubtfulPivot && std::isfinite(condition)) {
-    // The pivots may have been chosen in a bad scaling; now a better one is known.
+  if (std::isfinite(condition) && (smallest_ < kDoubtfulPivot || condition >= kSingularCondition)) {
+    // The pivots may have been chosen in a bad scaling; now a better one is known, mostly.
+    const double before = condition;
+    scaling_before_ = equilibration_;
     equilibration_.improve(condition_.rows(), condition_.columns());
     equilibration_.scale(layout_, values_, scaled_);
     if (LinearStatus status = factor_scaled(); !status.ok()) return status;
     condition = estimate();
+    if (before < kSingularCondition && !(condition < kSingularCondition)) {
+      equilibration_ = scaling_before_;
+      equilibration_.scale(layout_, values_, scaled_);
+      if (LinearStatus status = factor_scaled(); !status.ok()) return status;
+      condition = before;
+    }
   }
   statistics_.reciprocal_condition = 1 / condition;
   if (!(condition < kSingularCondition)) return singular(open);

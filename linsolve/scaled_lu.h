@@ -63,7 +63,7 @@ class ScaledLu : public LinearSolver {
   int suspect();
 
   CscLayout layout_;
-  Equilibration equilibration_;
+  Equilibration equilibration_, scaling_before_;
   Condition condition_;
   std::vector<double> scaled_;
   std::vector<char> seen_;
