@@ -11,6 +11,7 @@
 #include "bench/study/measure.h"
 #include "bench/study/output_file.h"
 #include "bench/study/panels.h"
+#include "bench/study/progress.h"
 #include "bench/study/report.h"
 #include "bench/study/scale_series.h"
 #include "core/check.h"
@@ -64,11 +65,18 @@ TEST(Measure, runs_every_cell_so_often_and_keeps_why_one_has_no_figures) {
   Settings good = dynamics("rA", 1e-2, 0.1), wrong = good;
   wrong.formulation = "none";
   std::vector<study::Cell> cells{{"a", &scene, good, {}, {}, false}, {"b", &scene, wrong, {}, {}, false}};
+  std::vector<std::size_t> order;
   std::vector<double> done;
-  study::measure(cells, 3, [&](const study::Progress& progress) {
+  const study::ProgressCallback told = [&](const study::Progress& progress) {
     done.push_back(progress.done);
     EXPECT_EQ(progress.all, 8);
-  });
+  };
+  study::RunCounter counter(8, told);
+  study::measure(cells, {3, true, [&](std::size_t k) {
+                           order.push_back(k);
+                           counter.next();
+                         }});
+  EXPECT_THAT(order, ElementsAre(0, 1, 0, 1, 0, 1, 0, 1));
   EXPECT_THAT(done, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
   EXPECT_EQ(cells[0].runs.size(), 3u);
   EXPECT_EQ(cells[0].failure, "");

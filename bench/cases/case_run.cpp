@@ -139,7 +139,7 @@ std::vector<CaseRow> CaseRunner::run_timed(const std::vector<std::int64_t>& numb
     cells.back().failure = results.back().ok() ? "" : results.back().message;
     if (!results.back().ok() && cells.back().failure.empty()) cells.back().failure = results.back().status;
   }
-  study::measure(cells, study_.repetitions, {});
+  study::measure(cells, {study_.repetitions});
   std::vector<CaseRow> rows;
   if (interruption_requested) return rows;
   for (std::size_t k = 0; k < all.size(); ++k) {

@@ -53,6 +53,11 @@ std::vector<Cell> make_cells(std::span<const Scene> scenes, Analysis analysis, c
   return cells;
 }
 
+void measure_told(std::vector<Cell>& cells, int repetitions, const ProgressCallback& progress) {
+  RunCounter counter(cells.size() * static_cast<std::size_t>(repetitions + 1), progress);
+  measure(cells, {repetitions, true, [&](std::size_t) { counter.next(); }});
+}
+
 std::vector<std::string> foot(const TablesRequest& request, int core) {
   std::vector<std::string> lines = origin_lines(core);
   lines.push_back(fmt::format(
@@ -109,14 +114,14 @@ MeasuredTables measure_tables(const TablesRequest& request, int core, const Prog
   std::vector<Cell> all;
   for (const Analysis analysis : {Analysis::kinematics, Analysis::dynamics}) {
     std::vector<Cell> cells = make_cells(scenes, analysis, request, chosen);
-    measure(cells, request.runs(), progress);
+    measure_told(cells, request.runs(), progress);
     for (const auto make : {speed_up_table, iterations_table, phases_table, advantage_table})
       report.tables.push_back(make(cells, analysis));
     report.tables.push_back(against_original_table(cells, analysis, processor()));
     all.insert(all.end(), cells.begin(), cells.end());
   }
   std::vector<Cell> cells = make_cells(scenes, Analysis::dynamics, request, choices);
-  measure(cells, request.runs(), progress);
+  measure_told(cells, request.runs(), progress);
   report.tables.push_back(linear_solvers_table(cells));
   all.insert(all.end(), cells.begin(), cells.end());
 

@@ -101,7 +101,7 @@ class Search {
   void time(std::vector<Candidate>& candidates, std::size_t count) const {
     std::vector<Case> batch;
     for (std::size_t k = 0; k < count; ++k) batch.push_back(candidates[k].one);
-    const std::vector<Measured> timed = sweep_.measure(batch, kRepetitions, [](const Case&) {});
+    const std::vector<Measured> timed = sweep_.measure(batch, kRepetitions);
     for (std::size_t k = 0; k < count; ++k) candidates[k].measured = timed[k];
   }
 

@@ -63,25 +63,31 @@ int pin_to_one_core() {
   return sched_setaffinity(0, sizeof set, &set) == 0 ? core : -1;
 }
 
-void measure(std::vector<Cell>& cells, int repetitions, const ProgressCallback& progress) {
-  RunCounter counter(cells.size() * static_cast<std::size_t>(repetitions + 1), progress);
-  for (int repetition = -1; repetition < repetitions; ++repetition) {  // −1: the warm-up
-    for (Cell& cell : cells) {
-      counter.next();
-      if (!cell.failure.empty()) continue;
-      try {
-        const Outcome outcome = simulate(*cell.scene, cell.settings, [](const Sample&) {});
-        cell.refused = outcome.status.failure == Failure::refused;
-        if (!outcome.status.ok())
-          cell.failure = outcome.status.message;
-        else if (repetition >= 0)
-          cell.runs.push_back(outcome.statistics);
-      } catch (const InputError& refused) {
-        cell.failure = refused.what();
-      }
-      if (!cell.failure.empty()) cell.runs.clear();
+void in_turn(std::size_t runs, const Rounds& rounds, const std::function<void(std::size_t, int)>& run) {
+  for (int round = rounds.warm_up ? -1 : 0; round < rounds.repetitions; ++round) {
+    for (std::size_t k = 0; k < runs; ++k) {
+      run(k, round);
+      if (rounds.after) rounds.after(k);
     }
   }
+}
+
+void measure(std::vector<Cell>& cells, const Rounds& rounds) {
+  in_turn(cells.size(), rounds, [&](std::size_t k, int round) {
+    Cell& cell = cells[k];
+    if (!cell.failure.empty()) return;
+    try {
+      const Outcome outcome = simulate(*cell.scene, cell.settings, [](const Sample&) {});
+      cell.refused = outcome.status.failure == Failure::refused;
+      if (!outcome.status.ok())
+        cell.failure = outcome.status.message;
+      else if (round >= 0)
+        cell.runs.push_back(outcome.statistics);
+    } catch (const InputError& refused) {
+      cell.failure = refused.what();
+    }
+    if (!cell.failure.empty()) cell.runs.clear();
+  });
 }
 
 }  // namespace poinsot::study

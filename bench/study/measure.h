@@ -1,12 +1,13 @@
-// Timing of many runs side by side: a warm-up of each, then repetitions that go through all of them in turn, so that
-// what disturbs the machine disturbs them alike. Medians and quartiles, never the one best run.
+// Timing of many runs side by side: repetitions that go through all of them in turn, so that what disturbs the machine
+// disturbs them alike. Medians and quartiles, never the one best run. Whatever is timed goes through here: tables,
+// charts, advice, growth and the timed cases of studies.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "bench/study/progress.h"
 #include "core/scene.h"
 #include "integrators/simulate.h"
 
@@ -44,6 +45,15 @@ double iterations_per_step(const Cell& cell);
 // Keeps the calling thread on one processor core; returns its number, -1 where the system does not allow it.
 int pin_to_one_core();
 
-void measure(std::vector<Cell>& cells, int repetitions, const ProgressCallback& progress);
+// So many rounds, each of them through all that is timed.
+struct Rounds {
+  int repetitions;
+  bool warm_up = true;                                 // a round before them, −1, that does not count
+  std::function<void(std::size_t number)> after = {};  // told of each run, and of those that are left out
+};
+void in_turn(std::size_t runs, const Rounds& rounds, const std::function<void(std::size_t number, int round)>& run);
+
+// Those that have failed are left out.
+void measure(std::vector<Cell>& cells, const Rounds& rounds);
 
 }  // namespace poinsot::study

@@ -162,21 +162,21 @@ std::vector<Series> measure_scale(const ScaleRequest& request, const ProgressCal
         series.settings.linear_solver = solver;
         all.push_back(series);
       }
-  RunCounter counter(all.size() * all_sizes.size() * static_cast<std::size_t>(request.repetitions), progress);
-  for (int repetition = 0; repetition < request.repetitions; ++repetition)
-    for (std::size_t n = 0; n < all_sizes.size(); ++n)
-      for (Series& series : all) {
-        counter.next();
-        auto& runs = series.runs[n];
-        if (repetition > 0 && !good(runs)) continue;
-        if (n > 0 && take_too_long(series.runs[n - 1])) {
-          const IsolatedRun& before = series.runs[n - 1].front();
-          runs.push_back({fmt::format("{}, {} bodies took {:.0f} s", kLeftOut, before.bodies, before.seconds)});
-          continue;
-        }
-        series.settings.end = series.settings.every = end_of(all_sizes[n], series.settings.step);
-        runs.push_back(run_isolated(*series.structure, all_sizes[n], series.settings));
-      }
+  const std::size_t runs = all.size() * all_sizes.size();
+  RunCounter counter(runs * static_cast<std::size_t>(request.repetitions), progress);
+  in_turn(runs, {request.repetitions, false, [&](std::size_t) { counter.next(); }}, [&](std::size_t k, int round) {
+    const std::size_t n = k / all.size();  // of all structures the small ones first
+    Series& series = all[k % all.size()];
+    auto& of_size = series.runs[n];
+    if (round > 0 && !good(of_size)) return;
+    if (n > 0 && take_too_long(series.runs[n - 1])) {
+      const IsolatedRun& before = series.runs[n - 1].front();
+      of_size.push_back({fmt::format("{}, {} bodies took {:.0f} s", kLeftOut, before.bodies, before.seconds)});
+      return;
+    }
+    series.settings.end = series.settings.every = end_of(all_sizes[n], series.settings.step);
+    of_size.push_back(run_isolated(*series.structure, all_sizes[n], series.settings));
+  });
   return all;
 }
 

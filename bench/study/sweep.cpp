@@ -130,27 +130,23 @@ Measured Sweep::compare(const Case& one) const {
   return measured;
 }
 
-double Sweep::time(const Case& one) const {
-  return simulate(scene_, one.settings, {}).statistics.seconds.total;
-}
-
 std::vector<Measured> Sweep::measure(const std::vector<Case>& batch, int repetitions,
                                      const std::function<void(const Case&)>& after) const {
   std::vector<Measured> all;
+  std::vector<Cell> cells;
   for (const Case& one : batch) {
     all.push_back(compare(one));
     if (after) after(one);
+    cells.push_back({{}, &scene_, one.settings, {}, all.back().ok() ? "" : all.back().status});
   }
-  std::vector<std::vector<double>> seconds(batch.size());
-  for (int repetition = 0; repetition < repetitions; ++repetition) {
-    for (std::size_t k = 0; k < batch.size(); ++k) {
-      if (all[k].ok()) seconds[k].push_back(time(batch[k]));
-      if (after) after(batch[k]);
-    }
-  }
+  Rounds rounds{repetitions, false};  // the comparison was the warm-up
+  if (after) rounds.after = [&](std::size_t k) { after(batch[k]); };
+  study::measure(cells, rounds);
   for (std::size_t k = 0; k < batch.size(); ++k) {
-    if (!all[k].ok()) continue;
-    const Timing timed = timing(seconds[k]);
+    if (cells[k].runs.empty()) continue;
+    std::vector<double> seconds;
+    for (const Statistics& run : cells[k].runs) seconds.push_back(total(run));
+    const Timing timed = timing(seconds);
     all[k].seconds = timed.median;
     all[k].spread = timed.spread;
   }

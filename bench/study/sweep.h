@@ -66,8 +66,6 @@ class Sweep {
   std::vector<std::vector<Case>> cases(const SweepPlan& plan) const;
   // The first run.
   Measured compare(const Case& one) const;
-  // One more run; its time, s.
-  double time(const Case& one) const;
   // Compares all, then times those that are well, `repetitions` times in turn. `after`, if any, is told of every run.
   std::vector<Measured> measure(const std::vector<Case>& batch, int repetitions,
                                 const std::function<void(const Case&)>& after = {}) const;
