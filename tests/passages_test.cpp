@@ -83,7 +83,7 @@ TEST_P(Passages, OfStepsThatEndBesideThePosition) {
   };
   int ended = 0, told = 0;
   for (const auto& [loops, angle, step] : {Start{2, 0.281197, 1e-2}, Start{2, 0.361521, 1e-2}, Start{2, 0.889502, 1e-2},
-                                           Start{2, 1.03863, 1e-2}, Start{1, 0.562883, 2e-2}}) {
+                                           Start{2, 1.03863, 1e-2}, Start{1, 0.562883, 2e-2}, Start{1, 1.0757, 3e-2}}) {
     for (const IntegratorEntry& integrator : integrators()) {
       if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;
       SCOPED_TRACE(::testing::Message() << integrator.name << ", " << loops << " loops from " << angle);
@@ -109,8 +109,8 @@ TEST_P(Passages, OfStepsThatEndBesideThePosition) {
       EXPECT_THAT(r.outcome.notices, testing::Contains(testing::HasSubstr("is not certain")));
     }
   }
-  EXPECT_GE(ended, 20) << "of 25";
-  EXPECT_LE(told, 1);
+  EXPECT_GE(ended, 24) << "of 30";
+  EXPECT_LE(told, 2);
 }
 
 // A rod turned about z by its direction's cosine alone, which says nothing of its rate at a quarter turn: an instant of

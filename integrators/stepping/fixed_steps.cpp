@@ -188,7 +188,7 @@ Status FixedSteps::check_branch(Problem& problem, double t) {
                         "branch than its velocities lead to, by {} most of all; try another step or dop853",
                         t, problem.describe_unknown(row))};
   }
-  if (share > kComparable + rotation_ && !std::exchange(doubted_, true)) {
+  if (share > kComparable && !std::exchange(doubted_, true)) {
     run_.tell(
         fmt::format("at t = {:.6g} s the velocities that {} allows change by more than the step of {:g} s "
                     "follows: that it ends on the branch they lead to is not certain; try a tenth of it or dop853",
