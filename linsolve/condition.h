@@ -9,7 +9,7 @@
 // The growth is that of the unknown that grows most, an upper estimate until d has settled, which along chains takes
 // rounds in their number: a matrix is called singular only where more rounds, with more vectors each, find it so, too.
 // In rp the estimate of the straight chain grows as N^3.5, since what is zero in rA by its alignment cancels there:
-// 4e9 for 1000 bodies, 9e11 for 3000.
+// 4e9 for 1000 bodies, 9e11 for 3000; scaled by the sizes that it has found, 3e10 for 30 000.
 //
 // An upper estimate is no verdict: skew chains of 10 000 bodies are above 1e12 and solved to 3e-9. Where it says
 // singular the matrix is judged by what solutions attain: that of a random right-hand side is corrected once from its
