@@ -21,8 +21,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <string_view>
+#include <span>
 
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/linearization.h"
@@ -66,6 +65,9 @@ class RadauStepper {
 
  private:
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  static std::span<double> column(Columns& m, Eigen::Index k) {
+    return {m.col(k).data(), static_cast<std::size_t>(m.rows())};
+  }
 
   // The matrices of the stages of a step of length h; h = 0: none.
   struct Linearized {
