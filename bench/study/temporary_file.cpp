@@ -8,6 +8,7 @@
 
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <climits>
 #include <cstdint>
 #include <cstring>
@@ -43,7 +44,9 @@ int open_temporary(const fs::path& real, fs::path& temporary) {
   remember(file);  // before it is there: a signal may come between
   const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (descriptor < 0) {
+    const int why = errno;
     forget_temporary(file);
+    errno = why;
     return -1;
   }
   temporary = file;
