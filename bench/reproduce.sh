@@ -9,7 +9,8 @@ cmake --preset native -G Ninja --log-level=WARNING -DPOINSOT_TESTS=OFF
 cmake --build --preset native --parallel "$(nproc)"
 mkdir -p results
 
-# A part that fails is told at the end, and the report is of the others.
+# What a folder holds already may be of another commit. A part that fails is told at the end, and the report is of the
+# others.
 failed=()
 part() {
   local status=0
@@ -19,9 +20,9 @@ part() {
 }
 part tables --out results/
 part figures --out results/
-part chart models/{single_pendulum,double_pendulum,four_link,slider_crank}.json --quick --out results/
+part chart models/{single_pendulum,double_pendulum,four_link,slider_crank}.json --quick --fresh --out results/
 part scale --bodies 1000 --out results/
-part study bench/studies/random_mechanisms.json --out results/random_mechanisms
+part study bench/studies/random_mechanisms.json --fresh --out results/random_mechanisms
 part report results/
 if ((${#failed[@]} > 0)); then
   printf 'failed: %s\n' "${failed[@]}" >&2
