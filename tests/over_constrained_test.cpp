@@ -140,15 +140,19 @@ struct Bennett {
   Scene scene() const { return linkage({1, length, 1, length}, {alpha, beta, alpha, beta}, {t1, t2, -t1, -t2}); }
 };
 
+struct Bricard {
+  double q = std::numbers::pi / 2, u1 = 1.2, u2 = std::acos(-std::cos(u1) / (1 + std::cos(u1)));
+
+  Scene scene() const { return linkage(std::vector<double>(6, 1), {q, -q, q, -q, q, -q}, {u1, u2, u1, u2, u1, u2}); }
+};
+
 // Bennett's linkage, four hinges, and Bricard's orthogonal one, six: no count of rows lets them move. In closed form
 // tan(θ₁/2) tan(θ₂/2) and cosθ₁ + cosθ₂ + cosθ₁ cosθ₂ stay what they are.
 TEST_P(Loops, ThatMoveByTheirDimensionsAlone) {
   const Bennett bennett;
-  const double q = std::numbers::pi / 2, u1 = 1.2, u2 = std::acos(-std::cos(u1) / (1 + std::cos(u1)));
-  const std::vector<double> ones(6, 1.0);
-  const Scene bricard = linkage(ones, {q, -q, q, -q, q, -q}, {u1, u2, u1, u2, u1, u2});
+  const Bricard bricard;
   for (const bool four : {true, false}) {
-    const Scene scene = four ? bennett.scene() : bricard;
+    const Scene scene = four ? bennett.scene() : bricard.scene();
     static std::map<bool, std::vector<BodyState>> exact;
     if (!exact.contains(four)) exact[four] = move(scene, controlled("dop853", "rA", 1e-11, 1)).end;
     for (const char* integrator : {"dop853", "radau5", "rattle", "generalized_alpha", "implicit_euler"}) {
@@ -164,7 +168,7 @@ TEST_P(Loops, ThatMoveByTheirDimensionsAlone) {
         const auto [one, two] = first_angles(sample.bodies);
         const double c = std::cos(one), d = std::cos(two);
         EXPECT_NEAR(four ? std::tan(one / 2) * std::tan(two / 2) - bennett.product : c + d + c * d, 0, 1e-6);
-        turned = std::max(turned, std::abs(one - (four ? bennett.t1 : u1)));
+        turned = std::max(turned, std::abs(one - (four ? bennett.t1 : bricard.u1)));
       }
       EXPECT_GT(turned, 0.3);
       double apart = 0;
@@ -176,10 +180,10 @@ TEST_P(Loops, ThatMoveByTheirDimensionsAlone) {
   }
 }
 
-// The linkage with so many rows in the place of its last hinge, to the ground: of the point's coordinates, in the order
-// of the axes, and of the hinge's direction against one across it. They let it move along the same curve, up to 0.9 s
-// where two of the rows that are left of Bennett's come to depend on one another.
-Scene without_redundancy(Scene scene, const std::vector<int>& coordinates, bool direction, double length) {
+// The linkage, its last link of 1 m, with so many rows in the place of its last hinge, to the ground: of the point's
+// coordinates, in the order of the axes, and of the hinge's direction against one across it. They let it move along the
+// same curve, up to 0.9 s where two of the rows that are left of Bennett's come to depend on one another.
+Scene without_redundancy(Scene scene, const std::vector<int>& coordinates, bool direction) {
   const Joint last = scene.joints.back();
   scene.joints.pop_back();
   const auto row = [&](ConstraintType type) -> Constraint& {
@@ -189,7 +193,7 @@ Scene without_redundancy(Scene scene, const std::vector<int>& coordinates, bool 
   };
   for (const int k : coordinates) {
     Constraint& point = row(ConstraintType::CD);
-    point.c = Vector3::Unit(k), point.s_i = {length / 2, 0, 0}, point.s_j = last.point;
+    point.c = Vector3::Unit(k), point.s_i = {0.5, 0, 0}, point.s_j = last.point;
   }
   if (direction) {
     Constraint& across = row(ConstraintType::DP1);
@@ -199,13 +203,10 @@ Scene without_redundancy(Scene scene, const std::vector<int>& coordinates, bool 
 }
 
 TEST_P(Loops, ThatMoveByTheirDimensionsAloneMoveAsWithoutRedundancy) {
-  const double q = std::numbers::pi / 2, u1 = 1.2, u2 = std::acos(-std::cos(u1) / (1 + std::cos(u1)));
-  const Bennett bennett;
-  const Scene bricard = linkage(std::vector<double>(6, 1), {q, -q, q, -q, q, -q}, {u1, u2, u1, u2, u1, u2});
   for (const bool four : {true, false}) {
-    const Scene redundant = four ? bennett.scene() : bricard;
+    const Scene redundant = four ? Bennett().scene() : Bricard().scene();
     const Scene plain =
-        four ? without_redundancy(redundant, {1, 2}, false, 1) : without_redundancy(redundant, {0, 1, 2}, true, 1);
+        four ? without_redundancy(redundant, {1, 2}, false) : without_redundancy(redundant, {0, 1, 2}, true);
     for (const IntegratorEntry& integrator : integrators()) {
       Settings settings = dynamics(GetParam(), 1e-3, 0.8, 0.8);
       settings.integrator = integrator.name;
