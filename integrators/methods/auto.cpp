@@ -34,7 +34,7 @@ class Auto final : public Integrator {
     std::optional<ControlledRadau> radau5;
     if (Status status = dop853.prepare(); !status.ok()) return status;
     clock.start();
-    bool begun = false;
+    bool begun = false, told = false;
     for (std::int64_t trial = kFirstTrial;;) {
       if (Status status = dop853.start(run.state); !status.ok()) return status;
       if (!std::exchange(begun, true)) course.give_out(dop853.state());
@@ -52,7 +52,7 @@ class Auto final : public Integrator {
 
       if (steps == trial) trial *= kTrialsApart;
       if (!radau5) {
-        radau5.emplace(run.problem, run.systems, rtol, atol, run.statistics, clock);
+        radau5.emplace(run.problem, run.systems, rtol, atol, run.statistics, clock, pair);
         if (Status status = radau5->prepare(); !status.ok()) return status;
       }
       if (Status status = radau5->start(run.state); !status.ok()) return status;
@@ -61,6 +61,7 @@ class Auto final : public Integrator {
       double before = run.state.t;
       steps = 0;
       const auto is_no_better = [&] {
+        if (radau5->passes() && !std::exchange(told, true)) run.tell(passing_notice("radau5", pair, radau5->state().t));
         const double h = radau5->state().t - std::exchange(before, radau5->state().t);
         return ++steps == kTrial && !stays && h < enough;
       };

@@ -1,5 +1,8 @@
 #include "integrators/methods/radau5.h"
 
+#include <utility>
+
+#include "integrators/methods/dop853.h"
 #include "integrators/stepping/controlled_methods.h"
 #include "integrators/stepping/controlled_run.h"
 
@@ -12,10 +15,16 @@ class Radau5 final : public Integrator {
     PhaseClock clock;
     const Settings& settings = run.settings;
     ControlledRadau method(run.problem, run.systems, settings.rtol, settings.absolute_tolerance(), run.statistics,
-                           clock);
+                           clock, dop853_pair());
     if (Status status = method.prepare(); !status.ok()) return status;
     if (Status status = method.start(run.state); !status.ok()) return status;
-    return controlled_run(method, ControlledRadau::kRule, run, clock, [] { return false; });
+    bool told = false;
+    return controlled_run(method, ControlledRadau::kRule, run, clock, [&] {
+      if (method.passes() && !std::exchange(told, true)) {
+        run.tell(passing_notice("radau5", dop853_pair(), method.state().t));
+      }
+      return false;
+    });
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <utility>
 
 #include "integrators/stepping/vectors.h"
@@ -46,6 +47,10 @@ Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& stati
       q_moved_(problem.nq()),
       moved_by_(Eigen::VectorXd::Zero(2 * problem.nv())) {
   calm_.v.setZero(problem.nv());
+  off_by_one_.setZero(problem.nv() + problem.nc());
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(0.5, 1);
+  for (Eigen::Index k = problem.nv(); k < off_by_one_.size(); ++k) off_by_one_[k] = uniform(random);
 }
 
 Status Consistent::prepare() {
@@ -87,7 +92,7 @@ Status Consistent::velocity_correction(double t) {
   return system_.solve(t, span(rhs_));
 }
 
-Status Consistent::project_position(double t, std::span<double> q) {
+Status Consistent::project_position(double t, std::span<double> q, std::span<double> moved) {
   double before = HUGE_VAL;
   for (int k = 0; k < kFarCorrections; ++k) {
     problem_.set_position(t, q);
@@ -98,6 +103,7 @@ Status Consistent::project_position(double t, std::span<double> q) {
     if (!std::isfinite(correction)) break;
     problem_.retract(q, moves(), span(q_moved_));
     std::ranges::copy(q_moved_, q.begin());
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += moves()[i];
     problem_.set_position(t, q);
     // quadratic convergence: done where the correction is rounding, or has stopped to shrink at a small size
     const double scale = std::max(1.0, largest(q));
@@ -137,8 +143,11 @@ Status Consistent::project(State& at, bool& moved) {
   for (int k = 0;; ++k) {
     if (Status status = position_correction(at.t); !status.ok()) return status;
     const double correction = largest(moves());
-    if (k == 0) measure_steepness(off_, correction);
     if (k == 0 && correction <= kNegligible) break;
+    if (k == 0 && usual_steepness_ > 0 && correction > kSteep * usual_steepness_ * off_) {
+      look(steepness(at.t));
+      if (Status status = position_correction(at.t); !status.ok()) return status;
+    }
     if (k == kCorrections || !(correction < before)) {
       return {Failure::inconsistent_state, at.t,
               fmt::format("at t = {:.9g} s the step leads too far from the "
@@ -167,58 +176,6 @@ Status Consistent::project(State& at, bool& moved) {
     if (first * correction * amplification_ <= kRounding) break;
   }
   return {};
-}
-
-// After the first correction of a position by `moved`, which was off the constraints by `off`.
-void Consistent::measure_steepness(double off, double moved) {
-  constexpr double kSteep = 30, kSlow = 0.1;
-  amplification_ = 1;
-  if (!(off > 0 && moved > 0)) return;
-  const double steepness = moved / off;
-  if (usual_steepness_ == 0) usual_steepness_ = steepness;
-  if (steepness > kSteep * usual_steepness_) {
-    amplification_ = steepness / usual_steepness_;
-    beside_singular_ = true;
-  } else {
-    usual_steepness_ += kSlow * (steepness - usual_steepness_);
-  }
-}
-
-bool Consistent::beside_singular() {
-  return std::exchange(beside_singular_, false);
-}
-
-bool Consistent::made_of_rounding(const State& at) {
-  constexpr double kUnusual = 1e4, kAccounted = 1e3;
-  const double acceleration = largest(at.a());
-  if (calm_.usual == 0 || !(acceleration > kUnusual * calm_.usual)) return false;
-  const std::span<const double> none = span(zeros_);
-  problem_.equations_of_motion(none.first(nv_), {}, moves());  // −Q
-  problem_.gamma(rows());
-  const double loads = largest(moves()), gamma = largest(rows());
-  problem_.momentum(at.a(), moves());
-  return acceleration > kAccounted * gamma && largest(moves()) > kAccounted * loads;
-}
-
-bool Consistent::leaves_branch(const State& at) {
-  constexpr double kJumped = 0.01, kExplained = 10;
-  if (!made_of_rounding(at)) return false;
-  double jump = 0, size = 0;
-  for (Eigen::Index k = 0; k < at.v.size(); ++k) {
-    jump = std::max(jump, std::abs(at.v[k] - calm_.v[k]));
-    size = std::max({size, std::abs(at.v[k]), std::abs(calm_.v[k])});
-  }
-  return jump > kJumped * size + kExplained * calm_.usual * std::abs(at.t - calm_.t);
-}
-
-void Consistent::follow(const State& at) {
-  constexpr double kGrows = 10, kSlow = 0.1;
-  const double acceleration = largest(at.a());
-  if (calm_.usual == 0) calm_.usual = std::max(acceleration, problem_.model().gravity.norm());
-  if (acceleration > kGrows * calm_.usual) return;
-  calm_.usual += kSlow * (std::max(acceleration, problem_.model().gravity.norm()) - calm_.usual);
-  calm_.t = at.t;
-  calm_.v = at.v;
 }
 
 Status Consistent::along_constraints(const State& at, std::span<double> x) {

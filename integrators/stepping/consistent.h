@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "integrators/stepping/step_system.h"
 #include "integrators/stepping/vectors.h"
@@ -37,7 +38,8 @@ class Consistent {
   // The problem stands at (t, q, v); z = (a, λ) is written. The factorization belongs to this point.
   Status accelerations(double t, std::span<double> z);
   // Moves q onto Φ = 0 to rounding; the problem stands at the result. Fails with inconsistent_state where it cannot.
-  Status project_position(double t, std::span<double> q);
+  // `moved`, where it is asked for, is what it adds up its corrections in.
+  Status project_position(double t, std::span<double> q, std::span<double> moved = {});
   // The problem stands at (t, q) and (·, v); v and the problem are moved onto G v = ν.
   Status project_velocity(double t, std::span<double> v);
 
@@ -52,11 +54,18 @@ class Consistent {
   Status project(State& at, bool& moved);
   // How far project() moved the last state, δq and then δv.
   std::span<const double> moved_by() const { return span(moved_by_); }
-  // Of project(): how many times more than it usually does it moves positions for what they are off the constraints,
-  // |δq|/|Φ|: 1, or far more beside a singular position, as the inverse of the distance. The last time, and whether
-  // ever since asked last.
+  // How far rows that are off by one move positions, with the factorization at hand: 1/σ next to a singular position, σ
+  // being the distance. amplification(): how many times more than usually at the ends of steps, where that is so much
+  // that a singular position is near, else 1; at the end of some steps, and by the steepness given to look().
+  // beside_singular(): whether that was so ever since asked last.
+  double steepness(double t);
+  void look(double steepness);
   double amplification() const { return amplification_; }
-  bool beside_singular();
+  // What of `shift`, the norm of a state's move onto the constraints by δq and then δv, is an error of its own: next to
+  // a singular position a part of it, and none of what rounding moves at the steepness looked at, ε/σ and ω ε/σ².
+  double error_in(const State& at, std::span<const double> moved_by, double shift) const;
+  bool beside_singular() { return std::exchange(beside_singular_, false); }
+  void tell_singular() { beside_singular_ = true; }  // seen otherwise
   // Whether accelerations where the problem stands are far larger than they were, and than forces and γ account for, so
   // that [M Gᵀ; G 0]⁻¹ is what makes them, next to a singular position.
   bool made_of_rounding(const State& at);
@@ -90,7 +99,6 @@ class Consistent {
   // δq and δv for the constraints' residuals at the problem's point, in moves().
   Status position_correction(double t);
   Status velocity_correction(double t);
-  void measure_steepness(double off, double moved);
   std::span<double> moves() { return std::span(rhs_.data(), nv_); }
   std::span<double> rows() { return std::span(rhs_.data() + nv_, nc_); }
 
@@ -98,15 +106,19 @@ class Consistent {
   std::unique_ptr<Aside> aside_;
   StepSystem system_;
   bool prepared_ = false;
-  double usual_steepness_ = 0, amplification_ = 1;  // of |δq|/|Φ|
+  static constexpr double kSteep = 30;  // times the usual steepness: a singular position is near
+  double steepness_ = 0, usual_steepness_ = 0, amplification_ = 1;
   bool beside_singular_ = false;
+  int not_looked_ = 0;  // steps
+  double turned_ = 0;   // rad, by those
+  double followed_ = 0;
   struct Calm {  // the last state whose accelerations were as usual
     double t = 0, usual = 0;
     Eigen::VectorXd v;
   } calm_;
   double off_ = 0;  // largest |Φ| or |G v − ν| that the last correction was for
   const std::size_t nv_, nc_;
-  Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_;
+  Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_, off_by_one_;
 };
 
 }  // namespace poinsot

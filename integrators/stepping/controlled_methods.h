@@ -2,8 +2,14 @@
 // have.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
 
 #include "integrators/stepping/explicit_stepper.h"
 #include "integrators/stepping/radau_stepper.h"
@@ -36,6 +42,7 @@ class ControlledPair : public ExplicitStepper {
     if (singular_ && rejections >= kDifficult) return std::max(h, usual * std::pow(kShorter, rejections - kDifficult));
     return rejections == kDifficult ? std::max(h, usual) : h;
   }
+  bool by_singular() const { return singular_; }  // the last completed step came by a singular position
   double adopt(double, double wanted) {
     singular_ = beside_singular();
     at_start_ = false;
@@ -50,29 +57,72 @@ class ControlledPair : public ExplicitStepper {
   bool at_start_ = false;  // in one
 };
 
+// Of a run that goes by another method's steps there.
+inline std::string passing_notice(std::string_view method, const RungeKuttaPair& pair, double t) {
+  return fmt::format(
+      "beside a singular position, as before t = {:.6g} s, steps are those of {}, which pass it where those "
+      "of {} do not",
+      t, pair.name, method);
+}
+
+// Singular positions are passed by steps of an explicit pair: stages of radau5 leave the constraints, and an iteration
+// has no limit beside them.
 class ControlledRadau : public RadauStepper {
  public:
-  using RadauStepper::RadauStepper;
+  ControlledRadau(Problem& problem, LinearSystems& systems, double rtol, double atol, Statistics& statistics,
+                  PhaseClock& clock, const RungeKuttaPair& passing)
+      : RadauStepper(problem, systems, rtol, atol, statistics, clock),
+        make_passing_([=, &problem, &systems, &statistics, &clock, &passing] {
+          return std::make_unique<ExplicitStepper>(passing, problem, systems, rtol, atol, statistics, clock);
+        }) {}
 
   static constexpr StepRule kRule{0.9, 0.25, 0, 0.5, 8, true};
 
-  Status attempt(double to, int, double& error) { return RadauStepper::attempt(to, error); }
+  Status attempt(double to, int rejections, double& error) {
+    passes_ = false;
+    if (!singular_ && !at_start_ && rejections < kDifficult) return RadauStepper::attempt(to, error);
+    if (!passing_) {
+      passing_ = make_passing_();
+      if (Status status = passing_->prepare(); !status.ok()) return status;
+    }
+    if (Status status = passing_->start(state()); !status.ok()) return status;
+    const Status status = passing_->attempt(to, ExplicitStepper::Stages::projected, error);
+    passes_ = passing_->beside_singular() || at_start_;
+    return passes_ ? status : RadauStepper::attempt(to, error);
+  }
+  Status complete(double& error, double most = 1) {
+    if (!passes_) return RadauStepper::complete(error, most);
+    if (Status status = passing_->complete(error, most); !status.ok() || !(error <= most)) return status;
+    return RadauStepper::start(passing_->state());
+  }
+  bool passes() const { return passes_; }  // the last step was one of the pair
+  Status interpolate(double t) { return passes_ ? passing_->interpolate(t) : RadauStepper::interpolate(t); }
+  const State& interpolated() const { return passes_ ? passing_->interpolated() : RadauStepper::interpolated(); }
+
   double first_step(double end, double singular_for) {
     at_start_ = singular_for > 0;
     return at_start_ ? std::min(kWellBeside * singular_for, end) : RadauStepper::first_step(end);
   }
   double retry(double h, int rejections, double usual) {
-    return beside_singular() || at_start_ ? std::max(h, usual * std::pow(kShorter, rejections)) : h;
+    singular_ = passes_ || RadauStepper::beside_singular();
+    if (singular_ && rejections >= kDifficult) return std::max(h, usual * std::pow(kShorter, rejections - kDifficult));
+    return rejections == kDifficult ? std::max(h, usual) : h;
   }
   double adopt(double h, double wanted) {
-    (void)beside_singular();
     at_start_ = false;
+    singular_ = RadauStepper::beside_singular();
     return converges_fast() && wanted >= h && wanted <= kSameStep * h ? h : wanted;
   }
 
  private:
   static constexpr double kSameStep = 1.2;  // growth up to which a kept matrix saves more than a longer step does
-  bool at_start_ = false;                   // in a singular position
+  static constexpr int kDifficult = 2;
+
+  std::function<std::unique_ptr<ExplicitStepper>()> make_passing_;
+  std::unique_ptr<ExplicitStepper> passing_;
+  bool passes_ = false;    // the last attempt was the pair's
+  bool singular_ = false;  // a singular position is near
+  bool at_start_ = false;  // in one
 };
 
 }  // namespace poinsot

@@ -14,6 +14,8 @@ namespace {
 constexpr double kNoise =
     100 * std::numeric_limits<double>::epsilon();  // relative: what rounding makes of a difference
 
+constexpr double kOfAccount = 0.1;  // part of the tolerance that makes a difference to the next step
+
 Eigen::Index columns(const RungeKuttaPair& pair) {
   return static_cast<Eigen::Index>(pair.stages.size() + 1 + pair.dense_stages.size());
 }
@@ -40,6 +42,7 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
     : pair_(pair),
       problem_(problem),
       consistent_(problem, systems.add(Workload::solves), statistics, clock),
+      passage_(problem, consistent_),
       rtol_(rtol),
       atol_(atol),
       nv_(static_cast<std::size_t>(problem.nv())),
@@ -102,10 +105,14 @@ Status ExplicitStepper::evaluate(State& at, const Vector& y, Eigen::Index k) {
   problem_.retract(span(q_n_), span(y).first(nv_), span(at.q));
   if (Status status = consistent_.accelerations(at); !status.ok()) return status;
   if (turns_too_far(problem_, h_)) return {Failure::rotation_too_large, at.t, {}};
+  settled_ = false;
   if (project_stages_) {
-    bool moved = false;
-    if (Status status = consistent_.project(at, moved); !status.ok()) return status;
-    if (Status status = consistent_.accelerations(at); !status.ok()) return status;
+    if (Status status = passage_.settle(at, settled_); !status.ok()) return status;
+    if (!settled_) {
+      bool moved = false;
+      if (Status status = consistent_.project(at, moved); !status.ok()) return status;
+      if (Status status = consistent_.accelerations(at); !status.ok()) return status;
+    }
   }
   k_.col(k).head(nv) = at.v;
   problem_.lower(span(y).first(nv_), {k_.col(k).data(), nv_});
@@ -178,8 +185,7 @@ Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
   if (end_is_evaluated()) {
     if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
   } else {
-    next_.v = y_.tail(nv);
-    problem_.retract(span(q_n_), span(y_).first(nv_), span(next_.q));
+    stand_at_end();
   }
   component_sizes(problem_, span(next_.q), span(next_.v), span(sizes_next_));
   scale_.array() = atol_ + rtol_ * sizes_.array().max(sizes_next_.array());
@@ -192,17 +198,44 @@ Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
   return {};
 }
 
+// y_{n+1} as position and velocity.
+void ExplicitStepper::stand_at_end() {
+  next_.v = y_.tail(problem_.nv());
+  problem_.retract(span(q_n_), span(y_).first(nv_), span(next_.q));
+}
+
+// Beside a singular position, where the projection moves the end by too much, it is the limit of states beside or does
+// not count what rounding moves.
+Status ExplicitStepper::project_end(double& error, double most) {
+  const auto count = [&](double shift) {
+    error = std::max(error, shift);
+    return settled_ || !(error <= most) ? Status{} : consistent_.refine(next_);
+  };
+  const auto shift = [&](std::span<const double> by) { return error_norm(by, span(scale_)); };
+  if (!settled_) {
+    bool moved = false;
+    Status status = consistent_.project(next_, moved);
+    if (status.ok() && !moved) return {};
+    if (status.ok()) {
+      const double by = shift(consistent_.moved_by());
+      if (by > std::max(error, kOfAccount)) consistent_.look(consistent_.steepness(next_.t));
+      if (const double part = consistent_.error_in(next_, consistent_.moved_by(), by); part <= most) return count(part);
+    }
+    stand_at_end();
+    if (status = consistent_.accelerations(next_); !status.ok()) return status;
+    if (status = passage_.settle(next_, settled_); !status.ok()) return status;
+    if (!settled_) {
+      if (status = consistent_.project(next_, moved); !status.ok()) return status;
+    }
+  }
+  return count(consistent_.error_in(next_, passage_.moved_by(), shift(passage_.moved_by())));
+}
+
 Status ExplicitStepper::complete(double& error, double most) {
   if (!end_is_evaluated()) {
     if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
   }
-  bool moved = false;
-  if (Status status = consistent_.project(next_, moved); !status.ok()) return status;
-  if (moved) {
-    error = std::max(error, error_norm(consistent_.moved_by(), span(scale_)) / consistent_.amplification());
-    if (!(error <= most)) return {};
-    if (Status status = consistent_.refine(next_); !status.ok()) return status;
-  }
+  if (Status status = project_end(error, most); !status.ok() || !(error <= most)) return status;
   if (consistent_.leaves_branch(next_)) return {Failure::singular_position, next_.t, {}};
   consistent_.follow(next_);
   test_stiffness();
@@ -214,58 +247,6 @@ Status ExplicitStepper::complete(double& error, double most) {
 void ExplicitStepper::take_back() {
   std::swap(state_, next_);
   elsewhere_ = true;
-}
-
-Status ExplicitStepper::prepare_dense() {
-  for (std::size_t i = 0; i < pair_.dense_stages.size(); ++i) {
-    const Stage& stage = pair_.dense_stages[i];
-    advance(h_, stage.a, y_);
-    sample_.t = t_n_ + stage.c * h_;
-    if (Status status = evaluate(sample_, y_, last_ + 1 + static_cast<Eigen::Index>(i)); !status.ok()) return status;
-  }
-  const auto sum = [&](Terms terms, auto&& column) {
-    column.setZero();
-    for (const Term& term : terms) column += (h_ * term.weight) * k_.col(term.stage);
-  };
-  sum(pair_.b, r_.col(0));
-  r_.col(1) = h_ * k_.col(0) - r_.col(0);
-  r_.col(2) = 2 * r_.col(0) - h_ * (k_.col(0) + k_.col(last_));
-  for (std::size_t i = 0; i < pair_.dense.size(); ++i) sum(pair_.dense[i], r_.col(3 + static_cast<Eigen::Index>(i)));
-  dense_ = Dense::ready;
-  return {};
-}
-
-Status ExplicitStepper::interpolate(double t) {
-  elsewhere_ = true;
-  if (dense_ != Dense::too_coarse && by_polynomial(t).ok()) return {};
-  dense_ = Dense::too_coarse;
-  return by_short_step(t);
-}
-
-Status ExplicitStepper::by_polynomial(double t) {
-  if (dense_ == Dense::missing) {
-    if (Status status = prepare_dense(); !status.ok()) return status;
-  }
-  const double s = (t - t_n_) / h_;
-  combined_.setZero();
-  for (Eigen::Index i = r_.cols(); i-- > 0;) combined_ = (i % 2 == 0 ? s : 1 - s) * (r_.col(i) + combined_);
-  sample_.t = t;
-  sample_.v = y_n_.tail(problem_.nv()) + combined_.tail(problem_.nv());
-  problem_.retract(span(q_n_), std::span<const double>(span(combined_)).first(nv_), span(sample_.q));
-  return put_on_constraints();
-}
-
-// Of a sample.
-Status ExplicitStepper::put_on_constraints() {
-  if (Status status = consistent_.complete(sample_); !status.ok()) return status;
-  return consistent_.made_of_rounding(sample_) ? Status{Failure::singular_position, sample_.t, {}} : Status{};
-}
-
-Status ExplicitStepper::by_short_step(double t) {
-  if (Status status = run_through_stages(t, sample_); !status.ok()) return status;
-  sample_.v = y_.tail(problem_.nv());
-  problem_.retract(span(q_n_), span(y_).first(nv_), span(sample_.q));
-  return put_on_constraints();
 }
 
 }  // namespace poinsot

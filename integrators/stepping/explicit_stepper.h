@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "integrators/stepping/consistent.h"
+#include "integrators/stepping/passage.h"
 #include "integrators/stepping/runge_kutta_pair.h"
 #include "integrators/stepping/stiffness.h"
 
@@ -72,17 +73,21 @@ class ExplicitStepper {
   void test_stiffness();
   Status prepare_dense();
   Status put_on_constraints();
+  void stand_at_end();
+  Status project_end(double& error, double most);
   Status by_polynomial(double t);
   Status by_short_step(double t);
 
   const RungeKuttaPair& pair_;
   Problem& problem_;
   Consistent consistent_;
+  Passage passage_;
   const double rtol_, atol_;
   const std::size_t nv_;
   const Eigen::Index last_;  // index of k_{s+1}
   const bool error_needs_last_;
   bool project_stages_ = false;
+  bool settled_ = false;  // the last state evaluated lay beside a singular position and was made the limit there
 
   State state_, next_, sample_;
   Vector zeros_;    // 2 nv

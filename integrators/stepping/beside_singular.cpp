@@ -1,0 +1,74 @@
+// What Consistent knows of singular positions near: how steep the constraints are, how large accelerations.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "integrators/stepping/consistent.h"
+#include "integrators/stepping/vectors.h"
+
+namespace poinsot {
+
+double Consistent::steepness(double t) {
+  std::ranges::copy(off_by_one_, rhs_.begin());
+  return system_.solve(t, span(rhs_)).ok() ? largest(moves()) : HUGE_VAL;
+}
+
+void Consistent::look(double steepness) {
+  const double now = usual_steepness_ > 0 ? steepness / usual_steepness_ : 0;
+  steepness_ = steepness;
+  amplification_ = now > kSteep ? now : 1;
+  beside_singular_ = beside_singular_ || amplification_ > 1;
+}
+
+double Consistent::error_in(const State& at, std::span<const double> moved_by, double shift) const {
+  constexpr double kRounding = 2e-15, kMore = 8, kLucky = 0.1;
+  const double q = largest(moved_by.first(nv_)), v = largest(moved_by.subspan(nv_));
+  const double most = steepness_ * kRounding * std::max(1.0, largest(span(at.q)));
+  const bool rounding = q <= most && v <= kMore * steepness_ * problem_.fastest_turn() * std::max(q, kLucky * most);
+  return rounding ? 0 : shift / amplification_;
+}
+
+bool Consistent::made_of_rounding(const State& at) {
+  constexpr double kUnusual = 1e4, kAccounted = 1e3;
+  const double acceleration = largest(at.a());
+  if (calm_.usual == 0 || !(acceleration > kUnusual * calm_.usual)) return false;
+  const std::span<const double> none = span(zeros_);
+  problem_.equations_of_motion(none.first(nv_), {}, moves());  // −Q
+  problem_.gamma(rows());
+  const double loads = largest(moves()), gamma = largest(rows());
+  problem_.momentum(at.a(), moves());
+  return acceleration > kAccounted * gamma && largest(moves()) > kAccounted * loads;
+}
+
+bool Consistent::leaves_branch(const State& at) {
+  constexpr double kJumped = 0.01, kExplained = 10;
+  if (!made_of_rounding(at)) return false;
+  double jump = 0, size = 0;
+  for (Eigen::Index k = 0; k < at.v.size(); ++k) {
+    jump = std::max(jump, std::abs(at.v[k] - calm_.v[k]));
+    size = std::max({size, std::abs(at.v[k]), std::abs(calm_.v[k])});
+  }
+  return jump > kJumped * size + kExplained * calm_.usual * std::abs(at.t - calm_.t);
+}
+
+void Consistent::follow(const State& at) {
+  constexpr double kGrows = 10, kSlow = 0.1;
+  constexpr int kSeldom = 4;
+  turned_ += problem_.fastest_turn() * (at.t - std::exchange(followed_, at.t));
+  if (++not_looked_ == kSeldom || amplification_ > 1 || usual_steepness_ == 0) {
+    const double now = steepness(at.t);
+    if (usual_steepness_ == 0 || now < usual_steepness_) usual_steepness_ = now;
+    usual_steepness_ += std::min(kSlow, turned_) * (now - usual_steepness_);
+    look(now);
+    not_looked_ = 0;
+    turned_ = 0;
+  }
+  const double acceleration = largest(at.a());
+  if (calm_.usual == 0) calm_.usual = std::max(acceleration, problem_.model().gravity.norm());
+  if (acceleration > kGrows * calm_.usual) return;
+  calm_.usual += kSlow * (std::max(acceleration, problem_.model().gravity.norm()) - calm_.usual);
+  calm_.t = at.t;
+  calm_.v = at.v;
+}
+
+}  // namespace poinsot

@@ -1,0 +1,141 @@
+#include "integrators/stepping/passage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "integrators/stepping/vectors.h"
+
+namespace poinsot {
+namespace {
+
+constexpr double kTurn = 0.015;  // rad, τ: rounding 50 ε/τ³ and 576 (τ/R)⁸ are about as large, R being half a radian
+constexpr double kSteeper = 10;  // the same, where no step has failed
+constexpr double kSteep = 2;     // times the least steepness seen: from there on states beside are looked at
+constexpr std::array kWeights{1.6, -0.8, 8.0 / 35, -1.0 / 35};
+// Part of the steepness here at the most at ±τ, ...: a pole within τ/2 leaves two sevenths at 4τ.
+constexpr std::array kFall{1.0, 1.0, 1.0, 0.4};
+// Part of its size by which a velocity interpolated by two pairs less may differ: what moves so is not smooth.
+constexpr double kSmooth = 1e-3;
+
+}  // namespace
+
+// What puts a state moved along v back onto the constraints, and what it comes to.
+struct Passage::Beside {
+  Eigen::VectorXd c, v, a;
+  double steepness = 0;
+};
+
+struct Passage::Work {
+  explicit Work(const Problem& problem)
+      : place(problem), nearest(problem), moved(problem.nv()), moved_by(2 * problem.nv()) {}
+
+  State place, nearest;                                       // nearest: at +τ
+  std::array<std::array<Beside, 2>, kWeights.size()> beside;  // at ±τ, ±2τ, ...
+  Eigen::VectorXd moved, moved_by;
+};
+
+Passage::Passage(Problem& problem, Consistent& consistent)
+    : problem_(problem), consistent_(consistent), given_(problem) {}
+Passage::~Passage() = default;
+
+std::span<const double> Passage::moved_by() const {
+  return settled_ ? span(std::as_const(work_->moved_by)) : consistent_.moved_by();
+}
+
+Status Passage::stand_beside(const State& at, double s, Beside& beside) {
+  State& place = work_->place;
+  place.t = at.t + s;
+  place.v = at.v;
+  work_->moved = s * at.v;
+  problem_.retract(span(at.q), span(work_->moved), span(place.q));
+  beside.c.setZero(at.v.size());
+  if (Status status = consistent_.project_position(place.t, span(place.q), span(beside.c)); !status.ok()) return status;
+  consistent_.stand(place);
+  if (Status status = consistent_.project_velocity(place.t, span(place.v)); !status.ok()) return status;
+  if (Status status = consistent_.accelerations(place); !status.ok()) return status;
+  beside.v = place.v;
+  beside.a = place.z.head(at.v.size());
+  beside.steepness = consistent_.steepness(place.t);
+  return {};
+}
+
+Status Passage::settle(State& at, bool& settled) {
+  settled = settled_ = false;
+  const double rate = problem_.fastest_turn();
+  if (!(rate > 0)) return {};
+  const double here = consistent_.steepness(at.t);
+  consistent_.look(here);
+  const bool first = least_ == HUGE_VAL;
+  least_ = std::min(least_, here);
+  if (!first && here < kSteep * least_) return {};
+  settled = settled_ = limit(at, kTurn / rate, here);
+  if (!settled) return consistent_.accelerations(at);
+  consistent_.stand(work_->nearest);
+  if (Status status = consistent_.factor(work_->nearest.t); !status.ok()) return status;
+  consistent_.stand(at);
+  consistent_.tell_singular();
+  return {};
+}
+
+bool Passage::limit(State& at, double tau, double steepest) {
+  if (!work_) work_ = std::make_unique<Work>(problem_);
+  for (std::size_t k = 0; k < kWeights.size(); ++k) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      Beside& beside = work_->beside[k][side];
+      const double s = (side == 0 ? 1 : -1) * static_cast<double>(k + 1) * tau;
+      if (!stand_beside(at, s, beside).ok() || !(beside.steepness < kFall[k] * steepest)) return false;
+      if (k == 0 && side == 0) work_->nearest = work_->place;
+    }
+  }
+  const auto mean = [&](std::size_t k, Eigen::VectorXd Beside::*x) {
+    return 0.5 * (work_->beside[k][0].*x + work_->beside[k][1].*x);
+  };
+  const auto sum = [&](Eigen::VectorXd Beside::*x) {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(problem_.nv());
+    for (std::size_t k = 0; k < kWeights.size(); ++k) all += kWeights[k] * mean(k, x);
+    return all;
+  };
+  const Eigen::VectorXd c = sum(&Beside::c), v = sum(&Beside::v);
+  work_->moved = (4 * mean(0, &Beside::v) - mean(1, &Beside::v)) / 3 - v;
+  if (!(largest(span(work_->moved)) <= kSmooth * v.lpNorm<Eigen::Infinity>())) return false;
+  problem_.retract(span(at.q), {c.data(), static_cast<std::size_t>(c.size())}, span(work_->place.q));
+  work_->moved_by << c, v - at.v;
+  at.q = work_->place.q;
+  at.v = v;
+  at.z.head(v.size()) = sum(&Beside::a);
+  return true;
+}
+
+Status Passage::complete(State& at) {
+  settled_ = false;
+  given_ = at;
+  const Status status = consistent_.complete(at);
+  if (status.ok()) {
+    const double here = consistent_.steepness(at.t);
+    least_ = std::min(least_, here);
+    if (here < kSteeper * least_ && !consistent_.made_of_rounding(at)) return {};
+  }
+  at = given_;
+  bool settled = false;
+  if (Status here = consistent_.accelerations(at); !here.ok()) return here;
+  if (Status here = settle(at, settled); !here.ok()) return here;
+  return settled ? multipliers(at) : consistent_.complete(at);
+}
+
+// Those that fit M a + Gᵀλ = Q, which the position itself leaves open.
+Status Passage::multipliers(State& at) {
+  constexpr double kOpen = 1e8;  // steepness from which on rounding of a makes them
+  if (!consistent_.factor(at.t).ok() || !(consistent_.steepness(at.t) < kOpen))
+    return {Failure::singular_position, at.t, {}};
+  const auto nv = static_cast<std::size_t>(problem_.nv());
+  work_->place.z.setZero();
+  const std::span<double> z = span(work_->place.z);
+  problem_.equations_of_motion(at.a(), {}, z.first(nv));
+  for (double& x : z.first(nv)) x = -x;
+  if (Status status = consistent_.solve(at.t, z); !status.ok()) return status;
+  std::ranges::copy(z.subspan(nv), at.lambda().begin());
+  return {};
+}
+
+}  // namespace poinsot

@@ -1,0 +1,54 @@
+// Consistent states next to a singular position, where the constraints themselves leave them to rounding.
+//
+// At the distance s in time, rounding ε moves a position by ε/s, its velocity by ε/s² and its acceleration by ε/s³. But
+// on the branch that the velocities lead along all three are smooth through the position. So they are interpolated
+// from those on either side: with c(s) what puts q ⊞ s v back onto Φ = 0, v(s) and a(s) velocity and acceleration
+// there,
+//
+//   x(0) = (56 x̄(τ) − 28 x̄(2τ) + 8 x̄(3τ) − x̄(4τ))/35 + O(τ⁸),   x̄(s) = ½ (x(s) + x(−s))
+//
+// No stage, end of a step or sample has to keep away from the position, and steps go over it at their usual length.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <span>
+
+#include "integrators/stepping/consistent.h"
+
+namespace poinsot {
+
+class Passage {
+ public:
+  Passage(Problem& problem, Consistent& consistent);
+  ~Passage();
+
+  // Whether `at`, off the constraints by the error of a step, lies nearer to a singular position than those beside:
+  // then q, v and a are made the limit of theirs, λ is left. The problem stands at `at`, before and after. The
+  // factorization at hand is that of `at` before; after, where it was settled, that of a state beside.
+  Status settle(State& at, bool& settled);
+  // Makes q, v and a of `at` the limit of those at ±τ, ... ±4τ, which are as they are no nearer to a singular position
+  // than rows off by one move positions by `steepest`. Says whether there is one: fails nowhere.
+  bool limit(State& at, double tau, double steepest);
+  // The consistent state beside (q, v), λ included: Consistent's, or the limit.
+  Status complete(State& at);
+  // How far the last one was moved, δq and then δv; by Consistent, where it was not settled.
+  std::span<const double> moved_by() const;
+
+ private:
+  struct Beside;
+  Status stand_beside(const State& at, double s, Beside& beside);
+  Status multipliers(State& at);
+
+  Problem& problem_;
+  Consistent& consistent_;
+  State given_;
+  double least_ = HUGE_VAL;  // steepness
+  bool settled_ = false;
+  struct Work;
+  std::unique_ptr<Work> work_;  // once it is needed
+};
+
+}  // namespace poinsot
