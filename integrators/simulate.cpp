@@ -123,8 +123,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
 
   std::unique_ptr<Problem> problem = formulation.make(model, start.rank.aside);
   if (!start.rank.aside.empty())
-    problem =
-        std::make_unique<OverConstrained>(std::move(problem), model, start.rank.aside, start.bodies, settings.linear());
+    problem = std::make_unique<OverConstrained>(std::move(problem), model, start.rank.aside, start.bodies);
   if (settings.analysis == Analysis::kinematics) refuse_free_motion(*problem);
   State state(*problem);
   outcome.status = find_first_state(start, settings, *problem, state);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "linsolve/front_qr.h"
+#include "linsolve/separation.h"
 
 namespace poinsot {
 namespace {
@@ -13,38 +14,8 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr int kWide = 300;            // entries of a row that fronts do without
-constexpr double kNegligible = 1e-9;  // of a coefficient beside the largest of its vector
+constexpr double kNegligible = 1e-9;  // of a sum beside the largest entry of its vector
 constexpr double kMentioned = 1e-6;   // of a coefficient beside that of the dependent column
-
-double largest(const SparseEntries& z) {
-  double size = 0;
-  for (const auto& [index, value] : z) size = std::max(size, std::abs(value));
-  return size;
-}
-
-void drop_nothing(SparseEntries& z) {
-  const double nothing = kNegligible * largest(z);
-  std::erase_if(z, [&](const auto& entry) { return std::abs(entry.second) <= nothing; });
-}
-
-// x − factor y without entry `gone` and what is nothing beside the rest.
-SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntries& y, int gone) {
-  SparseEntries sum;
-  auto a = x.begin();
-  auto b = y.begin();
-  while (a != x.end() || b != y.end()) {
-    if (b == y.end() || (a != x.end() && a->first < b->first)) {
-      sum.push_back(*a++);
-    } else {
-      sum.emplace_back(b->first, -factor * b->second);
-      if (a != x.end() && a->first == b->first) sum.back().second += (a++)->second;
-      ++b;
-    }
-  }
-  std::erase_if(sum, [&](const auto& entry) { return entry.first == gone; });
-  drop_nothing(sum);
-  return sum;
-}
 
 // A z at the wide rows, as entries behind those of the columns: combined like them, and zero for a null vector of A.
 void append_wide_rows(const Sparse& A, const std::vector<int>& wide, SparseEntries& z) {
@@ -151,51 +122,6 @@ NullSpace null_space(const Sparse& A, double tolerance) {
   NullSpace found{std::move(space.dependent), {}};
   for (auto& [column, z] : space.by_last) found.vectors.push_back(std::move(z));
   return found;
-}
-
-std::vector<int> separate(std::vector<SparseEntries>&& vectors) {
-  constexpr std::size_t kMostCombined = 2'000'000;  // entries: a second's work
-  constexpr double kFlat = 1.5;                     // an entry this large takes the place of the pivot
-  constexpr int kPasses = 20;
-  std::size_t size = 0;
-  for (const SparseEntries& z : vectors) size += z.size();
-  std::vector<int> pivots;
-  for (const SparseEntries& z : vectors) pivots.push_back(z.back().first);
-  if (size > kMostCombined) return pivots;
-
-  std::map<int, std::vector<std::size_t>> having;  // by column: vectors that have or had it
-  for (std::size_t k = 0; k < vectors.size(); ++k)
-    for (const auto& [column, value] : vectors[k]) having[column].push_back(k);
-  const auto find = [](const SparseEntries& z, int column) {
-    const auto it = std::ranges::lower_bound(z, column, {}, &std::pair<int, double>::first);
-    return it != z.end() && it->first == column ? it->second : 0.0;
-  };
-  const auto pivot_on = [&](std::size_t k, int column, double value) {
-    for (auto& entry : vectors[k]) entry.second /= value;
-    for (const std::size_t other : std::vector<std::size_t>(having[column])) {
-      const double factor = other == k ? 0 : find(vectors[other], column);
-      if (factor == 0) continue;
-      vectors[other] = subtract(vectors[other], factor, vectors[k], column);
-      for (const auto& [c, v] : vectors[k])
-        if (c != column) having[c].push_back(other);
-    }
-    having[column] = {k};
-    pivots[k] = column;
-  };
-  for (int pass = 0; pass < kPasses; ++pass) {
-    bool any = false;
-    for (std::size_t k = 0; k < vectors.size(); ++k) {
-      // Among equals the last: what a scene lists later is what it says twice.
-      const auto best = std::ranges::max_element(
-          vectors[k], [](const auto& x, const auto& y) { return 0.999 * std::abs(x.second) < std::abs(y.second); });
-      const auto [column, value] = *best;
-      if (pass > 0 && std::abs(value) <= kFlat) continue;
-      pivot_on(k, column, value);
-      any = true;
-    }
-    if (!any) break;
-  }
-  return pivots;
 }
 
 }  // namespace poinsot

@@ -43,10 +43,4 @@ struct NullSpace {
 };
 NullSpace null_space(const Eigen::SparseMatrix<double>& A, double tolerance);
 
-// Combines null vectors until each has a column of its own, where it is 1 and all others are 0, and no entry is much
-// larger than that: what is left without those columns is nearly as independent as it can be (the columns span nearly
-// the largest volume; C.-T. Pan, On the existence and computation of rank-revealing LU factorizations, 2000). Returns
-// the columns, by vector. Vectors that are too long together to be combined keep the column they end with.
-std::vector<int> separate(std::vector<SparseEntries>&& vectors);
-
 }  // namespace poinsot

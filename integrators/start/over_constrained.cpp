@@ -8,20 +8,17 @@
 
 #include "core/index.h"
 #include "integrators/start/loop_rows.h"
-#include "integrators/stepping/consistent.h"
 
 namespace poinsot {
 namespace {
 
-constexpr double kTurn = 0.15;  // rad that a body turns before the choice is looked at again (see row_choice.cpp)
 constexpr double kLost = 1e-5;  // of a body's size: far above what steps leave, far below what opens to the eye
 
 }  // namespace
 
 OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model,
-                                 std::vector<int> aside, std::span<const BodyState> states, LinearChoice linear)
-    : linear_(std::move(linear)),
-      choice_(std::make_shared<Choice>(
+                                 std::vector<int> aside, std::span<const BodyState> states)
+    : choice_(std::make_shared<Choice>(
           Choice{RowChoice(model, loop_rows(model, 0, states), std::move(aside)), 0, {states.begin(), states.end()}})),
       kept_(std::move(kept)),
       now_(states.begin(), states.end()) {
@@ -33,7 +30,6 @@ OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::share
 
 OverConstrained::OverConstrained(const OverConstrained& other)
     : Problem(other),
-      linear_(other.linear_),
       choice_(other.choice_),
       kept_revision_(other.kept_revision_),
       kept_(other.kept_->clone()),
@@ -92,7 +88,7 @@ Status OverConstrained::measure(double t, std::span<const double> q, std::span<c
 
 bool OverConstrained::turned() const {
   // |A − B|² = 8 sin²(angle/2)
-  const double limit = 8 * std::pow(std::sin(kTurn / 2), 2);
+  const double limit = 8 * std::pow(std::sin(std::min(choice_->rows.good_for(), 1.0) / 2), 2);
   for (std::size_t b = 0; b < now_.size(); ++b)
     if ((now_[b].A - choice_->at[b].A).squaredNorm() > limit) return true;
   return false;
@@ -111,25 +107,49 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
   choice_->at = now_;
   if (!choice_->rows.renew(t, now_)) return {};
   rewritten = true;
-  return exchange(t, q, v, lambda);
+  exchange(t, q, v, lambda);
+  return {};
 }
 
 // Other rows, and the multipliers that are the same forces.
-Status OverConstrained::exchange(double t, std::span<const double> q, std::span<const double> v,
-                                 std::span<double> lambda) {
-  std::vector<double> forces(index(nv_ + nc_), 0.0);
+void OverConstrained::exchange(double t, std::span<const double> q, std::span<const double> v,
+                               std::span<double> lambda) {
+  std::vector<double> forces(index(nv_)), by_row(model().rows.size(), 0.0);
   const bool wanted = !lambda.empty();  // kinematics may do without
-  if (wanted) kept_->constraint_forces(lambda, std::span(forces).first(index(nv_)));
+  if (wanted) {
+    kept_->constraint_forces(lambda, forces);
+    const std::vector<int>& before = kept_->model_rows();
+    for (std::size_t k = 0; k < before.size(); ++k) by_row[index(before[k])] = lambda[k];
+  }
   ++choice_->revision;
   keep();
   kept_->set_position(t, q);
   kept_->set_velocity(v);
-  if (!wanted) return {};
-  Consistent consistent(*kept_, linear_);
-  if (Status status = consistent.factor(t); !status.ok()) return status;
-  if (Status status = consistent.solve(t, forces); !status.ok()) return status;
-  std::ranges::copy(std::span(forces).subspan(index(nv_)), lambda.begin());
-  return {};
+  if (!wanted) return;
+  choice_->rows.carry_over(by_row);
+  const std::vector<int>& after = kept_->model_rows();
+  for (std::size_t k = 0; k < after.size(); ++k) lambda[k] = by_row[index(after[k])];
+  normalize(forces, lambda);
+}
+
+// The multipliers of rp's normalization rows, one for each body: along them what the rows do is left open by the
+// motions that the choice of rows is made for.
+void OverConstrained::normalize(std::span<const double> forces, std::span<double> lambda) {
+  const std::size_t rows = kept_->model_rows().size(), bodies = lambda.size() - rows;
+  if (bodies == 0) return;
+  const std::size_t per_body = forces.size() / bodies;
+  std::vector<double> now(forces.size()), normal(forces.size()), ones(lambda.size(), 0.0);
+  std::ranges::fill(std::span(ones).subspan(rows), 1.0);
+  kept_->constraint_forces(lambda, now);
+  kept_->constraint_forces(ones, normal);
+  for (std::size_t b = 0; b < bodies; ++b) {
+    double missing = 0, size = 0;
+    for (std::size_t k = b * per_body; k < (b + 1) * per_body; ++k) {
+      missing += (forces[k] - now[k]) * normal[k];
+      size += normal[k] * normal[k];
+    }
+    lambda[rows + b] += missing / size;
+  }
 }
 
 }  // namespace poinsot

@@ -15,16 +15,14 @@
 
 #include "formulations/problem.h"
 #include "integrators/start/row_choice.h"
-#include "linsolve/linear_system.h"
 
 namespace poinsot {
 
 class OverConstrained final : public Problem {
  public:
-  // `kept` is the model's problem without the rows `aside`, which are redundant at `states`. `linear`: for the
-  // multipliers of rows that are exchanged.
+  // `kept` is the model's problem without the rows `aside`, which are redundant at `states`.
   OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model, std::vector<int> aside,
-                  std::span<const BodyState> states, LinearChoice linear);
+                  std::span<const BodyState> states);
 
   std::unique_ptr<Problem> clone() const override;
   std::unique_ptr<Problem> clone_without(std::span<const int> dropped) const override {
@@ -94,9 +92,9 @@ class OverConstrained final : public Problem {
   void watch();
   Status measure(double t, std::span<const double> q, std::span<const double> v);
   bool turned() const;
-  Status exchange(double t, std::span<const double> q, std::span<const double> v, std::span<double> lambda);
+  void exchange(double t, std::span<const double> q, std::span<const double> v, std::span<double> lambda);
+  void normalize(std::span<const double> forces, std::span<double> lambda);
 
-  LinearChoice linear_;
   std::shared_ptr<Choice> choice_;
   int kept_revision_ = 0;
   std::unique_ptr<Problem> kept_, aside_;  // the same bodies with the rows kept, and with those set aside

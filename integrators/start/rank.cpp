@@ -15,6 +15,7 @@
 #include "integrators/start/row_choice.h"
 #include "integrators/start/row_space.h"
 #include "linsolve/column_dependencies.h"
+#include "linsolve/separation.h"
 
 namespace poinsot {
 namespace {
@@ -62,6 +63,14 @@ class Examination {
     std::vector<int> plain = dependent_columns(columns, tolerance);
     if (plain.size() > kMostChosen) return plain;
     return separate(null_space(columns, tolerance).vectors);
+  }
+  // The same of as few joints as that allows.
+  std::vector<int> of_few_groups(const Sparse& columns, double tolerance) const {
+    std::vector<int> plain = dependent_columns(columns, tolerance);
+    if (plain.size() > kMostChosen) return of_model(std::move(plain));
+    std::vector<int> group;
+    for (const int row : space_->rows()) group.push_back(model_->rows[index(row)].group);
+    return of_model(gather(null_space(columns, tolerance).vectors, group));
   }
   std::vector<int> of_model(std::vector<int> columns) const {
     for (int& column : columns) column = space_->rows()[index(column)];
@@ -138,7 +147,7 @@ class Examination {
       for (ColumnDependency& d : found.columns)
         result_.dependent.push_back({space_->rows()[index(d.column)], of_model(std::move(d.others))});
     }
-    result_.aside = result_.aside_here = chosen(columns, tolerance);
+    result_.aside = result_.aside_here = of_few_groups(columns, tolerance);
     result_.rank = static_cast<int>(model_->rows.size() - result_.aside.size());
     result_.rank_here = result_.rank;
     tell_undetermined(columns, tolerance);

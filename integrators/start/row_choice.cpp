@@ -1,6 +1,5 @@
 #include "integrators/start/row_choice.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
@@ -14,34 +13,146 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 // Coefficient at which rows are chosen anew. Two directions at right angles of which one is set aside have the
-// coefficient cot α when the redundant one is α from the row that is kept in its place: 2 leaves 0.46 rad to go.
-constexpr double kWorn = 2;
+// coefficient cot α when the redundant one is α from the row that is kept in its place. Where a coefficient of kWorst
+// is as large as it may become, and two bodies turn against one another, the choice is good for half the difference of
+// these angles.
+constexpr double kWorn = 4, kWorst = 8;
 constexpr double kNothing = 1e-12;    // of a coefficient beside the row set aside
 constexpr Eigen::Index kDense = 120;  // rows up to which full matrices are faster
 
-// C with Kᵀ K C = Kᵀ D in the least-squares sense, refined once; false where K's columns are not independent.
-template <class Factorization>
-bool least_squares(const Factorization& gram, const Sparse& K, const Sparse& D, Eigen::MatrixXd& C) {
-  if (gram.info() != Eigen::Success) return false;
-  C = gram.solve(Eigen::MatrixXd(K.transpose() * D));
-  const Eigen::MatrixXd left = Eigen::MatrixXd(D) - K * C;
-  C += gram.solve(K.transpose() * left);
-  return C.allFinite();
+double turn_until_worst(double coefficient) {
+  constexpr double kLeast = 0.05;
+  return std::max(0.5 * (std::atan(1 / coefficient) - std::atan(1 / kWorst)), kLeast);
+}
+
+// L of A = L Lᵀ in the place of A's lower triangle; false where A is not positive definite. Zeros of L are passed over.
+bool cholesky(Eigen::MatrixXd& A) {
+  const Eigen::Index n = A.cols();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    double* column = &A(j, j);
+    for (Eigen::Index k = 0; k < j; ++k) {
+      const double factor = A(j, k);
+      if (factor == 0) continue;
+      const double* other = &A(j, k);
+      for (Eigen::Index i = 0; i < n - j; ++i) column[i] -= factor * other[i];
+    }
+    if (!(column[0] > 0)) return false;
+    const double by = 1 / std::sqrt(column[0]);
+    for (Eigen::Index i = 0; i < n - j; ++i) column[i] *= by;
+  }
+  return true;
+}
+
+// X ← L⁻ᵀ L⁻¹ X.
+void solve(const Eigen::MatrixXd& L, Eigen::MatrixXd& X) {
+  const Eigen::Index n = L.cols();
+  for (Eigen::Index c = 0; c < X.cols(); ++c) {
+    double* x = X.col(c).data();
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double* column = L.col(j).data();
+      x[j] /= column[j];
+      if (x[j] == 0) continue;
+      for (Eigen::Index i = j + 1; i < n; ++i) x[i] -= x[j] * column[i];
+    }
+    for (Eigen::Index j = n; j-- > 0;) {
+      const auto below = n - j - 1;
+      x[j] = (x[j] - L.col(j).tail(below).dot(X.col(c).tail(below))) / L(j, j);
+    }
+  }
 }
 
 }  // namespace
 
 RowChoice::RowChoice(std::shared_ptr<const Model> model, std::vector<int> rows, std::vector<int> aside)
-    : space_(std::move(model), std::move(rows)), aside_(std::move(aside)) {}
+    : space_(model, std::move(rows)), aside_(std::move(aside)) {
+  for (const int row : space_.rows()) group_.push_back(model->rows[index(row)].group);
+  sort_rows();
+}
 
-std::vector<SparseEntries> RowChoice::unit_null_vectors(double t, std::span<const BodyState> states) {
-  space_.stand(t, states);
-  if (aside_.size() > kMost) return {};
+void RowChoice::sort_rows() {
+  kept_.clear(), left_out_.clear();
+  for (int k = 0; k < static_cast<int>(space_.rows().size()); ++k)
+    (std::ranges::binary_search(aside_, space_.rows()[index(k)]) ? left_out_ : kept_).push_back(k);
+}
+
+bool RowChoice::find_coefficients() {
+  const auto n = static_cast<Eigen::Index>(kept_.size()), m = static_cast<Eigen::Index>(left_out_.size());
+  if (aside_.size() <= kMost && (dense() ? find_dense() : find_sparse())) return true;
+  C_.setZero(n, m);
+  return false;
+}
+
+bool RowChoice::dense() const {
+  return static_cast<Eigen::Index>(kept_.size()) <= kDense;
+}
+
+// The parts of a unit row on its bodies.
+void RowChoice::take_parts() {
   const Sparse& columns = space_.columns();
-  std::vector<int> kept, left_out;
-  for (int k = 0; k < columns.cols(); ++k)
-    (std::ranges::binary_search(aside_, space_.rows()[index(k)]) ? left_out : kept).push_back(k);
+  parts_.resize(space_.rows().size());
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    Parts& of = parts_[k];
+    of.body[0] = of.body[1] = -1;
+    int at = -1;
+    for (Sparse::InnerIterator it(columns, static_cast<Eigen::Index>(k)); it; ++it) {
+      const int body = static_cast<int>(it.row()) / 6;
+      if (at < 0 || of.body[at] != body) {
+        of.body[++at] = body;
+        of.part[at].setZero();
+      }
+      of.part[at][it.row() % 6] = it.value();
+    }
+  }
+}
+
+double RowChoice::dot(int k, int l) const {
+  const Parts &a = parts_[index(k)], &b = parts_[index(l)];
+  double sum = 0;
+  for (int i = 0; i < 2 && a.body[i] >= 0; ++i)
+    for (int j = 0; j < 2; ++j)
+      if (a.body[i] == b.body[j]) sum += a.part[i].dot(b.part[j]);
+  return sum;
+}
+
+bool RowChoice::find_dense() {
+  const auto n = static_cast<Eigen::Index>(kept_.size()), m = static_cast<Eigen::Index>(left_out_.size());
+  take_parts();
+  gram_.resize(n, n), C_.resize(n, m);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = j; i < n; ++i) gram_(i, j) = dot(kept_[index(i)], kept_[index(j)]);
+    for (Eigen::Index d = 0; d < m; ++d) C_(j, d) = dot(kept_[index(j)], left_out_[index(d)]);
+  }
+  if (!cholesky(gram_)) return false;
+  solve(gram_, C_);
+  return C_.allFinite();
+}
+
+// Takes out the rounding of C_: what is needed where multipliers are made of it.
+void RowChoice::refine() {
+  if (!dense() || aside_.size() > kMost) return;
+  Eigen::MatrixXd change(C_.rows(), C_.cols());
+  Eigen::VectorXd left(space_.variables());
+  const auto add = [&](double factor, int k) {
+    const Parts& of = parts_[index(k)];
+    for (int i = 0; i < 2 && of.body[i] >= 0; ++i) left.segment<6>(6 * of.body[i]) += factor * of.part[i];
+  };
+  for (Eigen::Index d = 0; d < C_.cols(); ++d) {
+    left.setZero();
+    add(1, left_out_[index(d)]);
+    for (Eigen::Index k = 0; k < C_.rows(); ++k) add(-C_(k, d), kept_[index(k)]);
+    for (Eigen::Index k = 0; k < C_.rows(); ++k) {
+      const Parts& of = parts_[index(kept_[index(k)])];
+      change(k, d) = 0;
+      for (int i = 0; i < 2 && of.body[i] >= 0; ++i) change(k, d) += of.part[i].dot(left.segment<6>(6 * of.body[i]));
+    }
+  }
+  solve(gram_, change);
+  C_ += change;
+}
+
+bool RowChoice::find_sparse() {
   const auto part = [&](const std::vector<int>& some) {
+    const Sparse& columns = space_.columns();
     Sparse of(columns.rows(), static_cast<Eigen::Index>(some.size()));
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t c = 0; c < some.size(); ++c)
@@ -50,40 +161,63 @@ std::vector<SparseEntries> RowChoice::unit_null_vectors(double t, std::span<cons
     of.setFromTriplets(entries.begin(), entries.end());
     return of;
   };
-  const Sparse K = part(kept), D = part(left_out);
-  Eigen::MatrixXd C;
-  const Sparse gram = K.transpose() * K;
-  bool good = false;
-  if (K.cols() <= kDense) {
-    good = least_squares(Eigen::LLT<Eigen::MatrixXd>{Eigen::MatrixXd(gram)}, K, D, C);
-  } else {
-    good = least_squares(Eigen::SimplicialLDLT<Sparse>(gram), K, D, C);
-  }
-  if (!good) return {};
-  std::vector<SparseEntries> vectors(left_out.size());
-  for (std::size_t d = 0; d < left_out.size(); ++d) {
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      const double c = C(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(d));
-      if (std::abs(c) > kNothing) vectors[d].emplace_back(kept[k], -c);
+  const Sparse K = part(kept_), D = part(left_out_);
+  const Eigen::SimplicialLDLT<Sparse> gram(K.transpose() * K);
+  if (gram.info() != Eigen::Success) return false;
+  C_ = gram.solve(Eigen::MatrixXd(K.transpose() * D));
+  const Eigen::MatrixXd left = Eigen::MatrixXd(D) - K * C_;
+  C_ += gram.solve(K.transpose() * left);
+  return C_.allFinite();
+}
+
+std::vector<SparseEntries> RowChoice::unit_null_vectors() const {
+  std::vector<SparseEntries> vectors(left_out_.size());
+  for (std::size_t d = 0; d < left_out_.size(); ++d) {
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+      const double c = C_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(d));
+      if (std::abs(c) > kNothing) vectors[d].emplace_back(kept_[k], -c);
     }
-    vectors[d].emplace_back(left_out[d], 1.0);
+    vectors[d].emplace_back(left_out_[d], 1.0);
     std::ranges::sort(vectors[d]);
   }
   return vectors;
 }
 
+void RowChoice::look(double t, std::span<const BodyState> states) {
+  space_.stand(t, states);
+  weigh();
+}
+
+void RowChoice::weigh() {
+  const bool found = find_coefficients();
+  worst_ = C_.size() > 0 ? C_.cwiseAbs().maxCoeff() : 0;
+  good_for_ = aside_.size() > kMost ? HUGE_VAL : turn_until_worst(found ? worst_ : kWorst);
+}
+
 bool RowChoice::renew(double t, std::span<const BodyState> states) {
-  std::vector<SparseEntries> vectors = unit_null_vectors(t, states);
-  double largest = 0;
-  for (const SparseEntries& z : vectors)
-    for (const auto& [row, value] : z) largest = std::max(largest, std::abs(value));
-  if (!(largest > kWorn)) return false;
-  std::vector<int> chosen = separate(std::move(vectors));
+  look(t, states);
+  if (!(worst_ > kWorn)) return false;
+  refine();
+  std::vector<int> chosen = left_out_;
+  repair(unit_null_vectors(), chosen, group_);
   for (int& k : chosen) k = space_.rows()[index(k)];
   std::ranges::sort(chosen);
   if (chosen == aside_) return false;
   aside_ = std::move(chosen);
+  sort_rows();
+  weigh();
+  refine();
   return true;
+}
+
+void RowChoice::carry_over(std::span<double> lambda) const {
+  const auto at = [&](int k) -> double& { return lambda[index(space_.rows()[index(k)])]; };
+  for (std::size_t d = 0; d < left_out_.size(); ++d) {
+    const double force = std::exchange(at(left_out_[d]), 0.0) * space_.lengths()[index(left_out_[d])];
+    for (std::size_t k = 0; k < kept_.size(); ++k)
+      at(kept_[k]) +=
+          C_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(d)) * force / space_.lengths()[index(kept_[k])];
+  }
 }
 
 double RowChoice::size_of(int row) const {
@@ -92,7 +226,10 @@ double RowChoice::size_of(int row) const {
 }
 
 std::vector<SparseEntries> RowChoice::null_vectors(double t, std::span<const BodyState> states) {
-  std::vector<SparseEntries> vectors = unit_null_vectors(t, states);
+  space_.stand(t, states);
+  if (!find_coefficients()) return {};
+  refine();
+  std::vector<SparseEntries> vectors = unit_null_vectors();
   for (SparseEntries& z : vectors)
     for (auto& [row, value] : z) {
       value /= space_.lengths()[index(row)];

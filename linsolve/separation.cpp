@@ -1,0 +1,229 @@
+#include "linsolve/separation.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "core/index.h"
+
+namespace poinsot {
+namespace {
+
+constexpr double kNegligible = 1e-9;              // of a coefficient beside the largest of its vector
+constexpr std::size_t kMostCombined = 2'000'000;  // entries: a second's work
+constexpr double kFlat = 1.5, kGathered = 3.2;    // an entry larger than that takes the place of the pivot
+constexpr double kGood = 0.1;                     // the least entry that a group's pivot is worth
+constexpr int kPasses = 20;
+
+class Separation {
+ public:
+  Separation(std::vector<SparseEntries>&& vectors, std::vector<int> pivots)
+      : vectors_(std::move(vectors)), pivots_(std::move(pivots)) {
+    std::size_t size = 0;
+    for (const SparseEntries& z : vectors_) size += z.size();
+    too_long_ = size > kMostCombined;
+    if (too_long_) return;
+    for (std::size_t k = 0; k < vectors_.size(); ++k)
+      for (const auto& [column, value] : vectors_[k]) having_[column].push_back(k);
+  }
+
+  bool too_long() const { return too_long_; }
+  const std::vector<int>& pivots() const { return pivots_; }
+  std::vector<int> take_pivots() { return std::move(pivots_); }
+
+  void pivot_on_largest() {
+    for (std::size_t k = 0; k < vectors_.size(); ++k) pivot_on(k, largest_of(k));
+  }
+
+  // Entries above the limit become pivots, if need be; those of the group of the pivot they replace are preferred.
+  void flatten(double limit, std::span<const int> group) {
+    for (int pass = 0; pass < kPasses; ++pass) {
+      bool any = false;
+      for (std::size_t k = 0; k < vectors_.size(); ++k) {
+        auto best = largest_of(k);
+        if (std::abs(best.second) <= limit) continue;
+        if (!group.empty()) {
+          const auto other = largest_of(k, group, group[index(pivots_[k])]);
+          if (std::abs(other.second) > std::max(1.0, std::abs(best.second) / limit)) best = other;
+        }
+        pivot_on(k, best);
+        any = true;
+      }
+      if (!any) return;
+    }
+  }
+
+  // Pivots by groups, in the order of how many these could have by themselves, and how good ones.
+  void gather(std::span<const int> group) {
+    std::map<int, std::vector<int>> columns;  // by group
+    for (const auto& [column, vectors] : having_) columns[group[index(column)]].push_back(column);
+    struct Worth {
+      int pivots;
+      double volume;
+      int group;
+    };
+    std::vector<Worth> order;
+    for (const auto& [g, of] : columns) {
+      const auto [pivots, volume] = worth(of);
+      if (pivots > 0) order.push_back({pivots, volume, g});
+    }
+    std::ranges::stable_sort(order, [](const Worth& a, const Worth& b) {
+      return a.pivots != b.pivots ? a.pivots > b.pivots : 0.999 * a.volume > b.volume;
+    });
+    std::vector<char> settled(vectors_.size(), 0);
+    std::size_t left = vectors_.size();
+    for (const Worth& one : order) {
+      while (left > 0) {
+        std::size_t vector = 0;
+        std::pair<int, double> best{-1, 0.0};
+        for (const int column : columns[one.group])
+          for (const std::size_t k : having_[column])
+            if (const double value = settled[k] ? 0 : find(vectors_[k], column);
+                std::abs(value) > std::abs(best.second))
+              vector = k, best = {column, value};
+        if (!(std::abs(best.second) > kGood)) break;
+        pivot_on(vector, best);
+        settled[vector] = 1;
+        --left;
+      }
+    }
+  }
+
+ private:
+  static double find(const SparseEntries& z, int column) {
+    const auto it = std::ranges::lower_bound(z, column, {}, &std::pair<int, double>::first);
+    return it != z.end() && it->first == column ? it->second : 0.0;
+  }
+  // Among equals the last: what a scene lists later is what it says twice.
+  std::pair<int, double> largest_of(std::size_t k) const {
+    return *std::ranges::max_element(
+        vectors_[k], [](const auto& x, const auto& y) { return 0.999 * std::abs(x.second) < std::abs(y.second); });
+  }
+  std::pair<int, double> largest_of(std::size_t k, std::span<const int> group, int of) const {
+    std::pair<int, double> best{-1, 0.0};
+    for (const auto& entry : vectors_[k])
+      if (group[index(entry.first)] == of && entry.first != pivots_[k] &&
+          std::abs(entry.second) >= std::abs(best.second))
+        best = entry;
+    return best;
+  }
+
+  // How many pivots above kGood the columns have, and their product, by elimination with complete pivoting.
+  std::pair<int, double> worth(const std::vector<int>& columns) const {
+    std::vector<std::size_t> with;
+    for (const int column : columns) {
+      const std::vector<std::size_t>& of = having_.at(column);
+      with.insert(with.end(), of.begin(), of.end());
+    }
+    std::ranges::sort(with);
+    with.erase(std::unique(with.begin(), with.end()), with.end());
+    Eigen::MatrixXd part(static_cast<Eigen::Index>(columns.size()), static_cast<Eigen::Index>(with.size()));
+    for (Eigen::Index k = 0; k < part.cols(); ++k)
+      for (Eigen::Index i = 0; i < part.rows(); ++i)
+        part(i, k) = find(vectors_[with[static_cast<std::size_t>(k)]], columns[static_cast<std::size_t>(i)]);
+    int pivots = 0;
+    double volume = 1;
+    for (; pivots < std::min(part.rows(), part.cols()); ++pivots) {
+      Eigen::Index i = 0, k = 0;
+      const double size = part.cwiseAbs().maxCoeff(&i, &k);
+      if (!(size > kGood)) break;
+      volume *= size;
+      const Eigen::VectorXd column = part.col(k);
+      part -= column * (part.row(i) / column[i]).eval();
+    }
+    return {pivots, volume};
+  }
+
+  void pivot_on(std::size_t k, std::pair<int, double> entry) {
+    const auto [column, value] = entry;
+    for (auto& one : vectors_[k]) one.second /= value;
+    for (const std::size_t other : std::vector<std::size_t>(having_[column])) {
+      const double factor = other == k ? 0 : find(vectors_[other], column);
+      if (factor == 0) continue;
+      vectors_[other] = subtract(vectors_[other], factor, vectors_[k], column);
+      for (const auto& [c, v] : vectors_[k])
+        if (c != column) having_[c].push_back(other);
+    }
+    having_[column] = {k};
+    pivots_[k] = column;
+  }
+
+  std::vector<SparseEntries> vectors_;
+  std::vector<int> pivots_;
+  std::map<int, std::vector<std::size_t>> having_;  // by column: vectors that have or had it
+  bool too_long_ = false;
+};
+
+Separation begin(std::vector<SparseEntries>&& vectors) {
+  std::vector<int> ends;
+  for (const SparseEntries& z : vectors) ends.push_back(z.back().first);
+  Separation separation(std::move(vectors), std::move(ends));
+  if (!separation.too_long()) {
+    separation.pivot_on_largest();
+    separation.flatten(kFlat, {});
+  }
+  return separation;
+}
+
+}  // namespace
+
+double largest(const SparseEntries& z) {
+  double size = 0;
+  for (const auto& [k, value] : z) size = std::max(size, std::abs(value));
+  return size;
+}
+
+void drop_nothing(SparseEntries& z) {
+  const double nothing = kNegligible * largest(z);
+  std::erase_if(z, [&](const auto& entry) { return std::abs(entry.second) <= nothing; });
+}
+
+SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntries& y, int gone) {
+  SparseEntries sum;
+  auto a = x.begin();
+  auto b = y.begin();
+  while (a != x.end() || b != y.end()) {
+    if (b == y.end() || (a != x.end() && a->first < b->first)) {
+      sum.push_back(*a++);
+    } else {
+      sum.emplace_back(b->first, -factor * b->second);
+      if (a != x.end() && a->first == b->first) sum.back().second += (a++)->second;
+      ++b;
+    }
+  }
+  std::erase_if(sum, [&](const auto& entry) { return entry.first == gone; });
+  drop_nothing(sum);
+  return sum;
+}
+
+std::vector<int> separate(std::vector<SparseEntries>&& vectors) {
+  return begin(std::move(vectors)).take_pivots();
+}
+
+std::vector<int> gather(std::vector<SparseEntries>&& vectors, std::span<const int> group) {
+  Separation separation = begin(std::move(vectors));
+  if (!separation.too_long()) {
+    separation.gather(group);
+    separation.flatten(kGathered, group);
+  }
+  return separation.take_pivots();
+}
+
+void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, std::span<const int> group) {
+  const auto of_group = [&](int column) { return group[index(column)]; };
+  const std::vector<int> before = pivots;
+  Separation separation(std::move(vectors), std::move(pivots));
+  if (!separation.too_long()) {
+    separation.flatten(kGathered, group);
+    if (!std::ranges::equal(before, separation.pivots(), {}, of_group, of_group)) {
+      separation.gather(group);
+      separation.flatten(kGathered, group);
+    }
+  }
+  pivots = separation.take_pivots();
+}
+
+}  // namespace poinsot

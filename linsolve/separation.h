@@ -1,0 +1,32 @@
+// Null vectors of A combined until each has a column of its own, where it is 1 and all others are 0: without those
+// columns, the pivots, the others of A are independent. They are the more so the smaller the entries are: with none
+// much above 1 the columns left span nearly the largest volume (C.-T. Pan, On the existence and computation of
+// rank-revealing LU factorizations, 2000).
+//
+// Vectors that are too long together to be combined keep the column they end with.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "linsolve/front_qr.h"
+
+namespace poinsot {
+
+// No entry is above 1.5. Returns the pivots, by vector.
+std::vector<int> separate(std::vector<SparseEntries>&& vectors);
+
+// Pivots of as few groups as are enough, group[k] being that of column k: no entry is above 3.2.
+std::vector<int> gather(std::vector<SparseEntries>&& vectors, std::span<const int> group);
+
+// The vectors have their pivots, and entries that have grown since. Others take the place of as few of them as lead
+// back to entries of at most 3.2, of the same group where that does.
+void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, std::span<const int> group);
+
+// The parts that are negligible beside the largest entry are left out.
+double largest(const SparseEntries& z);
+void drop_nothing(SparseEntries& z);
+// x − factor y without entry `gone`, which is 0.
+SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntries& y, int gone);
+
+}  // namespace poinsot

@@ -1,0 +1,62 @@
+// Columns to be left out: independent of one another, of few groups, and exchanged within their group.
+#include "linsolve/separation.h"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/LU>
+#include <random>
+
+namespace poinsot {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::UnorderedElementsAre;
+
+std::vector<SparseEntries> vectors_of(const Eigen::MatrixXd& Z) {
+  std::vector<SparseEntries> vectors(static_cast<std::size_t>(Z.cols()));
+  for (Eigen::Index k = 0; k < Z.cols(); ++k)
+    for (Eigen::Index i = 0; i < Z.rows(); ++i)
+      if (Z(i, k) != 0) vectors[static_cast<std::size_t>(k)].emplace_back(static_cast<int>(i), Z(i, k));
+  return vectors;
+}
+
+// The largest entry once the vectors are 1 at their pivots and 0 at those of the others.
+double largest_entry(const Eigen::MatrixXd& Z, const std::vector<int>& pivots) {
+  const Eigen::MatrixXd at = Z(pivots, Eigen::all);
+  return (Z * at.inverse()).cwiseAbs().maxCoeff();
+}
+
+TEST(Separation, KeepsEntriesSmall) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 50; ++k) {
+    const Eigen::MatrixXd Z = Eigen::MatrixXd::NullaryExpr(30, 6, [&] { return normal(random); });
+    std::vector<int> group(30);
+    for (std::size_t i = 0; i < group.size(); ++i) group[i] = static_cast<int>(i) / 5;
+    EXPECT_LE(largest_entry(Z, separate(vectors_of(Z))), 1.5 + 1e-9);
+    EXPECT_LE(largest_entry(Z, gather(vectors_of(Z), group)), 3.2 + 1e-9);
+  }
+}
+
+// Three groups of three columns could each have both pivots; the second has the best ones.
+TEST(Separation, GathersInOneGroup) {
+  Eigen::MatrixXd Z(9, 2);
+  Z << 0.9, 0.3, 0.2, 0.7, 0.5, 0.1, /**/ 1, 0, 0.2, 1, 0.3, 0.1, /**/ 0.4, 0.8, 0.9, 0.2, 0.1, 0.3;
+  const std::vector<int> group{0, 0, 0, 1, 1, 1, 2, 2, 2};
+  EXPECT_THAT(gather(vectors_of(Z), group), UnorderedElementsAre(3, 4));
+}
+
+TEST(Separation, RepairsWithinTheGroup) {
+  const std::vector<int> group{0, 0, 1, 1};
+  std::vector<int> pivots{1};
+  repair({{{0, 1.6}, {1, 1}, {2, 3}, {3, 0.5}}}, pivots, group);
+  EXPECT_THAT(pivots, ElementsAre(1));  // nothing has grown too large
+  repair({{{0, 1.6}, {1, 1}, {2, 5}, {3, 0.5}}}, pivots, group);
+  EXPECT_THAT(pivots, ElementsAre(0));
+  pivots = {1};
+  repair({{{0, 1.2}, {1, 1}, {2, 5}, {3, 0.5}}}, pivots, group);
+  EXPECT_THAT(pivots, ElementsAre(2));  // 5/1.2 would be too large again
+}
+
+}  // namespace
+}  // namespace poinsot
