@@ -147,7 +147,9 @@ class Examination {
       for (ColumnDependency& d : found.columns)
         result_.dependent.push_back({space_->rows()[index(d.column)], of_model(std::move(d.others))});
     }
-    result_.aside = result_.aside_here = of_few_groups(columns, tolerance);
+    // Beside rows that are barely independent nothing of the others' independence is to be given away.
+    result_.aside = result_.doubt > 0 ? chosen(columns, tolerance) : of_few_groups(columns, tolerance);
+    result_.aside_here = result_.aside;
     result_.rank = static_cast<int>(model_->rows.size() - result_.aside.size());
     result_.rank_here = result_.rank;
     tell_undetermined(columns, tolerance);
