@@ -257,7 +257,8 @@ class Builder {
     for (Front& f : s.fronts) {
       const int* position = s.other.data() + f.list;
       f.list = count(named);
-      for (int i = 0; i < f.rows; ++i) named.push_back(s.unknown[index(i < f.others ? position[i] : f.first)]);
+      for (int i = 0; i < f.rows; ++i)
+        named.push_back(s.unknown[index(i < f.others ? position[i] : f.first + (i - f.others) % f.pivots)]);
     }
     s.other.swap(named);
   }
