@@ -104,8 +104,8 @@ struct RA {
 
   template <class T>
   static void retract(const T* x, const T* dx, T* out) {
-    const Mat3<T> A = Eigen::Map<const Mat3<T>>(x) * exp_so3<T>(Eigen::Map<const Vec3<T>>(dx));
-    Eigen::Map<Mat3<T>>{out} = A;
+    const Mat3<T> A = Eigen::Map<const Mat3<T>>(x);
+    Eigen::Map<Mat3<T>>(out).noalias() = A * exp_so3<T>(Eigen::Map<const Vec3<T>>(dx));
   }
 
   // Between the coordinates and A, ω̄, ω̄̇.
