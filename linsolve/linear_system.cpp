@@ -5,19 +5,29 @@
 namespace poinsot {
 namespace {
 
-void add(LinearWork one, const LinearStatistics& did, std::vector<LinearWork>& work) {
-  if (did.factorizations + did.refactorizations == 0) return;
+void add(const LinearWork& one, std::vector<LinearWork>& work) {
+  if (one.factorizations + one.refactorizations == 0) return;
   const auto same = std::ranges::find_if(work, [&](const LinearWork& w) {
     return w.solver == one.solver && w.system == one.system && w.handed_over_by == one.handed_over_by;
   });
-  LinearWork& sum = same == work.end() ? work.emplace_back(one) : *same;
-  sum.factorizations += did.factorizations;
-  sum.refactorizations += did.refactorizations;
-  sum.solves += did.solves;
-  sum.refinements += did.refinements;
-  if (did.reciprocal_condition > 0 &&
-      (sum.reciprocal_condition == 0 || did.reciprocal_condition < sum.reciprocal_condition))
-    sum.reciprocal_condition = did.reciprocal_condition;
+  if (same == work.end()) {
+    work.push_back(one);
+    return;
+  }
+  LinearWork& sum = *same;
+  sum.factorizations += one.factorizations;
+  sum.refactorizations += one.refactorizations;
+  sum.solves += one.solves;
+  sum.refinements += one.refinements;
+  if (one.reciprocal_condition > 0 &&
+      (sum.reciprocal_condition == 0 || one.reciprocal_condition < sum.reciprocal_condition))
+    sum.reciprocal_condition = one.reciprocal_condition;
+}
+
+LinearWork work_of(std::string_view solver, std::string_view system, std::string_view handed_over_by,
+                   const LinearStatistics& did) {
+  return {solver,     system,          handed_over_by,          did.factorizations, did.refactorizations,
+          did.solves, did.refinements, did.reciprocal_condition};
 }
 
 void add(std::string_view name, const LinearSolver& solver, std::string_view system, std::vector<LinearWork>& work) {
@@ -25,9 +35,9 @@ void add(std::string_view name, const LinearSolver& solver, std::string_view sys
   LinearStatistics own = solver.statistics();
   if (const LinearSolver::Helper helper = solver.helper(); helper.solver) {
     own.solves -= helper.solver->statistics().solves;
-    add({helper.name, system, name}, helper.solver->statistics(), work);
+    add(work_of(helper.name, system, name, helper.solver->statistics()), work);
   }
-  add({name, system, {}}, own, work);
+  add(work_of(name, system, {}, own), work);
 }
 
 }  // namespace
@@ -79,12 +89,26 @@ bool LinearSystem::factored() const {
 }
 
 void LinearSystem::add_work(std::vector<LinearWork>& work) const {
+  for (const LinearWork& before : past_) add(before, work);
   if (jacobian_) add(solver_->name, jacobian_->solver(), "G", work);
   if (whole_) add(solver_->name, *whole_, "whole", work);
 }
 
+void LinearSystem::let_go() {
+  std::vector<LinearWork> all;
+  add_work(all);
+  past_.swap(all);
+  whole_.reset(), jacobian_.reset();
+  pattern_ = {};
+  by_jacobian_ = false;
+}
+
 LinearSystem& LinearSystems::add(Workload workload) {
   return *systems_.emplace_back(std::make_unique<LinearSystem>(choice_, workload));
+}
+
+void LinearSystems::let_go() {
+  for (const auto& system : systems_) system->let_go();
 }
 
 std::vector<LinearWork> LinearSystems::work() const {

@@ -49,6 +49,8 @@ class LinearSystem {
   std::span<double> values() { return jacobian_ ? jacobian_->values() : whole_->values(); }
   bool factored() const;  // solve() may be called
   void add_work(std::vector<LinearWork>& work) const;
+  // Gives its memory back. It is to be analyzed anew before it is used again; what it did stays in its work.
+  void let_go();
   // LinearSolver::orientation() of the whole matrix; 0 where another was factored.
   std::uint64_t orientation() { return by_jacobian_ || !whole_ ? 0 : whole_->orientation(); }
   // Of the solver of the last factorization.
@@ -66,6 +68,7 @@ class LinearSystem {
   std::unique_ptr<LinearSolver> whole_;       // where it has not, or once the values have not
   Pattern pattern_;                           // beside jacobian_
   bool by_jacobian_ = false;                  // the last factorization
+  std::vector<LinearWork> past_;              // of what was let go
 };
 
 // The linear systems of a run, all of one choice; they live as long as this does.
@@ -75,6 +78,8 @@ class LinearSystems {
   LinearSystem& add(Workload workload = Workload::factorizations);
   // Of all together, by solver and system; those that factored most come first.
   std::vector<LinearWork> work() const;
+  // Of all, at the end of the run: what is still to be computed then has room.
+  void let_go();
 
  private:
   LinearChoice choice_;

@@ -209,6 +209,7 @@ Status FixedSteps::give_out(Problem& problem) {
   const bool last = x_.t >= settings_.end;
   const double scale = index3_scale();
   clock_.pause();  // what is computed for the output alone is no part of a step
+  if (last) run_.systems.let_go();
   const State& given = scale > 0 ? output_.choose(problem, x_, scale, last, run_.statistics) : x_;
   sample(run_.observe, problem, given, run_.statistics);
   clock_.resume();
