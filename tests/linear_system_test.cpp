@@ -3,9 +3,12 @@
 
 #include "bench/study/scene_check.h"
 #include "core/index.h"
+#include "core/scene_generator.h"
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
 #include "integrators/simulate.h"
+#include "linsolve/block/order.h"
+#include "linsolve/block/schedule.h"
 #include "linsolve/registry.h"
 #include "tests/support/linear_solver_systems.h"
 #include "tests/support/simulation.h"
@@ -157,6 +160,24 @@ TEST(LinearSystem, ASingularJacobianNamesAnUnknownOfTheWhole) {
 TEST(LinearSystem, UnknownNamesAreRefused) {
   EXPECT_THROW(LinearSystems({"klux", "auto"}).add(), InputError);
   EXPECT_THROW(LinearSystems({"klu", "half"}).add(), InputError);
+}
+
+// What waits of a ladder is that of a few of its rungs, however many there are.
+TEST(BlockSchedule, OfALadderKeepsAStackThatDoesNotGrow) {
+  const auto stack = [](int bodies) {
+    const Scene scene = find_scene_generator("ladder")->make(bodies);
+    const auto problem = formulations().require("rA").make(std::make_shared<const Model>(compile(scene)), {});
+    const Pattern pattern = problem->pattern(MatrixKind::exact);
+    CscLayout layout;
+    EXPECT_TRUE(layout.build(pattern).ok());
+    const std::vector<int> fused(index(1 + *std::ranges::max_element(pattern.node)), -1);
+    block::Graph graph;
+    graph.build(layout, pattern.node, fused);
+    block::Schedule schedule;
+    EXPECT_TRUE(schedule.build(layout, graph, block::elimination_order(graph)));
+    return schedule.stack_size;
+  };
+  EXPECT_LE(stack(600), 2 * stack(60));
 }
 
 }  // namespace

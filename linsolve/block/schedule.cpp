@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "linsolve/block/front_tree.h"
 #include "linsolve/lanes.h"
 
 namespace poinsot::block {
@@ -15,41 +16,12 @@ int count(const std::vector<int>& v) {
   return static_cast<int>(v.size());
 }
 
-// A front while the tree is built, one for each atom at first; unknowns by their place in the order of atoms. Fronts
-// that went into others have no pivots.
-struct Node {
-  int first = 0, pivots = 0;  // its own pivots come last, those of fronts that went into it before
-  int others = 0, list = 0;   // number and start of its other unknowns
-  int parent = -1, child = -1, last_child = -1, sibling = -1;
-  int head = -1, next = -1;  // of the chain of fronts whose pivots are its own, and the one after this one there
-};
-
-// Estimated cycles of a front: a fixed part, its arithmetic, the traffic of its update matrix.
-double cost(int p, int m) {
-  constexpr double kFixed = 120, kFlop = 0.5, kTraffic = 1;
-  const double pp = p, mm = m;
-  return kFixed + kFlop * (0.7 * pp * pp * pp + 2 * pp * pp * mm + 2 * pp * mm * mm) + kTraffic * (pp + mm) * (pp + mm);
-}
-
 class Builder {
  public:
   Builder(const CscLayout& layout, const Graph& graph, std::span<const int> order)
-      : layout_(layout), nodes_(order.size()), place_(index(layout.n)), owner_(index(layout.n)) {
-    unknown_.reserve(place_.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      nodes_[k].first = count(unknown_);
-      for (const int u : graph.unknowns[order[k]]) {
-        place_[index(u)] = count(unknown_);
-        owner_[index(count(unknown_))] = static_cast<int>(k);
-        unknown_.push_back(u);
-      }
-      nodes_[k].pivots = count(unknown_) - nodes_[k].first;
-    }
-  }
+      : layout_(layout), tree_(layout, graph, order), postorder_(tree_.postorder()) {}
 
   bool build(Schedule& schedule) {
-    find_structure();
-    amalgamate();
     number(schedule);
     if (!lay_out(schedule)) return false;
     assign_values(schedule);
@@ -58,100 +30,17 @@ class Builder {
   }
 
  private:
-  // The others of every node: entries of the matrix beside its pivots, and what its children leave to it.
-  void find_structure() {
-    const Lists beside = Lists::collect(count_nodes(), [&](auto&& emit) {
-      int last_owner = -1, last_place = -1;
-      for (int j = 0; j < layout_.n; ++j)
-        for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k) {
-          const auto [first, second] = std::minmax(place_[index(j)], place_[index(layout_.row[index(k)])]);
-          const int owner = owner_[index(first)];
-          if (owner == owner_[index(second)] || (owner == last_owner && second == last_place)) continue;
-          last_owner = owner, last_place = second;
-          emit(owner, second);
-        }
-    });
-    std::vector<int> all;
-    for (int k = 0; k < count_nodes(); ++k) {
-      Node& node = nodes_[index(k)];
-      all.assign(beside[k].begin(), beside[k].end());
-      for (int c = node.child; c >= 0; c = nodes_[index(c)].sibling)
-        for (const int place : others(nodes_[index(c)]))
-          if (owner_[index(place)] != k) all.push_back(place);
-      std::ranges::sort(all);
-      all.erase(std::unique(all.begin(), all.end()), all.end());
-      node.list = count(other_), node.others = count(all);
-      other_.insert(other_.end(), all.begin(), all.end());
-      node.head = k;
-      if (all.empty()) continue;
-      node.parent = owner_[index(all[0])];
-      adopt(nodes_[index(node.parent)], k, k);
-    }
-  }
-
-  int count_nodes() const { return static_cast<int>(nodes_.size()); }
-  std::span<const int> others(const Node& node) const { return {other_.data() + node.list, index(node.others)}; }
-
-  // Appends the siblings `first` to `last` to the children.
-  void adopt(Node& parent, int first, int last) {
-    (parent.child < 0 ? parent.child : nodes_[index(parent.last_child)].sibling) = first;
-    parent.last_child = last;
-  }
-
-  // A child goes into its parent where one larger front is cheaper than two.
-  void amalgamate() {
-    constexpr int kMostPivots = 8;  // as far as kernels of fixed size go
-    for (Node& node : nodes_) {
-      int before = -1;
-      for (int c = node.child; c >= 0;) {
-        Node& child = nodes_[index(c)];
-        const int p = child.pivots + node.pivots, m = node.others;
-        if (p > kMostPivots || cost(p, m) > cost(child.pivots, child.others) + cost(node.pivots, m)) {
-          before = std::exchange(c, child.sibling);
-          continue;
-        }
-        node.pivots = p;
-        child.next = std::exchange(node.head, child.head);
-        if (child.child >= 0) adopt(node, child.child, child.last_child);
-        c = (before < 0 ? node.child : nodes_[index(before)].sibling) = child.sibling;
-        if (c < 0) node.last_child = before;
-        child.pivots = 0;
-      }
-    }
-  }
-
-  // Postorder; positions.
   void number(Schedule& s) {
-    std::vector<int> stack;
-    for (int k = 0; k < count_nodes(); ++k)
-      if (nodes_[index(k)].parent < 0 && nodes_[index(k)].pivots > 0) stack.push_back(k);
-    std::vector<char> open(nodes_.size(), 0);
-    while (!stack.empty()) {
-      const int k = stack.back();
-      if (!open[index(k)]) {
-        open[index(k)] = 1;
-        const auto size = static_cast<std::ptrdiff_t>(stack.size());
-        for (int c = nodes_[index(k)].child; c >= 0; c = nodes_[index(c)].sibling) stack.push_back(c);
-        std::reverse(stack.begin() + size, stack.end());
-        continue;
-      }
-      stack.pop_back();
-      postorder_.push_back(k);
-    }
-    front_of_.assign(nodes_.size(), -1);
+    front_of_.assign(index(tree_.size()), -1);
     position_.assign(index(layout_.n), 0);
     s.unknown.clear();
     s.unknown.reserve(index(layout_.n));
-    std::vector<int> length(nodes_.size());  // of each node's own pivots
-    for (std::size_t k = 0; k < nodes_.size(); ++k)
-      length[k] = (k + 1 < nodes_.size() ? nodes_[k + 1].first : layout_.n) - nodes_[k].first;
     for (std::size_t f = 0; f < postorder_.size(); ++f) {
       front_of_[index(postorder_[f])] = static_cast<int>(f);
-      for (int part = nodes_[index(postorder_[f])].head; part >= 0; part = nodes_[index(part)].next)
-        for (int k = nodes_[index(part)].first, end = k + length[index(part)]; k < end; ++k) {
-          position_[index(unknown_[index(k)])] = count(s.unknown);
-          s.unknown.push_back(unknown_[index(k)]);
-        }
+      tree_.pivots(tree_[postorder_[f]], [&](int unknown) {
+        position_[index(unknown)] = count(s.unknown);
+        s.unknown.push_back(unknown);
+      });
     }
   }
 
@@ -161,20 +50,20 @@ class Builder {
     s.store_size = s.stack_size = s.factor_nonzeros = 0;
     s.largest_update = s.largest_pivots = s.largest_rows = 0;
     std::size_t entries = 0;
-    for (const int k : postorder_) entries += index(nodes_[index(k)].others);
+    for (const int k : postorder_) entries += index(tree_[k].others);
     s.fronts.reserve(postorder_.size()), s.other.reserve(entries);
     s.children.reserve(postorder_.size());
     std::int64_t top = 0;
     int first = 0;
     for (const int k : postorder_) {
-      const Node& node = nodes_[index(k)];
+      const FrontTree::Node& node = tree_[k];
       Front f{};
       f.pivots = node.pivots, f.others = node.others, f.rows = padded(f.others);
       f.first = first, first += f.pivots;
       f.list = count(s.other);
-      for (const int other : others(node)) s.other.push_back(position_[index(unknown_[index(other)])]);
+      for (const int other : tree_.others(node)) s.other.push_back(position_[index(tree_.unknown(other))]);
       std::sort(s.other.begin() + f.list, s.other.end());
-      for (int child = node.child; child >= 0; child = nodes_[index(child)].sibling) {
+      for (int child = node.child; child >= 0; child = tree_[child].sibling) {
         s.children.push_back(front_of_[index(child)]);
         const Front& c = s.fronts[index(front_of_[index(child)])];
         top -= std::int64_t{c.rows} * c.others;
@@ -293,10 +182,7 @@ class Builder {
   }
 
   const CscLayout& layout_;
-  std::vector<Node> nodes_;
-  std::vector<int> unknown_;  // by place
-  std::vector<int> place_, owner_;
-  std::vector<int> other_;  // by node: its other unknowns, ascending
+  FrontTree tree_;
   std::vector<int> postorder_, front_of_, position_;
 };
 
