@@ -58,7 +58,8 @@ NewtonLoop::NewtonLoop(Problem& problem, StepSystem& system, const Settings& set
       divided_(divides && settings.retry),
       arm_(longest_arm(problem.model())),
       delta_(problem.nv() + problem.nc()),
-      momentum_(problem.nv()) {}
+      momentum_(problem.nv()),
+      rows_(problem.nv() + problem.nc()) {}
 
 double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
   const Eigen::Index nv = problem_.nv(), per_body = nv / problem_.bodies(), turns = per_body - 3;
@@ -80,8 +81,17 @@ double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
                           : std::max(accelerations, multipliers / std::max(max_norm(z.tail(problem_.nc())), kLeast));
 }
 
-bool NewtonLoop::is_rounding(double position, const Vector& q) const {
-  return position * max_norm(delta_.head(problem_.nv())) <= rounding_of(problem_, q);
+bool NewtonLoop::is_rounding(double t, double position, const Vector& q) {
+  const double moved = position * max_norm(delta_.head(problem_.nv()));
+  if (moved <= rounding_of(problem_, q)) return true;
+  return moved <= 8 * kEpsilon * std::max(1.0, max_norm(q)) * steepness(t, position);
+}
+
+// How far rows that are off by one move positions, by the matrix at hand; 0 where that is not known.
+double NewtonLoop::steepness(double t, double position) {
+  rows_.setZero();
+  for (Eigen::Index k = problem_.nv(); k < rows_.size(); ++k) rows_[k] = 1 / position;
+  return system_.solve(t, span(rows_)).ok() ? position * max_norm(rows_.head(problem_.nv())) : 0;
 }
 
 void NewtonLoop::measure_gradient() {

@@ -13,7 +13,8 @@
 // shrink (with small steps Φ/h² magnifies the rounding of Φ; beside a singular position λ is noise, and the part of a
 // that the constraints say least of): where
 //   positions are corrected by no more than their rounding, 16 ε √bodies · max(1, |q|): that of each body's orientation
-//   moves all that hang on it, which adds up to √N of it over N bodies in a row;
+//   moves all that hang on it, which adds up to √N of it over N bodies in a row; or 8 ε max(1, |q|) times what rows that
+//   are off by one move them by, which is more beside a singular position;
 //   or Φ is so small and |M a + Gᵀλ − Q| ≤ 256 ε (|M a| + |Gᵀ||λ|), in maximum norms.
 #pragma once
 
@@ -67,7 +68,7 @@ class NewtonLoop {
         slow_ = !(correction < kSlow * before);
       }
       stalled = correction > 0.5 * before;
-      if (correction <= settings_.tolerance || (stalled && is_rounding(position, q))) return {};
+      if (correction <= settings_.tolerance || (stalled && is_rounding(t, position, q))) return {};
       before = correction;
       if (!std::isfinite(correction)) break;
     }
@@ -95,7 +96,8 @@ class NewtonLoop {
   }
 
   double relative(const Vector& z, bool of_this_step) const;
-  bool is_rounding(double position, const Vector& q) const;
+  bool is_rounding(double t, double position, const Vector& q);
+  double steepness(double t, double position);
   void measure_gradient();
   bool balanced(double position, const Vector& z, const Vector& q);
   Status not_converged(double t, double correction) const;
@@ -108,7 +110,7 @@ class NewtonLoop {
   Statistics& statistics_;
   bool divided_;  // a step that failed was done in parts to where that does not help
   double arm_;    // m, the longest of a body to a constraint
-  Vector delta_, momentum_;
+  Vector delta_, momentum_, rows_;
   double gradient_ = -1;  // |Gᵀ|, of the first step: directions and arms stay what they are
   bool slow_ = false;     // the last corrections did not shrink as they should
 };

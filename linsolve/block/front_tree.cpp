@@ -10,10 +10,6 @@
 namespace poinsot::block {
 namespace {
 
-int count(const std::vector<int>& v) {
-  return static_cast<int>(v.size());
-}
-
 // Estimated cycles of a front: a fixed part, its arithmetic, the traffic of its update matrix.
 double cost(int p, int m) {
   constexpr double kFixed = 120, kFlop = 0.5, kTraffic = 1;

@@ -12,6 +12,10 @@
 
 namespace poinsot::block {
 
+inline int count(const std::vector<int>& v) {
+  return static_cast<int>(v.size());
+}
+
 class FrontTree {
  public:
   // A front, one for each atom at first; unknowns by their place in the order of atoms. Fronts that went into others

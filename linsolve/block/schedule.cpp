@@ -12,10 +12,6 @@
 namespace poinsot::block {
 namespace {
 
-int count(const std::vector<int>& v) {
-  return static_cast<int>(v.size());
-}
-
 class Builder {
  public:
   Builder(const CscLayout& layout, const Graph& graph, std::span<const int> order)
