@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/fixed_steps.h"
@@ -45,6 +46,7 @@ class GeneralizedAlpha : public FixedSteps {
         jerk_(nv_),
         z_n_(x_.z),
         dq_(nv_),
+        corrects_velocity_(form == Form::stabilized2),
         y_(Vector::Zero(nv_)),
         held_dq_(nv_),
         held_v_(nv_),
@@ -54,7 +56,8 @@ class GeneralizedAlpha : public FixedSteps {
         there_(nv_ + nc_) {}
 
   double index3_scale() const override { return scale_.position; }
-  // Beside a singular position, where steps fail, stabilized index 2 has made velocities of noise in steps before.
+  // Beside a singular position, where steps fail, stabilized index 2 has made velocities of noise in steps before:
+  // those are done without its velocity constraints, as a whole.
   bool divides() const override { return form_ == Form::index3; }
   bool remembers() const override { return true; }
   // a belongs to t + shift h, and is v̇ there; where the line through the last two v̇ begins, to t − h.
@@ -93,15 +96,24 @@ class GeneralizedAlpha : public FixedSteps {
       problem_.set_position(t, span(x_.q));
       problem_.set_velocity(span(x_.v));
       problem_.step_residual(scale_, x_.a(), x_.lambda(), span(r));
-      if (form_ == Form::stabilized2) keep_residual(r);
+      if (corrects_velocity_) keep_residual(r);
     };
     const auto matrix = [&] { return system_.refresh(t, scale_, span(dq_), x_.a(), x_.lambda()); };
     const auto correct = [&](Vector& delta) -> Status {
       problem_.lower(span(dq_), span(delta, 0, nv_));
       x_.z += delta;
-      return form_ == Form::stabilized2 ? correct_velocity(t, delta) : Status{};
+      return corrects_velocity_ ? correct_velocity(t, delta) : Status{};
     };
     Status status = newton_.solve(t, scale_.position, x_.z, x_.q, residual, matrix, correct);
+    if (form_ == Form::stabilized2 && settings_.retry && status.failure == Failure::not_converged) {
+      corrects_velocity_ = false;
+      x_.z = z_n_;
+      y_.setZero();
+      newton_.renew();
+      status = newton_.solve(t, scale_.position, x_.z, x_.q, residual, matrix, correct);
+      corrects_velocity_ = true;
+      if (status.ok()) tell_of_index3(t);
+    }
     if (!status.ok()) return status;
     advance();
     a_.noalias() = k_.gain() * x_.z.head(nv_) + held_a_;
@@ -208,10 +220,18 @@ class GeneralizedAlpha : public FixedSteps {
         t, h_));
   }
 
+  void tell_of_index3(double t) {
+    if (std::exchange(told_, true)) return;
+    run_.tell(
+        fmt::format("at t = {:.6g} s stabilized index 2 did not converge, as beside a singular position, which leaves "
+                    "velocities to rounding: such steps are those of index 3",
+                    t));
+  }
+
   void advance() {  // v and q that belong to the acceleration in z
     x_.v.noalias() = held_v_ + scale_.velocity * x_.z.head(nv_);
     dq_.noalias() = held_dq_ + scale_.position * x_.z.head(nv_);
-    if (form_ == Form::stabilized2) dq_ += y_;
+    if (corrects_velocity_) dq_ += y_;
     problem_.retract(span(q_n_), span(dq_), span(x_.q));
   }
 
@@ -242,6 +262,8 @@ class GeneralizedAlpha : public FixedSteps {
   std::vector<int> velocity_rows_;
   Vector a_, jerk_;
   Vector z_n_, dq_;                   // z one step before; what leads from q_n to q
+  bool corrects_velocity_;            // stabilized index 2, but for steps that do not converge so
+  bool told_ = false;                 // of those
   Vector y_;                          // displacement of stabilized index 2
   Vector held_dq_, held_v_, held_a_;  // what does not depend on the step's unknowns
   Vector residual_, aside_, there_;

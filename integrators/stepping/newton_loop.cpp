@@ -84,7 +84,7 @@ double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
 bool NewtonLoop::is_rounding(double t, double position, const Vector& q) {
   const double moved = position * max_norm(delta_.head(problem_.nv()));
   if (moved <= rounding_of(problem_, q)) return true;
-  return moved <= 8 * kEpsilon * std::max(1.0, max_norm(q)) * steepness(t, position);
+  return moved <= 64 * kEpsilon * std::max(1.0, max_norm(q)) * steepness(t, position);
 }
 
 // How far rows that are off by one move positions, by the matrix at hand; 0 where that is not known.
