@@ -130,6 +130,34 @@ TEST_P(Passages, SamplesBesideThePositionAreThoseOfTheBranch) {
   }
 }
 
+// A torque that sets in just before, in and just after the position: states on the other side are not of the same
+// motion.
+TEST_P(Passages, OfAForceThatIsSwitchedBeside) {
+  constexpr double kTorque = 50, kEnd = 0.05, kJ = 2 * (0.1 + 0.25) + 1, kM = 2 * 0.5 + 1;
+  for (const double from : {0.0150, 0.0160, 0.0162, 0.0164, 0.0180}) {
+    Scene scene = posts(1, 0.05, kSpin, false);
+    Torque& torque = scene.forces.emplace_back().emplace<Torque>();
+    torque.body = 0;
+    torque.torque[2] = Expression::parse(fmt::format("{}*step(t-{})", kTorque, from));
+    double phi = 0.05, w = kSpin;
+    constexpr int kSteps = 50000;  // of 1e-6 s
+    const auto rate = [&](double at, double t) { return ((t >= from ? kTorque : 0) - kM * 9.81 * std::cos(at)) / kJ; };
+    for (int n = 0; n < kSteps; ++n) {
+      constexpr double kStep = kEnd / kSteps;
+      const double middle = (n + 0.5) * kStep, half = w + 0.5 * kStep * rate(phi, middle);
+      const double a = rate(phi + 0.5 * kStep * w, middle);
+      phi += kStep * half;
+      w += kStep * a;
+    }
+    for (const char* integrator : {"dop853", "radau5"}) {
+      SCOPED_TRACE(::testing::Message() << integrator << ' ' << from);
+      const Recorded r = run(scene, controlled(integrator, GetParam(), 1e-8, kEnd, kEnd));
+      ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+      EXPECT_NEAR(r.samples.back().bodies[0].w.z(), w, 1e-6);
+    }
+  }
+}
+
 // A long motion through five such positions, by every method to the same end.
 TEST_P(Passages, OfADoubleFourBar) {
   const Recorded reference = run(scene_of("double_four_bar"), controlled("dop853", "rA", 1e-11, 10, 10));

@@ -15,8 +15,9 @@ constexpr double kSteep = 2;     // times the least steepness seen: from there o
 constexpr std::array kWeights{1.6, -0.8, 8.0 / 35, -1.0 / 35};
 // Part of the steepness here at the most at ±τ, ...: a pole within τ/2 leaves two sevenths at 4τ.
 constexpr std::array kFall{1.0, 1.0, 1.0, 0.4};
-// Part of its size by which a velocity interpolated by two pairs less may differ: what moves so is not smooth.
-constexpr double kSmooth = 1e-3;
+// Part of its size by which a velocity or an acceleration interpolated by two pairs less may differ, and that from one
+// side from that from the other: else the motion is not smooth, as where a force is switched.
+constexpr double kSmooth = 3e-3;
 
 }  // namespace
 
@@ -36,7 +37,10 @@ struct Passage::Work {
 };
 
 Passage::Passage(Problem& problem, Consistent& consistent)
-    : problem_(problem), consistent_(consistent), given_(problem) {}
+    : problem_(problem),
+      consistent_(consistent),
+      given_(problem),
+      driven_(std::ranges::any_of(problem.model().rows, [](const Row& row) { return !row.f.is_constant(); })) {}
 Passage::~Passage() = default;
 
 std::span<const double> Passage::moved_by() const {
@@ -45,7 +49,7 @@ std::span<const double> Passage::moved_by() const {
 
 Status Passage::stand_beside(const State& at, double s, Beside& beside) {
   State& place = work_->place;
-  place.t = at.t + s;
+  place.t = driven_ ? at.t + s : at.t;  // forces may be switched
   place.v = at.v;
   work_->moved = s * at.v;
   problem_.retract(span(at.q), span(work_->moved), span(place.q));
@@ -96,14 +100,21 @@ bool Passage::limit(State& at, double tau, double steepest) {
     for (std::size_t k = 0; k < kWeights.size(); ++k) all += kWeights[k] * mean(k, x);
     return all;
   };
-  const Eigen::VectorXd c = sum(&Beside::c), v = sum(&Beside::v);
-  work_->moved = (4 * mean(0, &Beside::v) - mean(1, &Beside::v)) / 3 - v;
-  if (!(largest(span(work_->moved)) <= kSmooth * v.lpNorm<Eigen::Infinity>())) return false;
+  const auto is_smooth = [&](Eigen::VectorXd Beside::*x, const Eigen::VectorXd& value) {
+    const auto odd = [&](std::size_t k) { return work_->beside[k][0].*x - work_->beside[k][1].*x; };
+    const double most = kSmooth * std::max(largest(span(value)), largest(span(work_->beside[0][0].*x)));
+    work_->moved = (4 * mean(0, x) - mean(1, x)) / 3 - value;
+    if (!(largest(span(work_->moved)) <= most)) return false;
+    work_->moved = odd(0) - 0.5 * odd(1);  // half of a jump
+    return largest(span(work_->moved)) <= most;
+  };
+  const Eigen::VectorXd c = sum(&Beside::c), v = sum(&Beside::v), a = sum(&Beside::a);
+  if (!is_smooth(&Beside::v, v) || !is_smooth(&Beside::a, a)) return false;
   problem_.retract(span(at.q), {c.data(), static_cast<std::size_t>(c.size())}, span(work_->place.q));
   work_->moved_by << c, v - at.v;
   at.q = work_->place.q;
   at.v = v;
-  at.z.head(v.size()) = sum(&Beside::a);
+  at.z.head(v.size()) = a;
   return true;
 }
 

@@ -7,7 +7,8 @@
 //
 //   x(0) = (56 x̄(τ) − 28 x̄(2τ) + 8 x̄(3τ) − x̄(4τ))/35 + O(τ⁸),   x̄(s) = ½ (x(s) + x(−s))
 //
-// No stage, end of a step or sample has to keep away from the position, and steps go over it at their usual length.
+// Time goes on with s where constraints depend on it. No stage, end of a step or sample has to keep away from the
+// position, and steps go over it at their usual length.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,6 +46,7 @@ class Passage {
   Problem& problem_;
   Consistent& consistent_;
   State given_;
+  const bool driven_;        // rows depend on time
   double least_ = HUGE_VAL;  // steepness
   bool settled_ = false;
   struct Work;
