@@ -105,7 +105,8 @@ class GeneralizedAlpha : public FixedSteps {
       return corrects_velocity_ ? correct_velocity(t, delta) : Status{};
     };
     Status status = newton_.solve(t, scale_.position, x_.z, x_.q, residual, matrix, correct);
-    if (form_ == Form::stabilized2 && settings_.retry && status.failure == Failure::not_converged) {
+    if (form_ == Form::stabilized2 && settings_.retry && status.failure == Failure::not_converged &&
+        newton_.stalled()) {
       corrects_velocity_ = false;
       x_.z = z_n_;
       y_.setZero();

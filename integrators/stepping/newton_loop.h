@@ -48,10 +48,11 @@ class NewtonLoop {
                Correct&& correct) {
     if (gradient_ < 0) measure_gradient();
     double correction = 0, before = INFINITY;
-    bool stalled = false, of_this_step = false;
+    bool of_this_step = false;
+    stalled_ = false;
     for (int k = 0; k < settings_.max_iterations; ++k) {
       residual(delta_);
-      if (stalled && balanced(position, z, q)) return {};
+      if (stalled_ && balanced(position, z, q)) return {};
       if (due(k)) {
         if (Status status = matrix(); !status.ok()) return status;
         slow_ = false;
@@ -67,14 +68,16 @@ class NewtonLoop {
         ++statistics_.convergence.count;
         slow_ = !(correction < kSlow * before);
       }
-      stalled = correction > 0.5 * before;
-      if (correction <= settings_.tolerance || (stalled && is_rounding(t, position, q))) return {};
+      stalled_ = correction > 0.5 * before;
+      if (correction <= settings_.tolerance || (stalled_ && is_rounding(t, position, q))) return {};
       before = correction;
       if (!std::isfinite(correction)) break;
     }
     return not_converged(t, correction);
   }
 
+  // Whether corrections had stopped to shrink where the last step ended or failed.
+  bool stalled() const { return stalled_; }
   // The step's size has changed: a kept matrix is that of another.
   void renew() { slow_ = true; }
 
@@ -112,7 +115,8 @@ class NewtonLoop {
   double arm_;    // m, the longest of a body to a constraint
   Vector delta_, momentum_, rows_;
   double gradient_ = -1;  // |Gᵀ|, of the first step: directions and arms stay what they are
-  bool slow_ = false;     // the last corrections did not shrink as they should
+  bool stalled_ = false;
+  bool slow_ = false;  // the last corrections did not shrink as they should
 };
 
 }  // namespace poinsot
