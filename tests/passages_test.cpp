@@ -130,6 +130,21 @@ TEST_P(Passages, SamplesBesideThePositionAreThoseOfTheBranch) {
   }
 }
 
+// Steps of another method than the one that was asked for are told.
+TEST_P(Passages, SayWhoseStepsTheyAre) {
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (!integrator.controls_error || refusal_of(integrator, GetParam())) continue;
+    const bool by_another = integrator.name == "radau5" || integrator.name == "ida";
+    const Recorded r =
+        run(Passage{1, 0.05, false}.scene(), controlled(integrator.name, GetParam(), 1e-8, kPassed, kPassed));
+    const auto told = testing::Contains(testing::HasSubstr("those of dop853"));
+    if (by_another)
+      EXPECT_THAT(r.outcome.notices, told);
+    else
+      EXPECT_THAT(r.outcome.notices, testing::Not(told));
+  }
+}
+
 // A torque that sets in just before, in and just after the position: states on the other side are not of the same
 // motion.
 TEST_P(Passages, OfAForceThatIsSwitchedBeside) {

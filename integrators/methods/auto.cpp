@@ -61,7 +61,7 @@ class Auto final : public Integrator {
       double before = run.state.t;
       steps = 0;
       const auto is_no_better = [&] {
-        if (radau5->passes() && !std::exchange(told, true)) run.tell(passing_notice("radau5", pair, radau5->state().t));
+        if (radau5->passes() && !std::exchange(told, true)) run.tell(passing_notice(pair, radau5->state().t));
         const double h = radau5->state().t - std::exchange(before, radau5->state().t);
         return ++steps == kTrial && !stays && h < enough;
       };

@@ -155,6 +155,12 @@ class Session {
       if (Status status = passing_->prepare(); !status.ok()) return status;
     }
     if (Status status = passing_->start(at_); !status.ok()) return status;
+    if (!std::exchange(told_, true)) {
+      run_.tell(fmt::format(
+          "at t = {:.6g} s, as beside a singular position, steps of ida come to nothing: those of {} lead on "
+          "from such places",
+          at_.t, dop853_pair().name));
+    }
     by_singular_ = false;
     int steps = 0;
     since_pass_ = 0;
@@ -164,7 +170,6 @@ class Session {
       return since_pass_ > kFar || (!by_singular_ && ++steps == kSteps);
     });
     at_ = passing_->state();
-    if (by_singular_ && !std::exchange(told_, true)) run_.tell(passing_notice("ida", dop853_pair(), at_.t));
     if (!status.ok()) return status;
     if (Status prepared = ida_.renew(); !prepared.ok()) return prepared;
     begin_again();

@@ -21,7 +21,7 @@ class Radau5 final : public Integrator {
     bool told = false;
     return controlled_run(method, ControlledRadau::kRule, run, clock, [&] {
       if (method.passes() && !std::exchange(told, true)) {
-        run.tell(passing_notice("radau5", dop853_pair(), method.state().t));
+        run.tell(passing_notice(dop853_pair(), method.state().t));
       }
       return false;
     });

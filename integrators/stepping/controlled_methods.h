@@ -9,7 +9,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <string_view>
 
 #include "integrators/stepping/explicit_stepper.h"
 #include "integrators/stepping/radau_stepper.h"
@@ -57,12 +56,12 @@ class ControlledPair : public ExplicitStepper {
   bool at_start_ = false;  // in one
 };
 
-// Of a run that goes by another method's steps there.
-inline std::string passing_notice(std::string_view method, const RungeKuttaPair& pair, double t) {
+// Of a run of radau5 that goes by the pair's steps there.
+inline std::string passing_notice(const RungeKuttaPair& pair, double t) {
   return fmt::format(
       "beside a singular position, as before t = {:.6g} s, steps are those of {}, which pass it where those "
-      "of {} do not",
-      t, pair.name, method);
+      "of radau5 do not",
+      t, pair.name);
 }
 
 // Singular positions are passed by steps of an explicit pair: stages of radau5 leave the constraints, and an iteration
