@@ -48,8 +48,7 @@ LinearSystem::LinearSystem(const LinearChoice& choice, Workload workload)
 }
 
 LinearStatus LinearSystem::analyze(const Pattern& pattern) {
-  by_jacobian_ = false;
-  whole_.reset(), jacobian_.reset();
+  let_go();
   if (may_reduce_ && SquareJacobian::fits(pattern)) {
     auto jacobian = std::make_unique<SquareJacobian>(solver_->make());
     if (jacobian->analyze(pattern)) {
