@@ -17,9 +17,9 @@
 namespace poinsot {
 namespace {
 
-constexpr int kPasses = 2;
-constexpr double kOnward = 1e-4;  // of the run
+constexpr int kPasses = 2;        // one soon after the other that see no singular position: then none is the cause
 constexpr double kNear = 0.5;     // rad: so soon after one failure another has the same cause
+constexpr double kOnward = 1e-4;  // and so little of the run later
 
 class Session {
  public:

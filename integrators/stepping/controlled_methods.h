@@ -21,6 +21,15 @@ inline constexpr double kShorter = 0.85;
 // The first step out of one, in times after which velocities have led a thousandth of the bodies' sizes away.
 inline constexpr double kWellBeside = 10;
 
+// So many rejections in a row are more than error control needs to find a step: a singular position may be near, which
+// a step of the usual length passes.
+inline constexpr int kDifficult = 2;
+
+inline double length_after(int rejections, double h, double usual, bool singular) {
+  if (singular && rejections >= kDifficult) return std::max(h, usual * std::pow(kShorter, rejections - kDifficult));
+  return rejections == kDifficult ? std::max(h, usual) : h;
+}
+
 class ControlledPair : public ExplicitStepper {
  public:
   using ExplicitStepper::ExplicitStepper;
@@ -38,8 +47,7 @@ class ControlledPair : public ExplicitStepper {
   }
   double retry(double h, int rejections, double usual) {
     singular_ = beside_singular() || at_start_;
-    if (singular_ && rejections >= kDifficult) return std::max(h, usual * std::pow(kShorter, rejections - kDifficult));
-    return rejections == kDifficult ? std::max(h, usual) : h;
+    return length_after(rejections, h, usual, singular_);
   }
   bool by_singular() const { return singular_; }  // the last completed step came by a singular position
   double adopt(double, double wanted) {
@@ -49,9 +57,6 @@ class ControlledPair : public ExplicitStepper {
   }
 
  private:
-  // So many rejections in a row are more than error control needs to find a step: a singular position may be near,
-  // which a step of the usual length passes.
-  static constexpr int kDifficult = 2;
   bool singular_ = false;  // the last attempt came by a singular position
   bool at_start_ = false;  // in one
 };
@@ -104,8 +109,7 @@ class ControlledRadau : public RadauStepper {
   }
   double retry(double h, int rejections, double usual) {
     singular_ = passes_ || RadauStepper::beside_singular();
-    if (singular_ && rejections >= kDifficult) return std::max(h, usual * std::pow(kShorter, rejections - kDifficult));
-    return rejections == kDifficult ? std::max(h, usual) : h;
+    return length_after(rejections, h, usual, singular_);
   }
   double adopt(double h, double wanted) {
     at_start_ = false;
@@ -115,7 +119,6 @@ class ControlledRadau : public RadauStepper {
 
  private:
   static constexpr double kSameStep = 1.2;  // growth up to which a kept matrix saves more than a longer step does
-  static constexpr int kDifficult = 2;
 
   std::function<std::unique_ptr<ExplicitStepper>()> make_passing_;
   std::unique_ptr<ExplicitStepper> passing_;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "integrators/stepping/accept.h"
+#include "integrators/stepping/step_control.h"
 #include "integrators/stepping/turning.h"
 #include "integrators/stepping/vectors.h"
 
@@ -13,8 +14,6 @@ namespace {
 
 constexpr double kNoise =
     100 * std::numeric_limits<double>::epsilon();  // relative: what rounding makes of a difference
-
-constexpr double kOfAccount = 0.1;  // part of the tolerance that makes a difference to the next step
 
 Eigen::Index columns(const RungeKuttaPair& pair) {
   return static_cast<Eigen::Index>(pair.stages.size() + 1 + pair.dense_stages.size());

@@ -13,9 +13,9 @@
 // shrink (with small steps Φ/h² magnifies the rounding of Φ; beside a singular position λ is noise, and the part of a
 // that the constraints say least of): where
 //   positions are corrected by no more than their rounding, 16 ε √bodies · max(1, |q|): that of each body's orientation
-//   moves all that hang on it, which adds up to √N of it over N bodies in a row; or 64 ε max(1, |q|) times what rows
-//   that are off by one move them by, which is more beside a singular position; or Φ is so small and |M a + Gᵀλ − Q| ≤
-//   256 ε (|M a| + |Gᵀ||λ|), in maximum norms.
+//   moves all that hang on it, which adds up to √N of it over N bodies in a row;
+//   or than 64 ε max(1, |q|) times what rows that are off by one move them by, more beside a singular position;
+//   or Φ is so small and |M a + Gᵀλ − Q| ≤ 256 ε (|M a| + |Gᵀ||λ|), in maximum norms.
 #pragma once
 
 #include <Eigen/Core>

@@ -10,8 +10,8 @@ namespace poinsot {
 namespace {
 
 constexpr double kTurn = 0.015;  // rad, τ: rounding 50 ε/τ³ and 576 (τ/R)⁸ are about as large, R being half a radian
-constexpr double kSteeper = 10;  // the same, where no step has failed
-constexpr double kSteep = 2;     // times the least steepness seen: from there on states beside are looked at
+// Times the least steepness seen: from there on states beside are looked at, where a step has failed or none has.
+constexpr double kSteep = 2, kSteeper = 10;
 constexpr std::array kWeights{1.6, -0.8, 8.0 / 35, -1.0 / 35};
 // Part of the steepness here at the most at ±τ, ...: a pole within τ/2 leaves two sevenths at 4τ.
 constexpr std::array kFall{1.0, 1.0, 1.0, 0.4};

@@ -12,11 +12,6 @@
 namespace poinsot {
 using radau::tableau;
 using radau::Tableau;
-namespace {
-
-constexpr double kOfAccount = 0.1;  // part of the tolerance that makes a difference to the next step
-
-}  // namespace
 
 // The error estimate has order 3, the method 5: with the same tolerance for both, errors would be far smaller than
 // asked for. Hairer's code asks the estimate for 0.1 rtol^(2/3).

@@ -27,6 +27,9 @@ void component_sizes(const Problem& problem, std::span<const double> q, std::spa
 // sqrt(mean (x/s)²)
 double error_norm(std::span<const double> x, std::span<const double> scale);
 
+// Part of the tolerance that makes a difference to the next step.
+inline constexpr double kOfAccount = 0.1;
+
 struct StepRule {
   double safety;
   double alpha, beta;  // exponents of this error and of the one before
