@@ -90,6 +90,14 @@ TEST_P(Passages, OfErrorControl) {
         EXPECT_LT(passage.off(r.samples.back().bodies[0]), 10 * rtol);
       }
     }
+    for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+      SCOPED_TRACE(::testing::Message() << integrator.name << ' ' << rtol << ", a folding crank");
+      const Recorded r = run(folding_crank(0.1), controlled(integrator.name, GetParam(), rtol, kPassed, kPassed));
+      ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+      const auto& bodies = r.samples.back().bodies;
+      EXPECT_NEAR(bodies[2].r.x(), 4 * bodies[0].r.x(), 1e-9);
+      EXPECT_LT(bodies[2].r.x(), -0.5);
+    }
   }
 }
 
