@@ -1,5 +1,7 @@
 // Singular positions, passed on the branch that the velocities lead to: posts in a row with couplers, all in one line
 // where a run starts, beside it, or on the way.
+#include "tests/support/passages.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,77 +9,14 @@
 #include <numbers>
 
 #include "integrators/integrator.h"
-#include "tests/support/loops.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
 namespace {
 
-constexpr double kPassed = 0.2, kSpin = -3;
-
-struct Passage {
-  int loops;
-  double angle;  // rad, at the start
-  bool redundant;
-
-  Scene scene() const { return posts(loops, angle, kSpin, redundant); }
-  double off(const BodyState& post) const {
-    const double phi = swung(loops, angle, kSpin, kPassed);
-    return (post.r - Vector3(0.5 * std::cos(phi), 0.5 * std::sin(phi), 0)).norm();
-  }
-  friend std::ostream& operator<<(std::ostream& out, const Passage& p) {
-    return out << fmt::format("{} loops from {} rad, {}", p.loops, p.angle, p.redundant ? "redundant" : "planar");
-  }
-};
-
-std::vector<Passage> passages() {
-  std::vector<Passage> all;
-  for (const int loops : {1, 2})
-    for (const double angle : {0.0, 1e-13, 1e-7, 0.05})
-      for (const bool redundant : {true, false}) all.push_back({loops, angle, redundant});
-  return all;
-}
-
 class Passages : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(All, Passages, ::testing::ValuesIn(formulation_names()),
                          [](const auto& test) { return test.param; });
-
-TEST_P(Passages, OfStepsOfFixedLength) {
-  for (const IntegratorEntry& integrator : integrators()) {
-    if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;
-    for (const Passage& passage : passages()) {
-      for (const double tolerance : {1e-3, 1e-8}) {
-        SCOPED_TRACE(::testing::Message() << integrator.name << ' ' << tolerance << ' ' << passage);
-        Settings settings = dynamics(GetParam(), 1e-2, kPassed, kPassed);
-        settings.integrator = integrator.name;
-        settings.stopping = Settings{}.stopping;
-        settings.tolerance = tolerance;
-        settings.max_iterations = Settings{}.max_iterations;
-        const Recorded r = run(passage.scene(), settings);
-        ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
-        EXPECT_LT(passage.off(r.samples.back().bodies[0]), integrator.order == 1 ? 1e-2 : 5e-4);
-      }
-    }
-  }
-}
-
-// Corrections that do not shrink are rounding here, of positions and, in stabilized index 2, of velocities.
-TEST_P(Passages, OfShortStepsAtATightTolerance) {
-  for (const char* integrator : {"generalized_alpha", "generalized_alpha_i2"}) {
-    for (const Passage& passage : passages()) {
-      SCOPED_TRACE(::testing::Message() << integrator << ' ' << passage);
-      Settings settings = dynamics(GetParam(), 1e-4, 0.02, 0.02);
-      settings.integrator = integrator;
-      settings.stopping = Settings{}.stopping;
-      settings.tolerance = 1e-8;
-      settings.max_iterations = Settings{}.max_iterations;
-      const Recorded r = run(passage.scene(), settings);
-      ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
-      const double phi = swung(passage.loops, passage.angle, kSpin, 0.02);
-      EXPECT_LT((r.samples.back().bodies[0].r - Vector3(0.5 * std::cos(phi), 0.5 * std::sin(phi), 0)).norm(), 1e-6);
-    }
-  }
-}
 
 TEST_P(Passages, OfErrorControl) {
   for (const IntegratorEntry& integrator : integrators()) {
@@ -195,46 +134,6 @@ TEST_P(Passages, OfADoubleFourBar) {
       EXPECT_LT(apart, 2000 * rtol);
     }
   }
-}
-
-// Here a time of the grid lies beside the flat position, where a tolerance of 1e-3 leaves much of the velocities open:
-// whole steps went on from there on another branch, with a post at rest. Couplers turn on those alone. Where a step
-// turns by more than a tenth of a radian it is no more than told that it may have left the branch.
-TEST_P(Passages, OfStepsThatEndBesideThePosition) {
-  struct Start {
-    int loops;
-    double angle, step;
-  };
-  int ended = 0, told = 0;
-  for (const auto& [loops, angle, step] : {Start{2, 0.281197, 1e-2}, Start{2, 0.361521, 1e-2}, Start{2, 0.889502, 1e-2},
-                                           Start{2, 1.03863, 1e-2}, Start{1, 0.562883, 2e-2}, Start{1, 1.0757, 3e-2}}) {
-    for (const IntegratorEntry& integrator : integrators()) {
-      if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;
-      SCOPED_TRACE(::testing::Message() << integrator.name << ", " << loops << " loops from " << angle);
-      Settings settings = dynamics(GetParam(), step, 2, 2);
-      settings.integrator = integrator.name;
-      settings.stopping = Settings{}.stopping;
-      settings.tolerance = 1e-3;
-      settings.max_iterations = Settings{}.max_iterations;
-      const Recorded r = run(posts(loops, angle, kSpin, false), settings);
-      if (!r.outcome.status.ok()) {
-        EXPECT_EQ(r.outcome.status.failure, Failure::singular_position) << r.outcome.status.message;
-        EXPECT_THAT(r.outcome.status.message, testing::HasSubstr("another branch"));
-        continue;
-      }
-      ++ended;
-      double turned = 0;
-      for (int k = 0; k < loops; ++k) {
-        const Matrix3& A = r.samples.back().bodies[static_cast<std::size_t>(loops + 1 + k)].A;
-        turned = std::max(turned, (A - Matrix3::Identity()).norm());
-      }
-      if (turned < 1e-2) continue;
-      ++told;
-      EXPECT_THAT(r.outcome.notices, testing::Contains(testing::HasSubstr("is not certain")));
-    }
-  }
-  EXPECT_GE(ended, 24) << "of 30";
-  EXPECT_LE(told, 2);
 }
 
 // A rod turned about z by its direction's cosine alone, which says nothing of its rate at a quarter turn: an instant of

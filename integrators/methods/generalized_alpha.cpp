@@ -77,11 +77,14 @@ class GeneralizedAlpha : public FixedSteps {
 
   Status begin() override {
     if (Status status = FixedSteps::begin(); !status.ok()) return status;
-    if (run_.singular_for == 0) return start();
-    // The limit of v̇ stands in the state. That of v̈ is left out, and what it makes of v.
+    return run_.singular_for > 0 ? Status{} : start();
+  }
+  // The limit of v̇ stands in the state. That of v̈ is left out, and what it makes of v.
+  Status leave_singular() override {
+    velocity_rows_ = velocity_rows(problem_);
     a_ = x_.z.head(nv_);
-    z_n_ = x_.z;
-    return {};
+    newton_.renew();
+    return forget();
   }
 
   Status step(double t) override {
@@ -91,35 +94,21 @@ class GeneralizedAlpha : public FixedSteps {
     z_n_ = 2 * x_.z - z_n_;  // Newton's method starts from the line through the last two
     z_n_.swap(x_.z);
 
-    const auto residual = [&](Vector& r) {
-      advance();
-      problem_.set_position(t, span(x_.q));
-      problem_.set_velocity(span(x_.v));
-      problem_.step_residual(scale_, x_.a(), x_.lambda(), span(r));
-      if (corrects_velocity_) keep_residual(r);
-    };
-    const auto matrix = [&] { return system_.refresh(t, scale_, span(dq_), x_.a(), x_.lambda()); };
-    const auto correct = [&](Vector& delta) -> Status {
-      problem_.lower(span(dq_), span(delta, 0, nv_));
-      x_.z += delta;
-      return corrects_velocity_ ? correct_velocity(t, delta) : Status{};
-    };
-    Status status = newton_.solve(t, scale_.position, x_.z, x_.q, residual, matrix, correct);
-    if (form_ == Form::stabilized2 && settings_.retry && status.failure == Failure::not_converged &&
-        newton_.stalled()) {
-      corrects_velocity_ = false;
-      x_.z = z_n_;
-      y_.setZero();
-      newton_.renew();
-      status = newton_.solve(t, scale_.position, x_.z, x_.q, residual, matrix, correct);
-      corrects_velocity_ = true;
-      if (status.ok()) tell_of_index3(t);
-    }
+    Status status = iterate(t);
+    if (form_ == Form::stabilized2 && settings_.retry && status.failure == Failure::not_converged && newton_.stalled())
+      status = iterate_at_index3(t);
     if (!status.ok()) return status;
-    advance();
-    a_.noalias() = k_.gain() * x_.z.head(nv_) + held_a_;
+    end_step();
     watch(t);
     return status;
+  }
+
+  // Where the velocity constraints say nothing, what they make of the step is rounding.
+  Status repeat_singular(double t) override {
+    if (form_ == Form::index3) return {};
+    if (Status status = iterate_at_index3(t); !status.ok()) return status;
+    end_step();
+    return {};
   }
 
   // In other coordinates v̈ is another, and what the state carries along belonged to the old ones.
@@ -136,6 +125,42 @@ class GeneralizedAlpha : public FixedSteps {
   }
 
  private:
+  // z of the step that the held parts begin, by Newton's method.
+  Status iterate(double t) {
+    const auto residual = [&](Vector& r) {
+      advance();
+      problem_.set_position(t, span(x_.q));
+      problem_.set_velocity(span(x_.v));
+      problem_.step_residual(scale_, x_.a(), x_.lambda(), span(r));
+      if (corrects_velocity_) keep_residual(r);
+    };
+    const auto matrix = [&] { return system_.refresh(t, scale_, span(dq_), x_.a(), x_.lambda()); };
+    const auto correct = [&](Vector& delta) -> Status {
+      problem_.lower(span(dq_), span(delta, 0, nv_));
+      x_.z += delta;
+      return corrects_velocity_ ? correct_velocity(t, delta) : Status{};
+    };
+    return newton_.solve(t, scale_.position, x_.z, x_.q, residual, matrix, correct);
+  }
+
+  // Without velocity constraints, from where the step began.
+  Status iterate_at_index3(double t) {
+    corrects_velocity_ = false;
+    x_.z = z_n_;
+    y_.setZero();
+    newton_.renew();
+    const Status status = iterate(t);
+    if (status.ok()) advance();
+    corrects_velocity_ = true;
+    if (status.ok()) tell_of_index3(t);
+    return status;
+  }
+
+  void end_step() {
+    advance();
+    a_.noalias() = k_.gain() * x_.z.head(nv_) + held_a_;
+  }
+
   StepScale scale() const { return {1, h_ * k_.gamma * k_.gain(), h_ * h_ * k_.beta * k_.gain()}; }
 
   // v̇, λ, a and, in index 3, the part of v normal to the constraints, from a consistent (q, v) where the problem

@@ -24,14 +24,13 @@ class HalfImplicit final : public FixedSteps {
 
   double index3_scale() const override { return h_ * h_; }
   Status prepare() override { return ends_.prepare(); }
-  Status begin() override {
-    Status status = FixedSteps::begin();
-    if (run_.singular_for > 0) place_beside(ends_.begin().problem);
-    return status;
-  }
   Status resume() override {
     velocity_rows_ = velocity_rows(ends_.begin().problem);
     return {};
+  }
+  Status leave_singular() override {
+    place_beside(ends_.begin().problem);
+    return resume();
   }
   Problem& stand() override { return ends_.begin().problem; }  // it does after every step
   Problem& last_seen() override { return stand(); }

@@ -86,7 +86,7 @@ class Kinematics final : public FixedSteps {
   }
 
   Status check_velocity(Problem&, double) override { return {}; }  // of certain steps
-  Status check_branch(Problem&, double) override { return {}; }
+  bool integrates() const override { return false; }
 
   Status complete() override {
     if (!inverse_dynamics_) return {};

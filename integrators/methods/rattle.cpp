@@ -39,8 +39,13 @@ class Rattle final : public FixedSteps {
 
   Status begin() override {
     if (Status status = FixedSteps::begin(); !status.ok()) return status;
-    if (run_.singular_for > 0) place_beside(ends_.begin().problem);
-    return factor(ends_.begin(), 0);
+    return run_.singular_for > 0 ? Status{} : factor(ends_.begin(), 0);
+  }
+  Status leave_singular() override {
+    z_ = x_.z;
+    velocity_rows_ = velocity_rows(ends_.begin().problem);
+    place_beside(ends_.begin().problem);
+    return factor(ends_.begin(), x_.t);
   }
 
   Status step(double t) override {

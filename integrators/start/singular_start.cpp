@@ -18,7 +18,7 @@ Status limit_accelerations(Problem& problem, const RankAnalysis& rank, const Set
   Passage passage(problem, beside);
   State limit = state;
   const bool found = std::ranges::any_of(
-      kFarther, [&](double farther) { return passage.limit(limit, farther * rank.time_beside, HUGE_VAL); });
+      kFarther, [&](double farther) { return passage.limit(limit, state.v, farther * rank.time_beside, HUGE_VAL); });
   if (!found) {
     return {Failure::singular_position, state.t,
             "the start is a singular position, and accelerations beside it have no limit there; start beside it"};

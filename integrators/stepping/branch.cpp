@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/vectors.h"
 
@@ -34,18 +35,22 @@ Most most(const Problem& problem, const Eigen::VectorXd& v) {
 
 }  // namespace
 
-bool BranchWatch::suspects(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h) {
-  constexpr double kUnusual = 4, kFraction = 0.2, kMoved = 0.1;
-  if (problem.model_rows().empty()) return false;  // no constraints, no branches
+void BranchWatch::begin(const Problem& problem, std::span<const double> a) {
+  const Most change = most(problem, [&](Eigen::Index k) { return a[index(k)]; });
+  usual_way_ = change.way, usual_turn_ = change.turn;
+}
+
+double BranchWatch::jump(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h) {
+  constexpr double kUnusual = 4, kMoved = 0.1;
+  if (problem.model_rows().empty()) return 0;  // no constraints, no branches
   const Most change = most(problem, [&](Eigen::Index k) { return v[k] - v_n[k]; });
-  const bool unusual = change.way > kUnusual * h * usual_way_ || change.turn > kUnusual * h * usual_turn_;
   way_ = change.way / h, turn_ = change.turn / h;
-  if (!unusual || !begun_) return false;
+  if (!(way_ > kUnusual * usual_way_ || turn_ > kUnusual * usual_turn_)) return 0;
   const Most before = most(problem, v_n), after = most(problem, v);
-  const auto large = [&](double Most::*of) {  // and no start from rest, which has no branch to leave
-    return change.*of > kFraction * std::max(before.*of, after.*of) && before.*of > kMoved * after.*of;
+  const auto part = [&](double Most::*of) {  // of no start from rest, which has no branch to leave
+    return before.*of > kMoved * after.*of ? change.*of / std::max(before.*of, after.*of) : 0;
   };
-  return large(&Most::way) || large(&Most::turn);
+  return std::max(part(&Most::way), part(&Most::turn));
 }
 
 void BranchWatch::follow() {

@@ -20,8 +20,11 @@ namespace poinsot {
 
 class BranchWatch {
  public:
-  // Whether a step of length h from v_n to v has to be asked about.
-  bool suspects(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h);
+  // The first step begins with velocities that change by a per second.
+  void begin(const Problem& problem, std::span<const double> a);
+  // The part of the velocities that changes in a step of length h from v_n to v, where that is several times what steps
+  // before lead to expect; else 0.
+  double jump(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h);
   // The last step that was looked at stands.
   void follow();
 

@@ -14,6 +14,10 @@ namespace {
 
 constexpr int kHalvings = 10;  // of a step that fails
 
+// Part of its velocities that a step changes unusually: from there on its end is looked at, and whether it is on its
+// branch.
+constexpr double kLooked = 0.02, kSuspect = 0.2;
+
 // What the size of a step has a part in.
 bool may_be_too_long(Failure failure) {
   return failure == Failure::not_converged || failure == Failure::not_finite || failure == Failure::singular_matrix ||
@@ -49,12 +53,16 @@ FixedSteps::FixedSteps(const Run& run)
       q_n_(run.state.q),
       v_n_(run.state.v),
       discrete_(run.problem.has_discrete_state()),
+      singular_ends_(run.settings),
       output_(run.settings) {}
 
 Status FixedSteps::march() {
   if (Status status = prepare(); !status.ok()) return status;
   Status status = begin();
   if (status.ok()) status = measure_rotation(problem_, 0);
+  settles_ = settings_.retry && integrates();
+  branch_.begin(problem_, x_.a());
+  if (run_.singular_for > 0) settled_at_ = 0;
   divides_ = settings_.retry && divides();
   repeats_ = divides_ && !remembers();
   const int halvings = divides_ ? kHalvings : 0;
@@ -66,6 +74,8 @@ Status FixedSteps::march() {
     const bool sampled = grid_.sampled(n);
     const std::int64_t before = run_.statistics.steps;
     status = reach_in_halves(grid_.time(n), sampled, halvings);
+    if (may_be_too_long(status.failure) && x_.t == grid_.time(n - 1) && settles_beginning())
+      status = reach_in_halves(grid_.time(n), sampled, halvings);
     if (run_.statistics.steps > before + 1) ++run_.statistics.divided_steps;
     if (status.ok() && sampled) status = give_out(*standing_);
   }
@@ -80,22 +90,31 @@ Status FixedSteps::march() {
 
 // The step from x_ to t, brought up to date where coordinates have to be, or a sample is taken there.
 Status FixedSteps::reach(double t, bool sampled) {
-  if (rewritten_) {
-    rewritten_ = false;
-    if (Status status = resume(); !status.ok()) return status;
+  const double began = x_.t;
+  const bool leaves = began == settled_at_, resumes = std::exchange(rewritten_, false);
+  if (leaves || resumes) {
+    if (Status status = leaves ? leave_singular() : resume(); !status.ok()) return status;
   }
   q_n_.swap(x_.q);
   v_n_.swap(x_.v);
   Status status = step(t);
+  x_.t = t;
+  double jump = status.ok() && integrates() ? branch_.jump(problem_, v_n_, x_.v, h_) : 0;
+  bool settled = false;
+  if (settles_ && jump > kLooked) {
+    status = settle_end(settled);
+    if (settled) jump = branch_.jump(problem_, v_n_, x_.v, h_);
+  }
   if (status.ok()) status = measure_rotation(last_seen(), t);
-  if (status.ok()) status = check_branch(last_seen(), t);
+  if (status.ok() && jump > kSuspect) status = check_branch(last_seen());
   if (!status.ok()) {
+    x_.t = began;
     x_.q.swap(q_n_);
     x_.v.swap(v_n_);
     return status;
   }
   branch_.follow();
-  x_.t = t;
+  if (settled) settled_at_ = t;
   ++run_.statistics.steps;
   if (!discrete_ && !sampled) return {};
   standing_ = &stand();
@@ -112,7 +131,7 @@ Status FixedSteps::reach_in_halves(double t, bool sampled, int halvings) {
   const double h = h_, half = began + 0.5 * (t - began);
   if (!(began < half && half < t)) return as_one;
   x_.z = z_began_;
-  if (!forget().ok()) return as_one;
+  if (began != settled_at_ && !forget().ok()) return as_one;
   const bool outermost = halvings == kHalvings;
   const std::vector<BodyState> before = outermost ? bodies() : std::vector<BodyState>{};
   const State state = x_;
@@ -131,7 +150,7 @@ Status FixedSteps::reach_in_halves(double t, bool sampled, int halvings) {
   x_ = state;
   shortest_ = shortest;
   run_.statistics.steps = steps;
-  if (!forget().ok()) return status;
+  if (began != settled_at_ && !forget().ok()) return status;
   as_it_is_ = true;
   status = reach(t, sampled);
   as_it_is_ = false;
@@ -176,10 +195,10 @@ Status FixedSteps::check_velocity(Problem& problem, double t) {
 // it beside a dead centre, and in steps that turn by more than kFine: such a step is done in parts where that is
 // better, and what then is not certain is told. Motions that turn round, or have no velocities where they come to, have
 // left it.
-Status FixedSteps::check_branch(Problem& problem, double t) {
+Status FixedSteps::check_branch(Problem& problem) {
   constexpr double kComparable = 0.2, kTurns = 2, kFine = 0.1, kReversed = 1.5;
-  if (!branch_.suspects(problem, v_n_, x_.v, h_)) return {};
-  const auto [share, row] = departure(problem, settings_.linear(), {x_.t, q_n_, v_n_}, {t, x_.q, x_.v});
+  const double t = x_.t;
+  const auto [share, row] = departure(problem, settings_.linear(), {t - h_, q_n_, v_n_}, {t, x_.q, x_.v});
   const bool fine = rotation_ <= kFine, left = fine && share > kReversed;
   if (left || (fine && share > kComparable + kTurns * rotation_ && repeats_ && !as_it_is_)) {
     departs_ = !left;
@@ -205,15 +224,58 @@ Status FixedSteps::begin() {
 }
 
 Status FixedSteps::give_out(Problem& problem) {
-  if (Status status = complete(); !status.ok()) return status;
+  const bool settled = x_.t == settled_at_;
+  if (Status status = settled ? Status{} : complete(); !status.ok()) return status;
   const bool last = x_.t >= settings_.end;
   const double scale = index3_scale();
   clock_.pause();  // what is computed for the output alone is no part of a step
   if (last) run_.systems.let_go();
-  const State& given = scale > 0 ? output_.choose(problem, x_, scale, last, run_.statistics) : x_;
-  sample(run_.observe, problem, given, run_.statistics);
+  const State* given = &x_;
+  if (!settled && scale > 0) given = &output_.choose(problem, x_, scale, last, run_.statistics);
+  if (!settled && settles_ && is_sudden(*given, v_n_, h_)) {
+    given_ = *given;
+    if (settle(singular_ends_, problem, v_n_, *given_)) given = &*given_;
+  }
+  sample(run_.observe, problem, *given, run_.statistics);
+  if (given_ && given == &*given_) place(problem);
   clock_.resume();
   return {};
+}
+
+// The step that was done, where it ends in a singular position: done again, and then the limit of the states beside.
+Status FixedSteps::settle_end(bool& settled) {
+  given_ = x_;
+  settled = settle(singular_ends_, last_seen(), v_n_, *given_);
+  if (!settled) return {};
+  if (Status status = repeat_singular(x_.t); !status.ok()) return status;
+  settled = settle(singular_ends_, last_seen(), v_n_, x_);
+  return {};
+}
+
+// The same for where a step begins that leads nowhere.
+bool FixedSteps::settles_beginning() {
+  if (!settles_ || settled_at_ == x_.t) return false;
+  const std::unique_ptr<Problem> problem = last_seen().clone();  // which goes on showing where it stopped
+  place(*problem);
+  SingularEnds ends(settings_);
+  if (!settle(ends, *problem, x_.v, x_)) return false;
+  settled_at_ = x_.t;
+  return true;
+}
+
+bool FixedSteps::settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at) {
+  if (!ends.settle(problem, v_n, at)) return false;
+  if (!std::exchange(told_, true)) {
+    run_.tell(fmt::format(
+        "at t = {:.6g} s a step ends in a singular position, or so near that rounding decides about velocities or "
+        "accelerations: they are the limit of those beside it",
+        at.t));
+  }
+  if (ends.leaves_multipliers_open() && !std::exchange(told_of_multipliers_, true)) {
+    run_.tell(
+        fmt::format("at t = {:.6g} s the position leaves multipliers open: they are those of a state beside it", at.t));
+  }
+  return true;
 }
 
 Problem& FixedSteps::stand() {

@@ -2,9 +2,10 @@
 // samples, and what is left behind at the end or after a failure.
 //
 // A method derives from FixedSteps, says what its step is, and overrides what else it does differently. March calls
-//   prepare, begin,   then for every t_n:   [resume] step [stand [accept] [complete, sample]]
+//   prepare, begin,   then for every t_n:   [leave_singular | resume] step [stand [accept] [complete, sample]]
 // A step that fails numerically is done in two halves, and those that fail again in halves of them, down to h/2^10:
-// then resize and, after a failure, forget are called besides.
+// then resize and, after a failure, forget are called besides. A step that ends in a singular position, seen by what it
+// makes of velocities or by the failure of the next one, ends in the limit of states beside it (singular_ends.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -13,6 +14,7 @@
 #include "integrators/stepping/branch.h"
 #include "integrators/stepping/index1_output.h"
 #include "integrators/stepping/observe.h"
+#include "integrators/stepping/singular_ends.h"
 #include "integrators/stepping/time_grid.h"
 #include "integrators/stepping/vectors.h"
 
@@ -34,6 +36,9 @@ class FixedSteps {
   virtual Status begin();
   // From (q_n_, v_n_) at x_.t to x_ at t. Where it fails, q and v become what they were.
   virtual Status step(double t) = 0;
+  // The step to t that was just done ends in a singular position: x_ at t anew, where it took what the constraints say
+  // of velocities for better than it is there.
+  virtual Status repeat_singular(double /*t*/) { return {}; }
   // The problem that stands at x_.
   virtual Problem& stand();
   // The problem that stands at the end of the step, or where Newton's method saw it last.
@@ -42,17 +47,20 @@ class FixedSteps {
   virtual Status check_turns(Problem& problem, double t);
   // Whether its velocity goes on from that before, as far as it turns bodies.
   virtual Status check_velocity(Problem& problem, double t);
-  // Whether it ends on the branch that its velocities lead to.
-  virtual Status check_branch(Problem& problem, double t);
   // Brings the discrete state up to date; `problem` stands at x_ before and after.
   virtual Status accept(Problem& problem);
   // Before the step that follows an accept() which has rewritten coordinates or rows.
   virtual Status resume() { return {}; }
+  // Before the step out of a singular position, in the place of resume(): in x_ stands the limit of the states beside
+  // it, and λ and what a method carries along from steps before are nothing to go by.
+  virtual Status leave_singular() { return {}; }
   // Finds the (a, λ) of a sample, where steps do not.
   virtual Status complete() { return {}; }
   // δq/δa of a step whose (a, λ) are solved from Φ = 0, by which rounding is magnified and better may be given out;
   // else 0.
   virtual double index3_scale() const { return 0; }
+  // Whether velocities go on from those of steps before, by which branches are told apart.
+  virtual bool integrates() const { return true; }
   // Whether a step that fails may be done in parts, of other lengths than the rest.
   virtual bool divides() const { return true; }
   // Whether a step depends on more of those before it than x_.
@@ -85,9 +93,14 @@ class FixedSteps {
  private:
   Status reach(double t, bool sampled);
   Status reach_in_halves(double t, bool sampled, int halvings);
+  Status settle_end(bool& settled);
+  bool settles_beginning();
+  bool settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at);
   void set_step(double h);
   std::vector<BodyState> bodies();  // where x_ is
   Status measure_rotation(Problem& problem, double t);
+  // Whether the step ends on the branch that its velocities lead to.
+  Status check_branch(Problem& problem);
 
   const bool discrete_;
   bool rewritten_ = false;
@@ -97,11 +110,17 @@ class FixedSteps {
   double rotation_ = 0;          // of the last step, the largest of a body
   Vector change_;
   BranchWatch branch_;
-  bool divides_ = false;   // steps that fail are done in parts
-  bool repeats_ = false;   // and may be done as they were after that
-  bool departs_ = false;   // the last step may have left its branch
-  bool as_it_is_ = false;  // that step in parts did no better
-  bool doubted_ = false;   // of a branch, and told
+  SingularEnds singular_ends_;
+  std::optional<State> given_;  // a sample in a singular position
+  double settled_at_ = -1;      // time when x_ was made the limit of states beside a singular position
+  bool settles_ = false;        // ends in singular positions are
+  bool divides_ = false;        // steps that fail are done in parts
+  bool repeats_ = false;        // and may be done as they were after that
+  bool departs_ = false;        // the last step may have left its branch
+  bool as_it_is_ = false;       // that step in parts did no better
+  bool doubted_ = false;        // of a branch, and told
+  bool told_ = false;           // of a singular end
+  bool told_of_multipliers_ = false;
   Index1Output output_;
 };
 

@@ -20,6 +20,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "integrators/integrator.h"
@@ -50,6 +51,7 @@ class NewtonLoop {
     double correction = 0, before = INFINITY;
     bool of_this_step = false;
     stalled_ = false;
+    since_stall_ = std::numeric_limits<int>::max() / 2;
     for (int k = 0; k < settings_.max_iterations; ++k) {
       residual(delta_);
       if (stalled_ && balanced(position, z, q)) return {};
@@ -69,6 +71,7 @@ class NewtonLoop {
         slow_ = !(correction < kSlow * before);
       }
       stalled_ = correction > 0.5 * before;
+      since_stall_ = stalled_ ? 0 : since_stall_ + 1;
       if (correction <= settings_.tolerance || (stalled_ && is_rounding(t, position, q))) return {};
       before = correction;
       if (!std::isfinite(correction)) break;
@@ -76,8 +79,8 @@ class NewtonLoop {
     return not_converged(t, correction);
   }
 
-  // Whether corrections had stopped to shrink where the last step ended or failed.
-  bool stalled() const { return stalled_; }
+  // Whether corrections had stopped to shrink in one of the last iterations of a step.
+  bool stalled() const { return since_stall_ < 4; }
   // The step's size has changed: a kept matrix is that of another.
   void renew() { slow_ = true; }
 
@@ -116,7 +119,8 @@ class NewtonLoop {
   Vector delta_, momentum_, rows_;
   double gradient_ = -1;  // |Gᵀ|, of the first step: directions and arms stay what they are
   bool stalled_ = false;
-  bool slow_ = false;  // the last corrections did not shrink as they should
+  int since_stall_ = 0;  // iterations
+  bool slow_ = false;    // the last corrections did not shrink as they should
 };
 
 }  // namespace poinsot

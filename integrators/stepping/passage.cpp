@@ -47,11 +47,11 @@ std::span<const double> Passage::moved_by() const {
   return settled_ ? span(std::as_const(work_->moved_by)) : consistent_.moved_by();
 }
 
-Status Passage::stand_beside(const State& at, double s, Beside& beside) {
+Status Passage::stand_beside(const State& at, const Eigen::VectorXd& along, double s, Beside& beside) {
   State& place = work_->place;
   place.t = driven_ ? at.t + s : at.t;  // forces may be switched
   place.v = at.v;
-  work_->moved = s * at.v;
+  work_->moved = s * along;
   problem_.retract(span(at.q), span(work_->moved), span(place.q));
   beside.c.setZero(at.v.size());
   if (Status status = consistent_.project_position(place.t, span(place.q), span(beside.c)); !status.ok()) return status;
@@ -70,10 +70,8 @@ Status Passage::settle(State& at, bool& settled) {
   if (!(rate > 0)) return {};
   const double here = consistent_.steepness(at.t);
   consistent_.look(here);
-  const bool first = least_ == HUGE_VAL;
-  least_ = std::min(least_, here);
-  if (!first && here < kSteep * least_) return {};
-  settled = settled_ = limit(at, kTurn / rate, here);
+  if (!is_steep(here)) return {};
+  settled = settled_ = limit(at, at.v, kTurn / rate, here);
   if (!settled) return consistent_.accelerations(at);
   consistent_.stand(work_->nearest);
   if (Status status = consistent_.factor(work_->nearest.t); !status.ok()) return status;
@@ -82,13 +80,33 @@ Status Passage::settle(State& at, bool& settled) {
   return {};
 }
 
-bool Passage::limit(State& at, double tau, double steepest) {
+bool Passage::is_steep(double here) {
+  const bool first = least_ == HUGE_VAL;
+  least_ = std::min(least_, here);
+  return first || !(here < kSteep * least_);
+}
+
+bool Passage::settle_end(State& at, const Eigen::VectorXd& v_n, bool& open) {
+  problem_.set_velocity(span(v_n));
+  const double rate = problem_.fastest_turn();
+  consistent_.stand(at);
+  const double here = rate > 0 && consistent_.factor(at.t).ok() ? consistent_.steepness(at.t) : HUGE_VAL;
+  const bool settled = rate > 0 && is_steep(here) && limit(at, v_n, kTurn / rate, here);
+  consistent_.stand(at);
+  if (!settled) return false;
+  least_ = std::min(least_, work_->beside.back()[0].steepness);
+  open = !multipliers(at).ok();
+  if (open) std::ranges::copy(std::as_const(work_->nearest).lambda(), at.lambda().begin());
+  return true;
+}
+
+bool Passage::limit(State& at, const Eigen::VectorXd& along, double tau, double steepest) {
   if (!work_) work_ = std::make_unique<Work>(problem_);
   for (std::size_t k = 0; k < kWeights.size(); ++k) {
     for (std::size_t side = 0; side < 2; ++side) {
       Beside& beside = work_->beside[k][side];
       const double s = (side == 0 ? 1 : -1) * static_cast<double>(k + 1) * tau;
-      if (!stand_beside(at, s, beside).ok() || !(beside.steepness < kFall[k] * steepest)) return false;
+      if (!stand_beside(at, along, s, beside).ok() || !(beside.steepness < kFall[k] * steepest)) return false;
       if (k == 0 && side == 0) work_->nearest = work_->place;
     }
   }

@@ -30,9 +30,14 @@ class Passage {
   // then q, v and a are made the limit of theirs, λ is left. The problem stands at `at`, before and after. The
   // factorization at hand is that of `at` before; after, where it was settled, that of a state beside.
   Status settle(State& at, bool& settled);
-  // Makes q, v and a of `at` the limit of those at ±τ, ... ±4τ, which are as they are no nearer to a singular position
-  // than rows off by one move positions by `steepest`. Says whether there is one: fails nowhere.
-  bool limit(State& at, double tau, double steepest);
+  // Makes q, v and a of `at` the limit of those at ±τ, ... ±4τ along a velocity of the branch, which are as they are no
+  // nearer to a singular position than rows off by one move positions by `steepest`. Says whether there is one: fails
+  // nowhere.
+  bool limit(State& at, const Eigen::VectorXd& along, double tau, double steepest);
+  // The same for the end of a step that began with v_n: what the constraints leave to rounding there is in `at`. λ is
+  // that of the limit or, where the position leaves it open, of the state at τ; `open` says so. The problem stands at
+  // `at`, before and after.
+  bool settle_end(State& at, const Eigen::VectorXd& v_n, bool& open);
   // The consistent state beside (q, v), λ included: Consistent's, or the limit.
   Status complete(State& at);
   // How far the last one was moved, δq and then δv; by Consistent, where it was not settled.
@@ -40,7 +45,9 @@ class Passage {
 
  private:
   struct Beside;
-  Status stand_beside(const State& at, double s, Beside& beside);
+  Status stand_beside(const State& at, const Eigen::VectorXd& along, double s, Beside& beside);
+  // Whether that is much steeper than somewhere before, or nothing is known yet.
+  bool is_steep(double here);
   Status multipliers(State& at);
 
   Problem& problem_;
