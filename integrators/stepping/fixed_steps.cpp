@@ -232,7 +232,7 @@ Status FixedSteps::give_out(Problem& problem) {
   if (last) run_.systems.let_go();
   const State* given = &x_;
   if (!settled && scale > 0) given = &output_.choose(problem, x_, scale, last, run_.statistics);
-  if (!settled && settles_ && is_sudden(*given, v_n_, h_)) {
+  if (!settled && settles_ && singular_ends_.doubts(*given, v_n_, h_)) {
     given_ = *given;
     if (settle(singular_ends_, problem, v_n_, *given_)) given = &*given_;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace poinsot {
 
@@ -12,10 +13,12 @@ bool SingularEnds::settle(Problem& problem, const Eigen::VectorXd& v_n, State& a
     consistent_.emplace(problem, choice_);
     passage_.emplace(problem, *consistent_);
   }
-  return passage_->settle_end(at, v_n, open_);
+  const bool settled = passage_->settle_end(at, v_n, open_);
+  if (!settled) largest_ = std::max(largest_, std::exchange(doubted_, 0));
+  return settled;
 }
 
-bool is_sudden(const State& at, const Eigen::VectorXd& v_n, double h) {
+bool SingularEnds::doubts(const State& at, const Eigen::VectorXd& v_n, double h) {
   constexpr double kPart = 0.25;
   double mean = 0, end = 0, apart = 0;
   for (Eigen::Index k = 0; k < v_n.size(); ++k) {
@@ -24,7 +27,9 @@ bool is_sudden(const State& at, const Eigen::VectorXd& v_n, double h) {
     end = std::max(end, std::abs(at.z[k]));
     apart = std::max(apart, std::abs(at.z[k] - a));
   }
-  return apart > kPart * std::max(mean, end);
+  const bool doubtful = apart > kPart * std::max(mean, end) && end > largest_;
+  doubted_ = doubtful ? end : 0;
+  return doubtful;
 }
 
 }  // namespace poinsot

@@ -16,6 +16,9 @@ class SingularEnds {
   // Makes `at`, the end of a step that began with v_n, that limit if there is one, and says whether. `problem` stands
   // at `at`, before and after.
   bool settle(Problem& problem, const Eigen::VectorXd& v_n, State& at);
+  // Whether a sample, whose a is not what steps go on with, has to be asked about: where a differs from the mean of the
+  // step, from v_n in time h, by a quarter of the larger one, and is larger than where that was the motion's.
+  bool doubts(const State& at, const Eigen::VectorXd& v_n, double h);
   // Of the last one that was settled: its λ is that of a state beside it.
   bool leaves_multipliers_open() const { return open_; }
 
@@ -25,10 +28,7 @@ class SingularEnds {
   std::optional<Consistent> consistent_;
   std::optional<Passage> passage_;
   bool open_ = false;
+  double doubted_ = 0, largest_ = 0;  // acceleration last doubted, and the largest that was the motion's
 };
-
-// Whether the acceleration at the end of a step differs from the mean of the step, from v_n to `at` in time h, by a
-// quarter of the larger one.
-bool is_sudden(const State& at, const Eigen::VectorXd& v_n, double h);
 
 }  // namespace poinsot
