@@ -1,6 +1,7 @@
 // Vectors of the machine the program is compiled for, and loops written out: what the dense kernels are made of.
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 #include <type_traits>
 #include <utility>
@@ -36,6 +37,42 @@ inline void unrolled(F&& f) {
     (f(std::integral_constant<int, k>()), ...);
   }
   (std::make_integer_sequence<int, N>());
+}
+
+// Number i is f(std::integral_constant<int, i>()).
+template <class F>
+inline Vec vector(F&& f) {
+  return [&]<int... i>(std::integer_sequence<int, i...>) {
+    return Vec{f(std::integral_constant<int, i>())...};
+  }
+  (std::make_integer_sequence<int, kLanes>());
+}
+
+// Number `lane` everywhere; another number or zero there.
+template <int lane>
+inline Vec spread(Vec x) {
+  return [&]<int... i>(std::integer_sequence<int, i...>) {
+    return __builtin_shufflevector(x, x, (i * 0 + lane)...);
+  }
+  (std::make_integer_sequence<int, kLanes>());
+}
+template <int lane>
+inline Vec with(Vec x, double number) {
+  return [&]<int... i>(std::integer_sequence<int, i...>) {
+    return __builtin_shufflevector(x, number - Vec{}, (i == lane ? kLanes + i : i)...);
+  }
+  (std::make_integer_sequence<int, kLanes>());
+}
+typedef std::int64_t Bits __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+template <int lane>
+inline Vec without(Vec x) {
+  return [&]<int... i>(std::integer_sequence<int, i...>) {
+    return reinterpret_cast<Vec>(reinterpret_cast<Bits>(x) & Bits{(i == lane ? 0 : -1)...});
+  }
+  (std::make_integer_sequence<int, kLanes>());
+}
+inline Vec magnitude(Vec x) {
+  return reinterpret_cast<Vec>(reinterpret_cast<Bits>(x) & (INT64_MAX - Bits{}));
 }
 
 }  // namespace poinsot

@@ -26,7 +26,7 @@ class Square {
   std::vector<Sized> entries_;
 };
 
-// Eliminates p pivots of n; false where one of them is cancelled. The pivots are those of block::factor_pivots.
+// Eliminates p pivots of n; false where one of them is cancelled. The pivots are those of factor_choosing().
 bool eliminate(Square& a, int p, int n, std::vector<double> weight, double part) {
   bool good = true;
   for (int k = 0; k < p; ++k) {

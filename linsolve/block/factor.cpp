@@ -13,7 +13,6 @@ namespace poinsot::block {
 namespace {
 
 // Kernels by the number of pivots; the first is that for any number.
-constexpr int kKernels = 9;
 std::size_t kernel(int pivots) {
   return pivots < kKernels ? index(pivots) : 0;
 }
@@ -25,17 +24,14 @@ template <int... P>
 constexpr auto forwards(std::integer_sequence<int, P...>) {
   return std::array{&block::forward<P>...};
 }
-template <int... P>
+template <bool Whole, int... P>
 constexpr auto backwards(std::integer_sequence<int, P...>) {
-  return std::array{&block::backward<P>...};
+  return std::array{&block::backward<P, Whole>...};
 }
 constexpr auto kEliminate = eliminations(std::make_integer_sequence<int, kKernels>());
 constexpr auto kForward = forwards(std::make_integer_sequence<int, kKernels>());
-constexpr auto kBackward = backwards(std::make_integer_sequence<int, kKernels>());
-
-float in_range(double x) {
-  return static_cast<float>(std::clamp(x, 1e-37, 1e37));
-}
+constexpr std::array kBackward{backwards<false>(std::make_integer_sequence<int, kKernels>()),
+                               backwards<true>(std::make_integer_sequence<int, kKernels>())};
 
 // A factor that no cache holds is fetched ahead: its fronts are a kilobyte or two each, and the processor's own
 // prefetching begins anew at every page.
@@ -58,6 +54,7 @@ void Factor::resize(const Schedule& s) {
   weight_.assign(index(s.n), 1);
   order_.assign(index(s.n), 0);
   moved_.assign(s.fronts.size(), 0);
+  whole_.assign(s.fronts.size(), 0);
   places_.assign(s.fronts.size(), {});
   const int* child = s.children.data();
   for (std::size_t k = 0; k < s.fronts.size(); ++k) {
@@ -99,10 +96,11 @@ Drift Factor::factor(const Schedule& s, std::span<const double> values, bool kee
       const Front& c = s.fronts[index(*child)];
       block::extend_add(c, stack_.data() + c.update, s.stretches.data(), f, D, W);
     }
-    Choice choice{order_.data() + f.first, weight_.data() + f.first, then_.data() + f.first, moved_[k] != 0,
-                  keep_order};
+    Choice choice{order_.data() + f.first, weight_.data() + f.first, then_.data() + f.first,
+                  moved_[k] != 0,          whole_[k] != 0,           keep_order};
     kEliminate[kernel(f.pivots)](D, f, W, stack_.data() + f.update, choice, t_.data(), drift);
     moved_[k] = choice.moved;
+    whole_[k] = choice.whole;
   }
   return drift;
 }
@@ -125,23 +123,12 @@ void Factor::solve(const Schedule& s, std::span<double> b) {
       fetch(pass.store + next.store, next.pivots * next.pivots);
       fetch(pass.store + next.store + next.pivots * (next.pivots + next.rows), next.pivots * next.others);
     }
-    kBackward[kernel(f->pivots)](pass, *f);
+    kBackward[index(whole_[index(f - begin)])][kernel(f->pivots)](pass, *f);
   }
 }
 
 void Factor::weigh_rows(const Schedule& s, std::span<const double> weight) {
   for (std::size_t k = 0; k < weight.size(); ++k) weight_[k] = in_range(weight[index(s.unknown[k])]);
-}
-
-void Factor::keep_pivots(const Schedule& s) {
-  for (std::size_t front = 0; front < s.fronts.size(); ++front) {
-    const Front& f = s.fronts[front];
-    for (int k = 0; k < f.pivots; ++k) {
-      const int row = moved_[front] != 0 ? order_[index(f.first + k)] : k;
-      const double inverse = std::abs(store_[index(f.store + std::int64_t{k} * (f.pivots + 1))]);
-      then_[index(f.first + k)] = in_range(inverse / double{weight_[index(f.first + row)]});
-    }
-  }
 }
 
 }  // namespace poinsot::block

@@ -18,13 +18,11 @@ class Factor {
 
   // Factors for the rows that make their entries comparable; pivots are chosen by them, values stay as they are.
   void weigh_rows(const Schedule& schedule, std::span<const double> weight);
-  // Factorizes, in the order of rows of the last factorization as far as that serves, or choosing it afresh. Nothing
-  // stops at a bad pivot; the drift tells.
+  // Factorizes, in the order of rows of the last factorization as far as that serves, or choosing it afresh, which
+  // later ones are compared with. Nothing stops at a bad pivot; the drift tells.
   Drift factor(const Schedule& schedule, std::span<const double> values, bool keep_order);
   // b ← A⁻¹ b
   void solve(const Schedule& schedule, std::span<double> b);
-  // Later factorizations are compared with the last one.
-  void keep_pivots(const Schedule& schedule);
 
  private:
   std::vector<double> store_, stack_, update_, t_;
@@ -33,6 +31,7 @@ class Factor {
   std::vector<std::uint16_t> order_;
   std::vector<Places> places_;  // by front: those of its first child where that lays it down
   std::vector<char> moved_;     // by front: its rows are not in the order 0, 1, 2, … but in that of order_
+  std::vector<char> whole_;     // by front: its pivot block is inverted as a whole
 };
 
 }  // namespace poinsot::block

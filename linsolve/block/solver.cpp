@@ -133,7 +133,6 @@ class Solver final : public LinearSolver {
       if (!cancelled_pivots(*schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
       near_ = Answer::checked;
     }
-    factor_.keep_pivots(*schedule_);
     answer_ = near_;
     good_ = 0;
     helped_ = 0;
