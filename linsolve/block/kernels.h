@@ -106,8 +106,8 @@ void eliminate(double* D, const Front& f, const double* W, double* out, Choice& 
   bool done = false;
   if constexpr (P > 0) {
     if (!choice.keep) choose(D, P, choice);
-    constexpr double kKept = kReluctance * kReluctance;
-    done = choice.whole ? invert_in_order<P>(D, choice, kKept, drift) : factor_in_order<P>(D, choice, kKept, drift);
+    constexpr double kBehind = kReluctance * kReluctance;
+    done = choice.whole ? invert_in_order<P>(D, choice, kBehind, drift) : factor_in_order<P>(D, choice, kBehind, drift);
   }
   if (!done) {
     choice.whole = false;
