@@ -274,5 +274,24 @@ TEST(BodyFixedJoints, AJointFarFromItsBodiesIsTold) {
                                             "most")));
 }
 
+// 1 m at 1e8 m, where a position is known to 2e-8 of it.
+TEST(BodyFixedJoints, AMechanismFarFromTheOriginIsTold) {
+  for (const double away : {1e6, 1e8}) {
+    Scene scene = scene_of("double_pendulum_joints");
+    for (Body& body : scene.bodies) body.position.x() += away;
+    for (Joint& joint : scene.joints) joint.point.x() += away;
+    const auto told = ::testing::Contains(HasSubstr("from the origin and"));
+    if (away < 1e7)
+      EXPECT_THAT(start_of(scene).notices, Not(told));
+    else
+      EXPECT_THAT(start_of(scene).notices, told);
+  }
+  Scene free;  // whose rounding reaches no other
+  free.bodies.emplace_back().position = {1e12, 0, 0};
+  free.bodies[0].name = "stone", free.bodies[0].mass = 1;
+  free.bodies[0].inertia = Matrix3::Identity();
+  EXPECT_THAT(start_of(free).notices, ::testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -14,6 +14,7 @@
 #include "core/so3.h"
 #include "formulations/registry.h"
 #include "integrators/start/closure.h"
+#include "integrators/start/far_bodies.h"
 #include "integrators/start/far_joints.h"
 #include "integrators/start/rank.h"
 #include "integrators/start/rough_pose.h"
@@ -45,6 +46,7 @@ class Assembler {
 
   InitialState run() {
     tell_far_joints(*model_, result_.notices);
+    tell_far_bodies(*model_, result_.notices);
     before_ = violation(model_, given_);
     close_from_afar();
     refuse_any();
