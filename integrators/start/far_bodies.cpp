@@ -30,11 +30,12 @@ void tell_far_bodies(const Model& model, std::vector<std::string>& notices) {
     if (moved > most) most = moved, worst = k;
   }
   if (most <= kOfAccount) return;
+  const Body& body = model.bodies[worst];
   notices.push_back(
-      fmt::format("body '{}' is {:.3g} m from the origin and {:.3g} m long: every step rounds its position by up to "
-                  "{:.1g} of that, "
-                  "and velocities, accelerations and forces by more; place the origin near the mechanism",
-                  model.bodies[worst].name, model.bodies[worst].position.norm(), size[worst], most));
+      fmt::format("body '{}' is {:.3g} m from the origin and {:.3g} m long: every step rounds its position "
+                  "by up to {:.1g} of that, and velocities, accelerations and forces by more; place the "
+                  "origin near the mechanism",
+                  body.name, body.position.norm(), size[worst], most));
 }
 
 }  // namespace poinsot
