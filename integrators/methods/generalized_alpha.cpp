@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/fixed_steps.h"
 #include "integrators/stepping/newton_loop.h"
+#include "integrators/stepping/ringing.h"
 #include "integrators/stepping/velocity_rows.h"
 
 namespace poinsot {
@@ -99,7 +98,7 @@ class GeneralizedAlpha : public FixedSteps {
       status = iterate_at_index3(t);
     if (!status.ok()) return status;
     end_step();
-    watch(t);
+    ringing_.watch(run_, x_.z, z_n_, x_.q, t, h_);
     return status;
   }
 
@@ -224,28 +223,6 @@ class GeneralizedAlpha : public FixedSteps {
     return {};
   }
 
-  // Accelerations that turn round and change by more than their size within a step, step after step, are not those of
-  // the motion. Those of an oscillation that the steps resolve turn round now and then.
-  void watch(double t) {
-    constexpr int kRinging = 10;
-    constexpr double kRounding = 1e4 * std::numeric_limits<double>::epsilon();
-    if (ringing_ >= kRinging) return;
-    double change = 0, before = 0, along = 0;
-    for (Eigen::Index k = 0; k < nv_; ++k) {
-      change += std::pow(x_.z[k] - z_n_[k], 2);
-      before += std::pow(z_n_[k], 2);
-      along += x_.z[k] * z_n_[k];
-    }
-    const bool rings = along < 0 && change >= before && h_ * h_ * std::sqrt(change) >= kRounding * x_.q.norm();
-    ringing_ = rings ? ringing_ + 1 : std::max(ringing_ - 1, 0);
-    if (ringing_ < kRinging) return;
-    run_.tell(fmt::format(
-        "up to t = {:.6g} s accelerations turn round and change by more than their size within a step, step after "
-        "step: a stiff damper or spring moves that h = {:g} s does not resolve, and what is made of it here dies out "
-        "by the factor spectral_radius a step; try integrator radau5 or a step that resolves it",
-        t, h_));
-  }
-
   void tell_of_index3(double t) {
     if (std::exchange(told_, true)) return;
     run_.tell(
@@ -293,7 +270,7 @@ class GeneralizedAlpha : public FixedSteps {
   Vector y_;                          // displacement of stabilized index 2
   Vector held_dq_, held_v_, held_a_;  // what does not depend on the step's unknowns
   Vector residual_, aside_, there_;
-  int ringing_ = 0;  // steps in a row, but for a few; see watch()
+  Ringing ringing_;
 };
 
 struct Index3 final : GeneralizedAlpha {

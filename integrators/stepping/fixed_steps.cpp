@@ -7,16 +7,11 @@
 
 #include "core/interruption.h"
 #include "integrators/stepping/accept.h"
-#include "integrators/stepping/turning.h"
 
 namespace poinsot {
 namespace {
 
 constexpr int kHalvings = 10;  // of a step that fails
-
-// Part of its velocities that a step changes unusually: from there on its end is looked at, and whether it is on its
-// branch.
-constexpr double kLooked = 0.02, kSuspect = 0.2;
 
 // What the size of a step has a part in.
 bool may_be_too_long(Failure failure) {
@@ -99,14 +94,8 @@ Status FixedSteps::reach(double t, bool sampled) {
   v_n_.swap(x_.v);
   Status status = step(t);
   x_.t = t;
-  double jump = status.ok() && integrates() ? branch_.jump(problem_, v_n_, x_.v, h_) : 0;
   bool settled = false;
-  if (settles_ && jump > kLooked) {
-    status = settle_end(settled);
-    if (settled) jump = branch_.jump(problem_, v_n_, x_.v, h_);
-  }
-  if (status.ok()) status = measure_rotation(last_seen(), t);
-  if (status.ok() && jump > kSuspect) status = check_branch(last_seen());
+  if (status.ok()) status = examine_end(settled);
   if (!status.ok()) {
     x_.t = began;
     x_.q.swap(q_n_);
@@ -168,54 +157,6 @@ void FixedSteps::set_step(double h) {
   resize(before);
 }
 
-Status FixedSteps::measure_rotation(Problem& problem, double t) {
-  const double before = std::exchange(rotation_, h_ * problem.fastest_turn());
-  if (rotation_ > run_.most_rotation) return rotated_too_far(problem, x_.a(), t, h_, run_.most_rotation);
-  if (Status status = check_turns(problem, t); !status.ok()) return status;
-  run_.statistics.largest_rotation = std::max(run_.statistics.largest_rotation, rotation_);
-  if (std::max(before, rotation_) < 0.5 * kMostUnexpected || t == 0) return {};
-  return check_velocity(problem, t);
-}
-
-Status FixedSteps::check_turns(Problem& problem, double t) {
-  return turns_too_far(problem, h_) ? turned_too_far(problem, t, h_) : Status{};
-}
-
-// The rotation in a step is h ω; that of the one before is what the motion leads to.
-Status FixedSteps::check_velocity(Problem& problem, double t) {
-  change_ = x_.v - v_n_;
-  problem.set_velocity(span(change_));
-  const double unexpected = h_ * problem.fastest_turn();
-  problem.set_velocity(span(x_.v));
-  if (unexpected < kMostUnexpected) return {};
-  return turned_unexpectedly(problem, x_.a(), t, h_, unexpected);
-}
-
-// Beyond kTurns turns of a step a branch may be left; within, bodies that whip round are as likely. So they are beyond
-// it beside a dead centre, and in steps that turn by more than kFine: such a step is done in parts where that is
-// better, and what then is not certain is told. Motions that turn round, or have no velocities where they come to, have
-// left it.
-Status FixedSteps::check_branch(Problem& problem) {
-  constexpr double kComparable = 0.2, kTurns = 2, kFine = 0.1, kReversed = 1.5;
-  const double t = x_.t;
-  const auto [share, row] = departure(problem, settings_.linear(), {t - h_, q_n_, v_n_}, {t, x_.q, x_.v});
-  const bool fine = rotation_ <= kFine, left = fine && share > kReversed;
-  if (left || (fine && share > kComparable + kTurns * rotation_ && repeats_ && !as_it_is_)) {
-    departs_ = !left;
-    return {Failure::singular_position, t,
-            fmt::format("at t = {:.9g} s, beside a singular position of the constraints, the step ends on another "
-                        "branch than its velocities lead to, by {} most of all; try another step or dop853",
-                        t, problem.describe_unknown(row))};
-  }
-  if (share > kComparable && !std::exchange(doubted_, true)) {
-    run_.tell(
-        fmt::format("at t = {:.6g} s the velocities that {} allows change by more than the step of {:g} s "
-                    "follows: that it ends on the branch they lead to is not certain; try a tenth of it or dop853",
-                    t, problem.describe_unknown(row), h_));
-  }
-  return {};
-}
-
 Status FixedSteps::begin() {
   place(problem_);
   sample(run_.observe, problem_, x_, run_.statistics);
@@ -240,42 +181,6 @@ Status FixedSteps::give_out(Problem& problem) {
   if (given_ && given == &*given_) place(problem);
   clock_.resume();
   return {};
-}
-
-// The step that was done, where it ends in a singular position: done again, and then the limit of the states beside.
-Status FixedSteps::settle_end(bool& settled) {
-  given_ = x_;
-  settled = settle(singular_ends_, last_seen(), v_n_, *given_);
-  if (!settled) return {};
-  if (Status status = repeat_singular(x_.t); !status.ok()) return status;
-  settled = settle(singular_ends_, last_seen(), v_n_, x_);
-  return {};
-}
-
-// The same for where a step begins that leads nowhere.
-bool FixedSteps::settles_beginning() {
-  if (!settles_ || settled_at_ == x_.t) return false;
-  const std::unique_ptr<Problem> problem = last_seen().clone();  // which goes on showing where it stopped
-  place(*problem);
-  SingularEnds ends(settings_);
-  if (!settle(ends, *problem, x_.v, x_)) return false;
-  settled_at_ = x_.t;
-  return true;
-}
-
-bool FixedSteps::settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at) {
-  if (!ends.settle(problem, v_n, at)) return false;
-  if (!std::exchange(told_, true)) {
-    run_.tell(fmt::format(
-        "at t = {:.6g} s a step ends in a singular position, or so near that rounding decides about velocities or "
-        "accelerations: they are the limit of those beside it",
-        at.t));
-  }
-  if (ends.leaves_multipliers_open() && !std::exchange(told_of_multipliers_, true)) {
-    run_.tell(
-        fmt::format("at t = {:.6g} s the position leaves multipliers open: they are those of a state beside it", at.t));
-  }
-  return true;
 }
 
 Problem& FixedSteps::stand() {

@@ -93,6 +93,8 @@ class FixedSteps {
  private:
   Status reach(double t, bool sampled);
   Status reach_in_halves(double t, bool sampled, int halvings);
+  // Whether x_ is to stand as the end of its step; as the limit of states beside it where it was `settled`.
+  Status examine_end(bool& settled);
   Status settle_end(bool& settled);
   bool settles_beginning();
   bool settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at);
