@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/index.h"
@@ -15,8 +14,7 @@ void tell_far_bodies(const Model& model, std::vector<std::string>& notices) {
   std::vector<double> size(model.bodies.size(), 0);
   const auto reaches = [&](int body, const Vector3& s) {
     if (body == kGround) return;
-    const Body& b = model.bodies[index(body)];
-    size[index(body)] = std::max({size[index(body)], s.norm(), std::sqrt(6 * b.inertia.trace() / b.mass)});
+    size[index(body)] = std::max({size[index(body)], s.norm(), rod_length(model.bodies[index(body)])});
   };
   for (const Row& row : model.rows) {
     reaches(row.i, row.s_i);

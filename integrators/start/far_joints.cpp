@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/index.h"
+#include "integrators/start/far_bodies.h"
 
 namespace poinsot {
 namespace {
@@ -28,10 +28,9 @@ double extent(const std::vector<Body>& bodies) {
   return (high - low).norm();
 }
 
-// How far a body is from the origin, about which scenes are written, or how long a rod of its mass and inertia would
-// be.
+// How far a body is from the origin, about which scenes are written, or how long it is.
 double own_size(const Body& body) {
-  return std::max(body.position.norm(), std::sqrt(6 * body.inertia.trace() / body.mass));
+  return std::max(body.position.norm(), rod_length(body));
 }
 
 }  // namespace

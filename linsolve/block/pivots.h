@@ -41,8 +41,7 @@ struct Drift {
 inline constexpr int kKernels = 9;
 
 // By how much rounding in D⁻¹ b may be magnified. Of 169 755 solutions of planar loops (four and six links, alone and
-// carried, with rows too many and without, four methods) 5506 needed refinement so, and 4144 with factors alone; of 668
-// of a chain of 10 in rp none.
+// carried, with rows too many and without, four methods) 5506 needed refinement so, and 4144 with factors alone.
 inline constexpr double kHarmless = 100;
 
 // How a front's pivots are chosen: `order` is that of its rows, `moved` tells whether it is another than 0, 1, 2, …
