@@ -113,7 +113,8 @@ class Problem {
   // again. Fails where rows left out do not follow from the others any more.
   virtual Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a,
                         std::span<double> lambda, bool& rewritten) = 0;
-  // Largest |Φ| and |G v − ν| of rows that are left out because they follow from the others, when last accepted.
+  // Largest |Φ| and |G v − ν| of rows that are left out because they follow from the others, where the problem
+  // stands.
   struct LeftOut {
     double position = 0, velocity = 0;
   };

@@ -94,12 +94,24 @@ class Session {
         course_.give_out(at_);
       }
       if (!problem_.has_discrete_state() || t >= settings_.end) continue;
-      if (Status status = stand_at(t); !status.ok()) return status;
-      bool rewritten = false;
-      if (Status status = accept(rewritten); !status.ok()) return status;
-      if (rewritten) begin_again();
+      if (Status status = keep_up(t); !status.ok()) return status;
     }
     return {};
+  }
+
+  // What is discrete follows the motion as IDA has it, off the constraints by its tolerance. Where that seems to be off
+  // rows that are set aside, a state on the constraints decides.
+  Status keep_up(double t) {
+    ida_.read(t, next_);
+    problem_.set_position(t, span(next_.q));
+    problem_.set_velocity(span(next_.v));
+    bool other_rows = false;  // no formulation IDA is used with rewrites its coordinates
+    Status status = poinsot::accept(problem_, next_, other_rows);
+    if (!status.ok()) {
+      if (status = stand_at(t); !status.ok()) return status;
+      if (status = poinsot::accept(problem_, at_, other_rows); !status.ok()) return status;
+    }
+    return other_rows ? ida_.renew() : Status{};
   }
 
   // The next switch of the data within reach of IDA's next step, which it then does not step over, nor a pulse.
@@ -123,8 +135,9 @@ class Session {
   Status cross(double t) {
     at_.t = t;
     if (Status status = consistent_.cross(at_); !status.ok()) return status;
-    bool rewritten = false;
-    if (Status status = accept(rewritten); !status.ok()) return status;
+    bool other_rows = false;
+    if (Status status = poinsot::accept(problem_, at_, other_rows); !status.ok()) return status;
+    if (other_rows) return renew();
     begin_again();
     return {};
   }
@@ -171,9 +184,7 @@ class Session {
     });
     at_ = passing_->state();
     if (!status.ok()) return status;
-    if (Status prepared = ida_.renew(); !prepared.ok()) return prepared;
-    begin_again();
-    return {};
+    return renew();
   }
 
   // Makes the motion at a time within the last step the state.
@@ -193,11 +204,11 @@ class Session {
     return {};
   }
 
-  // Turns of torsion springs, the choice among redundant rows; no formulation IDA is used with rewrites its
-  // coordinates.
-  Status accept(bool& rewritten) {
-    if (Status status = poinsot::accept(problem_, at_, rewritten); !status.ok() || !rewritten) return status;
-    return ida_.renew();
+  // From the last point with the rows that the problem has now.
+  Status renew() {
+    if (Status status = ida_.renew(); !status.ok()) return status;
+    begin_again();
+    return {};
   }
 
   // From the last point: what IDA remembers of the motion is gone.

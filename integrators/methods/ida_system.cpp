@@ -132,8 +132,9 @@ int IdaSystem::jacobian(double t, double alpha, N_Vector y, N_Vector y_dot, N_Ve
 int IdaSystem::solve(SUNLinearSolver shell, SUNMatrix, N_Vector x, N_Vector b, double) {
   IdaSystem& ida = of(shell->content);
   std::ranges::copy(values(b), values(x).begin());
+  if (!ida.system_.ready()) return SUNLS_LUFACT_FAIL;  // of other rows: asks for the matrix
   ida.linear_status_ = ida.system_.solve(ida.time(), values(x));
-  return ida.linear_status_.ok() ? 0 : 1;
+  return ida.linear_status_.ok() ? SUNLS_SUCCESS : SUNLS_PACKAGE_FAIL_REC;
 }
 
 int IdaSystem::weights(N_Vector y, N_Vector w, void* user) {

@@ -25,7 +25,8 @@ class IdaSystem {
   // From a consistent state, the first time; later without what IDA remembers of the motion.
   Status begin(const State& at);
   void begin_again(const State& at);
-  // The problem's rows are others: before begin_again().
+  // The problem's rows are others. What IDA remembers of positions and velocities stays, and multipliers, which it
+  // neither differentiates nor measures, are those of the new rows after its next iteration.
   Status renew();
   // Whether the tolerance itself is asked for already, and not a tenth of it; from now on it is.
   bool relax();

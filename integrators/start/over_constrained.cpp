@@ -33,7 +33,7 @@ OverConstrained::OverConstrained(const OverConstrained& other)
       choice_(other.choice_),
       kept_revision_(other.kept_revision_),
       kept_(other.kept_->clone()),
-      left_out_(other.left_out_),
+      t_(other.t_),
       now_(other.now_) {
   watch();
 }
@@ -49,41 +49,46 @@ void OverConstrained::keep() {
 }
 
 void OverConstrained::watch() {
-  aside_ = kept_->clone_without(kept_->model_rows());
-  residual_.resize(index(aside_->nc()));
+  aside_.emplace(model(), choice_->rows.aside());
   allowed_.clear();
-  for (const int row : aside_->model_rows()) allowed_.push_back(kLost * choice_->rows.size_of(row));
+  for (const int row : aside_->rows()) allowed_.push_back(kLost * choice_->rows.size_of(row));
 }
 
 void OverConstrained::set_position(double t, std::span<const double> q) {
   if (kept_revision_ != choice_->revision) keep();
   kept_->set_position(t, q);
+  t_ = t;
 }
 
-Status OverConstrained::measure(double t, std::span<const double> q, std::span<const double> v) {
-  aside_->set_position(t, q);
-  aside_->set_velocity(v);
-  aside_->position_residual(residual_);
-  left_out_ = {};
+// now_ and the rows set aside as the problem stands, with accelerations a.
+void OverConstrained::stand_aside(std::span<const double> a) const {
+  kept_->to_bodies(a, now_);
+  aside_->stand(t_, now_);
+}
+
+Problem::LeftOut OverConstrained::left_out() const {
+  const auto largest = [](std::span<const double> residual) {
+    double most = 0;
+    for (const double off : residual) most = std::max(most, std::abs(off));
+    return most;
+  };
+  stand_aside(std::vector<double>(index(nv_)));
+  return {largest(aside_->position_residual()), largest(aside_->velocity_residual())};
+}
+
+// The rows set aside, where they stand.
+Status OverConstrained::measure(double t) {
+  const std::span<const double> residual = aside_->position_residual();
   std::size_t worst = 0;
-  double most = 0;
-  for (std::size_t k = 0; k < allowed_.size(); ++k) {
-    const double off = std::abs(residual_[k]);
-    left_out_.position = std::max(left_out_.position, off);
-    if (off / allowed_[k] <= most) continue;
-    most = off / allowed_[k];
-    worst = k;
-  }
-  const double off = std::abs(residual_[worst]);
-  aside_->velocity_residual(residual_);
-  for (std::size_t k = 0; k < allowed_.size(); ++k)
-    left_out_.velocity = std::max(left_out_.velocity, std::abs(residual_[k]));
-  if (!(most > 1)) return {};
+  for (std::size_t k = 1; k < allowed_.size(); ++k)
+    if (std::abs(residual[k]) / allowed_[k] > std::abs(residual[worst]) / allowed_[worst]) worst = k;
+  const double off = std::abs(residual[worst]);
+  if (!(off > allowed_[worst])) return {};
   return {Failure::constraint_lost, t,
           fmt::format("at t = {:.9g} s {} is violated by {:.3g}: it followed from the other constraints where the run "
                       "began and was set aside, and does not hold with them any more; the constraints contradict one "
                       "another here, or the step is too large to keep them",
-                      t, describe_row(model(), aside_->model_rows()[worst]), off)};
+                      t, describe_row(model(), aside_->rows()[worst]), off)};
 }
 
 bool OverConstrained::turned() const {
@@ -97,12 +102,12 @@ bool OverConstrained::turned() const {
 Status OverConstrained::accept(double t, std::span<double> q, std::span<double> v, std::span<double> a,
                                std::span<double> lambda, bool& rewritten) {
   if (Status status = kept_->accept(t, q, v, a, lambda, rewritten); !status.ok()) return status;
-  if (Status status = measure(t, q, v); !status.ok()) return status;
   if (rewritten) {
     kept_->set_position(t, q);
     kept_->set_velocity(v);
   }
-  kept_->to_bodies(a, now_);
+  stand_aside(a);
+  if (Status status = measure(t); !status.ok()) return status;
   if (!turned()) return {};
   choice_->at = now_;
   if (!choice_->rows.renew(t, now_)) return {};

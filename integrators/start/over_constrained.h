@@ -10,11 +10,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "formulations/problem.h"
 #include "integrators/start/row_choice.h"
+#include "integrators/start/rows_aside.h"
 
 namespace poinsot {
 
@@ -77,7 +79,7 @@ class OverConstrained final : public Problem {
   bool has_discrete_state() const override { return true; }
   Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double> lambda,
                 bool& rewritten) override;
-  LeftOut left_out() const override { return left_out_; }
+  LeftOut left_out() const override;
 
  private:
   // Shared by the clones of one run: all of them keep the same rows.
@@ -90,17 +92,19 @@ class OverConstrained final : public Problem {
   OverConstrained(const OverConstrained& other);
   void keep();
   void watch();
-  Status measure(double t, std::span<const double> q, std::span<const double> v);
+  void stand_aside(std::span<const double> a) const;
+  Status measure(double t);
   bool turned() const;
   void exchange(double t, std::span<const double> q, std::span<const double> v, std::span<double> lambda);
   void normalize(std::span<const double> forces, std::span<double> lambda);
 
   std::shared_ptr<Choice> choice_;
   int kept_revision_ = 0;
-  std::unique_ptr<Problem> kept_, aside_;  // the same bodies with the rows kept, and with those set aside
-  LeftOut left_out_;
-  std::vector<double> residual_, allowed_;
-  std::vector<BodyState> now_;
+  std::unique_ptr<Problem> kept_;
+  mutable std::optional<RowsAside> aside_;
+  std::vector<double> allowed_;  // of |Φ|, by row set aside
+  double t_ = 0;                 // where the problem stands
+  mutable std::vector<BodyState> now_;
 };
 
 }  // namespace poinsot

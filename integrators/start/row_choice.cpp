@@ -16,7 +16,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 // coefficient cot α when the redundant one is α from the row that is kept in its place. Where a coefficient of kWorst
 // is as large as it may become, and two bodies turn against one another, the choice is good for half the difference of
 // these angles.
-constexpr double kWorn = 4, kWorst = 8;
+constexpr double kWorn = 6, kWorst = 20;
 constexpr double kNothing = 1e-12;    // of a coefficient beside the row set aside
 constexpr Eigen::Index kDense = 120;  // rows up to which full matrices are faster
 
@@ -67,6 +67,21 @@ RowChoice::RowChoice(std::shared_ptr<const Model> model, std::vector<int> rows, 
     : space_(model, std::move(rows)), aside_(std::move(aside)) {
   for (const int row : space_.rows()) group_.push_back(model->rows[index(row)].group);
   sort_rows();
+  find_beside(*model);
+}
+
+void RowChoice::find_beside(const Model& model) {
+  if (!dense()) return;
+  const std::size_t n = space_.rows().size();
+  beside_.resize(n);
+  const auto row = [&](std::size_t k) -> const Row& { return model.rows[index(space_.rows()[k])]; };
+  const auto share = [](const Row& a, const Row& b) {
+    const auto acts_on = [&](int body) { return body != kGround && (body == b.i || body == b.j); };
+    return acts_on(a.i) || acts_on(a.j);
+  };
+  for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t l = 0; l < n; ++l)
+      if (share(row(k), row(l))) beside_[k].push_back(static_cast<int>(l));
 }
 
 void RowChoice::sort_rows() {
@@ -117,11 +132,17 @@ double RowChoice::dot(int k, int l) const {
 bool RowChoice::find_dense() {
   const auto n = static_cast<Eigen::Index>(kept_.size()), m = static_cast<Eigen::Index>(left_out_.size());
   take_parts();
-  gram_.resize(n, n), C_.resize(n, m);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index i = j; i < n; ++i) gram_(i, j) = dot(kept_[index(i)], kept_[index(j)]);
-    for (Eigen::Index d = 0; d < m; ++d) C_(j, d) = dot(kept_[index(j)], left_out_[index(d)]);
-  }
+  place_.assign(parts_.size(), -1);
+  for (Eigen::Index j = 0; j < n; ++j) place_[index(kept_[index(j)])] = static_cast<int>(j);
+  gram_.setZero(n, n), C_.setZero(n, m);
+  const auto fill = [&](int k, Eigen::Index from, auto&& column) {
+    for (const int l : beside_[index(k)]) {
+      const int place = place_[index(l)];
+      if (place >= from) column[place] = dot(k, l);
+    }
+  };
+  for (Eigen::Index j = 0; j < n; ++j) fill(kept_[index(j)], j, gram_.col(j));
+  for (Eigen::Index d = 0; d < m; ++d) fill(left_out_[index(d)], 0, C_.col(d));
   if (!cholesky(gram_)) return false;
   solve(gram_, C_);
   return C_.allFinite();

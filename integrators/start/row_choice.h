@@ -53,6 +53,7 @@ class RowChoice {
   void refine();
   void take_parts();
   double dot(int k, int l) const;
+  void find_beside(const Model& model);
   void sort_rows();
   void weigh();
   std::vector<SparseEntries> unit_null_vectors() const;
@@ -64,11 +65,13 @@ class RowChoice {
 
   RowSpace space_;
   std::vector<int> aside_;
-  std::vector<int> group_;            // by row of space_
-  std::vector<int> kept_, left_out_;  // of space_
-  Eigen::MatrixXd gram_, C_;          // the lower triangle's Cholesky factor; coefficients, kept × left out
-  std::vector<Parts> parts_;          // by row of space_
-  double worst_ = 0, good_for_ = 0;   // the largest coefficient where last looked at
+  std::vector<int> group_;                // by row of space_
+  std::vector<std::vector<int>> beside_;  // by row of space_, where full matrices are used: rows that share a body
+  std::vector<int> place_;                // by row of space_: among those kept, −1 where it is not
+  std::vector<int> kept_, left_out_;      // of space_
+  Eigen::MatrixXd gram_, C_;              // the lower triangle's Cholesky factor; coefficients, kept × left out
+  std::vector<Parts> parts_;              // by row of space_
+  double worst_ = 0, good_for_ = 0;       // the largest coefficient where last looked at
 };
 
 }  // namespace poinsot

@@ -21,7 +21,7 @@ class StepEnds {
   StepEnds(Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock)
       : second_(problem.clone()),
         ends_{{problem, {problem, linear, MatrixKind::consistent, statistics, clock}},
-              {*second_, {*second_, linear, MatrixKind::consistent, statistics, clock}}} {}
+              {*second_, {*second_, ends_[0].system}}} {}
   StepEnds(const StepEnds&) = delete;
   StepEnds& operator=(const StepEnds&) = delete;
 

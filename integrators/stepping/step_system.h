@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ namespace poinsot {
 class TimedSystem {
  public:
   TimedSystem(const Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock);
+  // The other's linear system about another problem, whose pattern is the same.
+  TimedSystem(const Problem& problem, const TimedSystem& other)
+      : TimedSystem(problem, other.linear_, other.statistics_, other.clock_) {}
 
   // Analyses the pattern. Call once, before the clock starts. unknowns[k]: which of the problem's unknowns the system's
   // k-th belongs to, for messages; empty: they are the same.
@@ -49,16 +53,19 @@ class StepSystem : public TimedSystem {
  public:
   StepSystem(Problem& problem, LinearSystem& linear, MatrixKind kind, Statistics& statistics, PhaseClock& clock)
       : TimedSystem(problem, linear, statistics, clock), problem_(problem), kind_(kind) {}
+  // For a clone of the other's problem: who is there first analyses the pattern of other rows for both.
+  StepSystem(Problem& clone, const StepSystem& other)
+      : TimedSystem(clone, other), problem_(clone), kind_(other.kind_), revision_(other.revision_) {}
 
   Status prepare() {
-    revision_ = problem_.revision();
+    *revision_ = problem_.revision();
     return TimedSystem::prepare(problem_.pattern(kind_));
   }
-  bool ready() const { return TimedSystem::ready() && revision_ == problem_.revision(); }
+  bool ready() const { return TimedSystem::ready() && *revision_ == problem_.revision(); }
   // Assembles at the problem's point and factors.
   Status refresh(double t, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
                  std::span<const double> lambda) {
-    if (revision_ != problem_.revision()) {
+    if (*revision_ != problem_.revision()) {
       if (Status status = prepare(); !status.ok()) return status;
     }
     return TimedSystem::refresh(t, [&](std::span<const int> slots, std::span<double> values) {
@@ -69,7 +76,7 @@ class StepSystem : public TimedSystem {
  private:
   Problem& problem_;
   MatrixKind kind_;
-  int revision_ = 0;  // of the rows the pattern was analysed for
+  std::shared_ptr<int> revision_ = std::make_shared<int>(0);  // of the rows the pattern was analysed for
 };
 
 // What a linear solver's failure means for the mechanism: which body or constraint, what to try.

@@ -56,6 +56,7 @@ void Factor::resize(const Schedule& s) {
   moved_.assign(s.fronts.size(), 0);
   whole_.assign(s.fronts.size(), 0);
   places_.assign(s.fronts.size(), {});
+  inverses_ = true;
   const int* child = s.children.data();
   for (std::size_t k = 0; k < s.fronts.size(); ++k) {
     const int* end = s.children.data() + s.fronts[k].children;
@@ -96,8 +97,13 @@ Drift Factor::factor(const Schedule& s, std::span<const double> values, bool kee
       const Front& c = s.fronts[index(*child)];
       block::extend_add(c, stack_.data() + c.update, s.stretches.data(), f, D, W);
     }
-    Choice choice{order_.data() + f.first, weight_.data() + f.first, then_.data() + f.first,
-                  moved_[k] != 0,          whole_[k] != 0,           keep_order};
+    Choice choice{order_.data() + f.first,
+                  weight_.data() + f.first,
+                  then_.data() + f.first,
+                  moved_[k] != 0,
+                  whole_[k] != 0,
+                  keep_order,
+                  inverses_};
     kEliminate[kernel(f.pivots)](D, f, W, stack_.data() + f.update, choice, t_.data(), drift);
     moved_[k] = choice.moved;
     whole_[k] = choice.whole;
@@ -125,6 +131,11 @@ void Factor::solve(const Schedule& s, std::span<double> b) {
     }
     kBackward[index(whole_[index(f - begin)])][kernel(f->pivots)](pass, *f);
   }
+}
+
+void Factor::drop_inverses() {
+  inverses_ = false;
+  std::ranges::fill(whole_, 0);
 }
 
 void Factor::weigh_rows(const Schedule& s, std::span<const double> weight) {

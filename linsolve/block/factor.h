@@ -18,6 +18,8 @@ class Factor {
 
   // Factors for the rows that make their entries comparable; pivots are chosen by them, values stay as they are.
   void weigh_rows(const Schedule& schedule, std::span<const double> weight);
+  // Pivot blocks are not inverted any more, from the next factorization on, which is due.
+  void drop_inverses();
   // Factorizes, in the order of rows of the last factorization as far as that serves, or choosing it afresh, which
   // later ones are compared with. Nothing stops at a bad pivot; the drift tells.
   Drift factor(const Schedule& schedule, std::span<const double> values, bool keep_order);
@@ -32,6 +34,7 @@ class Factor {
   std::vector<Places> places_;  // by front: those of its first child where that lays it down
   std::vector<char> moved_;     // by front: its rows are not in the order 0, 1, 2, … but in that of order_
   std::vector<char> whole_;     // by front: its pivot block is inverted as a whole
+  bool inverses_ = true;
 };
 
 }  // namespace poinsot::block

@@ -50,7 +50,8 @@ struct Choice {
   const float* weight;  // the units of rows
   float* then;          // 1/|pivot| in these units of the factorization Drift compares with
   bool moved, whole;    // whole: D⁻¹ is harmless
-  bool keep;  // all this of the last factorization, while it serves; else later ones are compared with this one
+  bool keep;     // all this of the last factorization, while it serves; else later ones are compared with this one
+  bool inverse;  // D⁻¹ may be chosen
 };
 
 inline float in_range(double x) {
@@ -228,7 +229,7 @@ inline void choose(const double* D, int p, Choice& choice) {
   std::copy_n(D, p * p, factors.begin());
   Drift unused;
   factor_choosing(factors.data(), p, choice, unit.data(), unused);
-  choice.whole = harmless(D, factors.data(), p, choice);
+  choice.whole = choice.inverse && harmless(D, factors.data(), p, choice);
 }
 
 }  // namespace poinsot::block

@@ -42,7 +42,7 @@ constexpr double kSymmetric = 0.9;  // share of mirrored entries: saddle points 
 constexpr double kNear = 10, kFar = 1e3;
 // Residuals, relative; rounding of a sum of a few terms leaves about 1e-15.
 constexpr double kSmallResidual = 2e-15;  // above, residuals of later solutions are looked at
-constexpr double kGoodResidual = 3e-15;   // above, a solution is refined; less than ten times klu's good ones
+constexpr double kGoodResidual = 1e-14;   // above, a solution is refined: about klu's own largest
 constexpr double kFairResidual = 1e-12;   // above, other pivots are tried: refinement would take more than one step
 constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not accepted
 // Part of its size that is left of a pivot. Of 16 digits 10 remain at the first, which refinement makes good, though
@@ -51,7 +51,8 @@ constexpr double kCancelled = 1e-6, kRounding = 1e-10;
 // Solutions along a motion are like one another. Where the residuals of random right sides are within what is accepted
 // and those of so many solutions in a row were good, one in so many is looked at; both steps of two Newton iterations
 // come by turns, the second number being odd.
-constexpr int kCalm = 16, kSeldom = 7;
+constexpr int kCalm = 8, kSeldom = 7;
+constexpr int kOften = 8;        // so many solutions that needed refinement: inverses of pivot blocks may be the cause
 constexpr int kRefinements = 3;  // each gains three digits or more of kFairResidual; beyond, they do not converge
 constexpr int kRepairs = 8;      // each fuses all that is bad at the time and costs an analysis
 constexpr int kPatience = 3;     // times in a row that klu has to help before it takes over
@@ -95,6 +96,7 @@ class Solver final : public LinearSolver {
 
   LinearStatus do_factor() override {
     if (answer_ == Answer::handed_over) return factor_by_klu();
+    if (refined_ >= kOften) factor_.drop_inverses();
     const bool examined = answer_ == Answer::trusted || answer_ == Answer::sampled || answer_ == Answer::checked;
     const Drift drift = factor_.factor(*schedule_, values_, examined);
     if (!examined || !within(drift, kFar)) return factor_fresh();
@@ -220,6 +222,7 @@ class Solver final : public LinearSolver {
     if (size <= kLargeResidual) {  // factors that leave so little leave no more than rounding of a correction
       correct(b);
       ++statistics_.refinements;
+      ++refined_;
       return {};
     }
     if (refine(b, statistics_.refinements) <= kLargeResidual) return {};
@@ -279,6 +282,7 @@ class Solver final : public LinearSolver {
   Answer answer_ = Answer::open;
   Answer near_ = Answer::trusted;  // with pivots near those of the last fresh factorization, by what that one left
   std::int64_t good_ = 0;          // solutions since one was not, as far as was looked
+  int refined_ = 0;                // solutions
   int helped_ = 0;                 // by klu, times in a row
 };
 

@@ -1,0 +1,32 @@
+// Rows of a model alone, on the bodies they act on: what watches the rows that are set aside. Time grows with these
+// rows, not with the mechanism. In rA, whose residuals need no sines; Φ does not depend on the formulation.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/body_state.h"
+#include "formulations/problem.h"
+
+namespace poinsot {
+
+class RowsAside {
+ public:
+  // `rows` of the model, ascending.
+  RowsAside(const Model& model, std::vector<int> rows);
+
+  const std::vector<int>& rows() const { return rows_; }
+  // The model's bodies, at time t: before the residuals, one for each row.
+  void stand(double t, std::span<const BodyState> states);
+  std::span<const double> position_residual();
+  std::span<const double> velocity_residual();
+
+ private:
+  std::vector<int> rows_, body_;  // of the model
+  std::unique_ptr<Problem> problem_;
+  std::vector<BodyState> states_;
+  std::vector<double> q_, v_, residual_;
+};
+
+}  // namespace poinsot
