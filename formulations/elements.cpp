@@ -190,6 +190,9 @@ Elements::Elements(std::shared_ptr<const Model> of, std::span<const int> dropped
   row_of.assign(model->rows.size(), -1);
 
   Builder build{*this, {}, {}, {}};
+  build.known_markers.reserve(model->rows.size());
+  build.known_pairs.reserve(model->groups.size());
+  build.known_nodes.reserve(model->groups.size());
   for (std::size_t k = 0; k < model->rows.size(); ++k) {
     const int index = static_cast<int>(k);
     if (std::binary_search(dropped.begin(), dropped.end(), index)) continue;

@@ -16,16 +16,55 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr int kWide = 300;            // entries of a row that fronts do without
 constexpr double kNegligible = 1e-9;  // of a sum beside the largest entry of its vector
 constexpr double kMentioned = 1e-6;   // of a coefficient beside that of the dependent column
+constexpr double kMostWork = 2e9;     // operations with what wide rows leave of columns
 
 // A z at the wide rows, as entries behind those of the columns: combined like them, and zero for a null vector of A.
-void append_wide_rows(const Sparse& A, const std::vector<int>& wide, SparseEntries& z) {
+void append_wide_rows(const Sparse& A, const std::vector<int>& wide, double tolerance, SparseEntries& z) {
   std::map<int, double> sums;
   for (const auto& [column, value] : z)
     for (Sparse::InnerIterator it(A, column); it; ++it)
       if (const int k = wide[static_cast<std::size_t>(it.row())]; k >= 0) sums[k] += it.value() * value;
-  const double nothing = kNegligible * largest(z);
+  const double nothing = std::max(tolerance, kNegligible) * largest(z);
   for (const auto& [k, sum] : sums)
     if (std::abs(sum) > nothing) z.emplace_back(static_cast<int>(A.cols()) + k, sum);
+}
+
+// Of the columns that depend on others but for the wide rows, those that do with them: as many are independent by wide
+// rows as these have independent sums. In time with the number of columns.
+std::vector<int> dependent_on_wide_rows(const Sparse& A, const std::vector<int>& wide, int count, FrontQr& qr,
+                                        double tolerance) {
+  const std::vector<int>& columns = qr.dependent();
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(A.cols(), count);
+  for (int k = 0; k < A.outerSize(); ++k)
+    for (Sparse::InnerIterator it(A, k); it; ++it)
+      if (const int row = wide[static_cast<std::size_t>(it.row())]; row >= 0) rows(k, row) = it.value();
+  const auto n = static_cast<Eigen::Index>(columns.size());
+  Eigen::MatrixXd sums(count, n);
+  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(n);
+  for (int row = 0; row < count; ++row) {
+    const std::vector<FrontQr::Sum> of_row =
+        qr.times_null_vectors({rows.col(row).data(), static_cast<std::size_t>(A.cols())});
+    for (Eigen::Index k = 0; k < n; ++k) {
+      sums(row, k) = of_row[static_cast<std::size_t>(k)].value;
+      sizes[k] = std::max(sizes[k], of_row[static_cast<std::size_t>(k)].size);
+    }
+  }
+  std::vector<char> is_dependent(columns.size(), 1);
+  for (int row = 0; row < count; ++row) {
+    const Eigen::RowVectorXd parts = sums.cwiseAbs().colwise().maxCoeff().cwiseQuotient(sizes.transpose().cwiseMax(1));
+    Eigen::Index pivot = 0, at = 0;
+    if (!(parts.maxCoeff(&pivot) > std::max(tolerance, kNegligible))) break;
+    sums.col(pivot).cwiseAbs().maxCoeff(&at);
+    is_dependent[static_cast<std::size_t>(pivot)] = 0;
+    const Eigen::VectorXd column = sums.col(pivot) / sums(at, pivot);
+    const Eigen::RowVectorXd by = sums.row(at);
+    sums -= column * by;
+  }
+  std::vector<int> dependent;
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    if (is_dependent[k]) dependent.push_back(columns[k]);
+  std::ranges::sort(dependent);
+  return dependent;
 }
 
 // Combines the vectors until each ends at an index of its own, which becomes its key.
@@ -56,8 +95,10 @@ struct Echelon {
   std::map<int, SparseEntries> by_last;
   std::vector<int> dependent;  // instead, where the vectors are not needed or would be too long
   bool complete = true;
+  double from = 0;  // the least tolerance that comes to the same
 
-  Echelon(const Sparse& A, double tolerance, bool vectors_needed) {
+  // Vectors are not needed where there are more than `most`.
+  Echelon(const Sparse& A, double tolerance, std::size_t most) {
     std::vector<int> entries(static_cast<std::size_t>(A.rows()), 0), wide(entries.size(), -1);
     for (int k = 0; k < A.outerSize(); ++k)
       for (Sparse::InnerIterator it(A, k); it; ++it) ++entries[static_cast<std::size_t>(it.row())];
@@ -67,14 +108,21 @@ struct Echelon {
       if (entries[k] > kWide) wide[k] = count++, left_out[k] = 1;
 
     FrontQr qr(A, left_out, tolerance);
+    from = count > 0 ? tolerance : qr.left();
+    const double work = static_cast<double>(qr.dependent().size()) * count * count;
+    if (count > 0 && qr.dependent().size() > most && work < kMostWork) {
+      complete = false;
+      dependent = dependent_on_wide_rows(A, wide, count, qr, tolerance);
+      return;
+    }
     std::vector<SparseEntries> vectors;
     std::size_t size = 0;
     for (const int column : qr.dependent()) {
-      complete = count > 0 || (vectors_needed && size <= kMostNamed);
+      complete = count > 0 || (qr.dependent().size() <= most && size <= kMostNamed);
       if (!complete) break;
       SparseEntries& z = vectors.emplace_back(qr.null_vector(column));
       drop_nothing(z);
-      append_wide_rows(A, wide, z);
+      append_wide_rows(A, wide, tolerance, z);
       size += z.size();
     }
     if (!complete) {
@@ -91,7 +139,7 @@ struct Echelon {
 }  // namespace
 
 ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
-  Echelon space(A, tolerance, true);
+  Echelon space(A, tolerance, kMostNamed);
   ColumnDependencies found;
   found.named = space.complete;
   for (const int column : space.dependent) found.columns.push_back({column, {}});
@@ -114,12 +162,12 @@ ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
 }
 
 std::vector<int> dependent_columns(const Sparse& A, double tolerance) {
-  return Echelon(A, tolerance, false).dependent;
+  return Echelon(A, tolerance, 0).dependent;
 }
 
-NullSpace null_space(const Sparse& A, double tolerance) {
-  Echelon space(A, tolerance, true);
-  NullSpace found{std::move(space.dependent), {}};
+NullSpace null_space(const Sparse& A, double tolerance, std::size_t most) {
+  Echelon space(A, tolerance, most);
+  NullSpace found{std::move(space.dependent), {}, space.from};
   for (auto& [column, z] : space.by_last) found.vectors.push_back(std::move(z));
   return found;
 }

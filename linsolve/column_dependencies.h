@@ -36,11 +36,12 @@ ColumnDependencies column_dependencies(const Eigen::SparseMatrix<double>& A, dou
 std::vector<int> dependent_columns(const Eigen::SparseMatrix<double>& A, double tolerance);
 
 // The null space of A: a vector for each column that depends on others. `columns` are as many, ascending, without which
-// the others are independent; past kMostNamed there are no vectors.
+// the others are independent; where there are more than `most` of them, or past kMostNamed, there are no vectors.
 struct NullSpace {
   std::vector<int> columns;
   std::vector<SparseEntries> vectors;
+  double from = 0;  // the least tolerance at which it is the same
 };
-NullSpace null_space(const Eigen::SparseMatrix<double>& A, double tolerance);
+NullSpace null_space(const Eigen::SparseMatrix<double>& A, double tolerance, std::size_t most);
 
 }  // namespace poinsot

@@ -84,7 +84,8 @@ void FrontQr::reduce(int place, Front& front, double tolerance) {
   }
   auto left = front.left();
   ++front.first;
-  if (!(left.col(0).norm() > tolerance)) {
+  if (const double norm = left.col(0).norm(); !(norm > tolerance)) {
+    most_left_ = std::max(most_left_, norm);
     dependent_.push_back(column_[index(place)]);
     return;
   }
@@ -134,6 +135,29 @@ SparseEntries FrontQr::null_vector(int column) {
   }
   std::sort(z.begin(), z.end());
   return z;
+}
+
+std::vector<FrontQr::Sum> FrontQr::times_null_vectors(std::span<const double> b) {
+  if (start_.empty()) store_by_column();
+  std::vector<double> y(place_.size(), 0.0);
+  std::vector<Sum> sums(place_.size());
+  for (std::size_t place = 0; place < y.size(); ++place) {
+    Sum& sum = sums[place];
+    sum.value = b[index(column_[place])];
+    sum.size = std::abs(sum.value);
+    for (std::size_t k = start_[place]; k < start_[place + 1]; ++k) {
+      if (index(R_[k].row) == place) {
+        y[place] = sum.value / R_[k].value;
+        break;
+      }
+      const double term = R_[k].value * y[index(R_[k].row)];
+      sum.value -= term;
+      sum.size += std::abs(term);
+    }
+  }
+  std::vector<Sum> of_dependent;
+  for (const int column : dependent_) of_dependent.push_back(sums[index(place_[index(column)])]);
+  return of_dependent;
 }
 
 }  // namespace poinsot

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -24,8 +25,16 @@ class FrontQr {
 
   // Columns of A that depend on those before them in the order P.
   const std::vector<int>& dependent() const { return dependent_; }
+  // The most that was left of one of them: with no tolerance from that on it would have been another decomposition.
+  double left() const { return most_left_; }
   // A z = 0 up to the tolerance, for a dependent column: 1 there, and columns that are independent, sorted.
   SparseEntries null_vector(int column);
+  // b·z for the null vector z of each dependent column, in their order; b has a number for each column of A. Without
+  // the vectors, which may be long, by one pass over R: Rᵀ y = b, and b·z = b_c − y·r_c.
+  struct Sum {
+    double value = 0, size = 0;  // and that of its terms
+  };
+  std::vector<Sum> times_null_vectors(std::span<const double> b);
 
  private:
   struct Front {
@@ -42,6 +51,7 @@ class FrontQr {
 
   std::vector<int> column_, place_;  // column at a place, place of a column
   std::vector<int> dependent_;
+  double most_left_ = 0;
   std::vector<int> local_;    // place within the front being assembled
   std::vector<double> work_;  // by place, zero between calls
   struct Entry {

@@ -98,10 +98,17 @@ double IdaSystem::time() const {
 void IdaSystem::read(double t, State& at) {
   check(IDAGetDky(objects_.ida.get(), t, 0, objects_.inner.get()) == IDA_SUCCESS,
         "the time lies within IDA's last step");
-  const std::span<const double> y = values(objects_.inner.get());
+  copy(objects_.inner.get(), t, at);
+}
+
+void IdaSystem::read_end(double t, State& at) {
+  copy(objects_.y.get(), t, at);
+}
+
+void IdaSystem::copy(N_Vector y, double t, State& at) const {
   at.t = t;
-  std::ranges::copy(form_->q(y), at.q.begin());
-  std::ranges::copy(form_->v(y), at.v.begin());
+  std::ranges::copy(form_->q(values(y)), at.q.begin());
+  std::ranges::copy(form_->v(values(y)), at.v.begin());
 }
 
 void IdaSystem::count(Statistics& statistics) const {

@@ -40,10 +40,12 @@ class IdaSystem {
   double time() const;
   // Position and velocity at a time within the last step; as IDA has them, off the constraints by its tolerance.
   void read(double t, State& at);
+  void read_end(double t, State& at);                             // of the last step, t as it gave it
   const Status& linear_status() const { return linear_status_; }  // of the last matrix or solution
   void count(Statistics& statistics) const;
 
  private:
+  void copy(N_Vector y, double t, State& at) const;
   static IdaSystem& of(void* user) { return *static_cast<IdaSystem*>(user); }
   static std::span<double> values(N_Vector x) { return IdaObjects::values(x); }
   static int residual(double t, N_Vector y, N_Vector y_dot, N_Vector F, void* user);

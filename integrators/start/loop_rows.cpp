@@ -14,12 +14,20 @@ constexpr double kClearly = 1e-2;  // what of a unit row has to be left beside t
 
 }  // namespace
 
-std::vector<int> loop_rows(const std::shared_ptr<const Model>& shared, double t, std::span<const BodyState> states) {
-  const Model& model = *shared;
-  std::vector<int> rows(model.rows.size());
+RowSpace all_rows(const std::shared_ptr<const Model>& model, double t, std::span<const BodyState> states) {
+  std::vector<int> rows(model->rows.size());
   std::iota(rows.begin(), rows.end(), 0);
-  RowSpace space(shared, rows);
+  RowSpace space(model, std::move(rows));
   space.stand(t, states);
+  return space;
+}
+
+std::vector<int> loop_rows(const std::shared_ptr<const Model>& model, double t, std::span<const BodyState> states) {
+  return loop_rows(*model, all_rows(model, t, states));
+}
+
+std::vector<int> loop_rows(const Model& model, const RowSpace& space) {
+  const std::vector<int>& rows = space.rows();
   const int bodies = static_cast<int>(model.bodies.size());
   const auto row = [&](int k) -> const Row& { return model.rows[index(rows[index(k)])]; };
   const Lists rows_on = Lists::collect(bodies, [&](auto&& emit) {

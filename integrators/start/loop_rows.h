@@ -11,7 +11,11 @@
 
 namespace poinsot {
 
-// The model's numbers, ascending.
+// The model's numbers, ascending. `all`: its rows, where the bodies stand.
+std::vector<int> loop_rows(const Model& model, const RowSpace& all);
 std::vector<int> loop_rows(const std::shared_ptr<const Model>& model, double t, std::span<const BodyState> states);
+
+// All rows of a model.
+RowSpace all_rows(const std::shared_ptr<const Model>& model, double t, std::span<const BodyState> states);
 
 }  // namespace poinsot

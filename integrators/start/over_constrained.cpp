@@ -23,6 +23,7 @@ OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::share
       kept_(std::move(kept)),
       now_(states.begin(), states.end()) {
   choice_->rows.look(0, states);
+  look();
   bodies_ = kept_->bodies();
   nq_ = kept_->nq(), nv_ = kept_->nv(), nc_ = kept_->nc();
   watch();
@@ -60,25 +61,22 @@ void OverConstrained::set_position(double t, std::span<const double> q) {
   t_ = t;
 }
 
-// now_ and the rows set aside as the problem stands, with accelerations a.
-void OverConstrained::stand_aside(std::span<const double> a) const {
-  kept_->to_bodies(a, now_);
-  aside_->stand(t_, now_);
-}
-
 Problem::LeftOut OverConstrained::left_out() const {
   const auto largest = [](std::span<const double> residual) {
     double most = 0;
     for (const double off : residual) most = std::max(most, std::abs(off));
     return most;
   };
-  stand_aside(std::vector<double>(index(nv_)));
-  return {largest(aside_->position_residual()), largest(aside_->velocity_residual())};
+  kept_->to_bodies(std::vector<double>(index(nv_)), now_);
+  LeftOut most;
+  most.position = largest(aside_->position_residual(t_, now_));
+  most.velocity = largest(aside_->velocity_residual());
+  return most;
 }
 
-// The rows set aside, where they stand.
+// The rows set aside, with the bodies as in now_.
 Status OverConstrained::measure(double t) {
-  const std::span<const double> residual = aside_->position_residual();
+  const std::span<const double> residual = aside_->position_residual(t, now_);
   std::size_t worst = 0;
   for (std::size_t k = 1; k < allowed_.size(); ++k)
     if (std::abs(residual[k]) / allowed_[k] > std::abs(residual[worst]) / allowed_[worst]) worst = k;
@@ -91,11 +89,17 @@ Status OverConstrained::measure(double t) {
                       t, describe_row(model(), aside_->rows()[worst]), off)};
 }
 
-bool OverConstrained::turned() const {
+// The choice was looked at where the bodies are.
+void OverConstrained::look() {
   // |A − B|² = 8 sin²(angle/2)
-  const double limit = 8 * std::pow(std::sin(std::min(choice_->rows.good_for(), 1.0) / 2), 2);
+  const double half = std::sin(std::min(choice_->rows.good_for(), 1.0) / 2);
+  choice_->far = 8 * half * half;
+  choice_->at = now_;
+}
+
+bool OverConstrained::turned() const {
   for (std::size_t b = 0; b < now_.size(); ++b)
-    if ((now_[b].A - choice_->at[b].A).squaredNorm() > limit) return true;
+    if ((now_[b].A - choice_->at[b].A).squaredNorm() > choice_->far) return true;
   return false;
 }
 
@@ -106,11 +110,12 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
     kept_->set_position(t, q);
     kept_->set_velocity(v);
   }
-  stand_aside(a);
+  kept_->to_bodies(a, now_);
   if (Status status = measure(t); !status.ok()) return status;
   if (!turned()) return {};
-  choice_->at = now_;
-  if (!choice_->rows.renew(t, now_)) return {};
+  const bool others = choice_->rows.renew(t, now_);
+  look();
+  if (!others) return {};
   rewritten = true;
   exchange(t, q, v, lambda);
   return {};

@@ -87,13 +87,14 @@ class OverConstrained final : public Problem {
     RowChoice rows;
     int revision = 0;
     std::vector<BodyState> at;  // where it was last looked at
+    double far = 0;             // |A − A then|² of a body at which it is to be looked at again
   };
 
   OverConstrained(const OverConstrained& other);
   void keep();
   void watch();
-  void stand_aside(std::span<const double> a) const;
   Status measure(double t);
+  void look();
   bool turned() const;
   void exchange(double t, std::span<const double> q, std::span<const double> v, std::span<double> lambda);
   void normalize(std::span<const double> forces, std::span<double> lambda);

@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "core/index.h"
-#include "formulations/registry.h"
 #include "integrators/start/beside.h"
 #include "integrators/start/loop_rows.h"
 #include "integrators/start/row_choice.h"
 #include "integrators/start/row_space.h"
+#include "integrators/start/rows_aside.h"
 #include "linsolve/column_dependencies.h"
 #include "linsolve/separation.h"
 
@@ -43,34 +43,34 @@ class Examination {
     const int rows = static_cast<int>(model_->rows.size());
     result_.variables = 6 * static_cast<int>(model_->bodies.size());
     result_.rank = result_.rank_here = rows;
-    std::vector<int> loops = loop_rows(model_, 0, states_);
+    space_.emplace(all_rows(model_, 0, states_));
+    std::vector<int> loops = loop_rows(*model_, *space_);
     if (loops.empty()) return std::move(result_);
-    space_.emplace(model_, std::move(loops));
-    space_->stand(0, states_);
-    const std::size_t suspects = dependent_columns(space_->columns(), kIndependent).size();
-    if (suspects == 0) return std::move(result_);
-    without_ = chosen(space_->columns(), kIndependent);
-    look_beside(suspects);
+    if (loops.size() < model_->rows.size()) {
+      space_.emplace(model_, std::move(loops));
+      space_->stand(0, states_);
+    }
+    here_ = few(space_->columns(), kIndependent);
+    if (here_.columns.empty()) return std::move(result_);
+    without_ = chosen(here_);
+    look_beside();
     return std::move(result_);
   }
 
  private:
+  static NullSpace few(const Sparse& columns, double tolerance) { return null_space(columns, tolerance, kMostChosen); }
+  static bool many(const NullSpace& null) { return null.columns.size() > kMostChosen; }
   // Rows of the model without which the others are as independent as can be; beyond kMostChosen, just independent.
-  std::vector<int> chosen(const Sparse& columns, double tolerance) const {
-    return of_model(choose(columns, tolerance));
-  }
-  static std::vector<int> choose(const Sparse& columns, double tolerance) {
-    std::vector<int> plain = dependent_columns(columns, tolerance);
-    if (plain.size() > kMostChosen) return plain;
-    return separate(null_space(columns, tolerance).vectors);
+  std::vector<int> chosen(NullSpace null) const { return of_model(choose(std::move(null))); }
+  static std::vector<int> choose(NullSpace null) {
+    return many(null) ? std::move(null.columns) : separate(std::move(null.vectors));
   }
   // The same of as few joints as that allows.
-  std::vector<int> of_few_groups(const Sparse& columns, double tolerance) const {
-    std::vector<int> plain = dependent_columns(columns, tolerance);
-    if (plain.size() > kMostChosen) return of_model(std::move(plain));
+  std::vector<int> of_few_groups(NullSpace null) const {
+    if (many(null)) return of_model(std::move(null.columns));
     std::vector<int> group;
     for (const int row : space_->rows()) group.push_back(model_->rows[index(row)].group);
-    return of_model(gather(null_space(columns, tolerance).vectors, group));
+    return of_model(gather(std::move(null.vectors), group));
   }
   std::vector<int> of_model(std::vector<int> columns) const {
     for (int& column : columns) column = space_->rows()[index(column)];
@@ -78,17 +78,18 @@ class Examination {
     return columns;
   }
 
-  // `suspects`: how many rows may be dependent.
-  void look_beside(std::size_t suspects) {
+  void look_beside() {
     const Sparse columns = space_->columns();
-    const std::vector<int> surely = dependent_columns(columns, kDependent);
+    const std::size_t suspects = here_.columns.size();  // how many rows may be dependent
+    const NullSpace surely_null = here_.from <= kDependent ? here_ : few(columns, kDependent);
+    const std::vector<int>& surely = surely_null.columns;
     beside_.emplace(model_, states_, *space_);
     Trial trial = beside_->begin(without_);
     if (trial.regular) find_conflicts(trial, without_);
     if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
     if (!result_.conflicts.empty()) {  // told as a reader of the scene meets them: what contradicts rows before it
       std::vector<Conflict> as_chosen = std::exchange(result_.conflicts, {});
-      const std::vector<int> by_order = of_model(null_space(columns, kIndependent).columns);
+      const std::vector<int> by_order = of_model(null_space(columns, kIndependent, columns.cols()).columns);
       Trial other = beside_->begin(by_order);
       if (other.regular) find_conflicts(other, by_order);
       if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
@@ -105,13 +106,13 @@ class Examination {
       }
     }
     if (best && best->dependent < suspects) {
-      tell_redundant(best->columns, kFreeBeside);
+      tell_redundant(best->columns, kFreeBeside, few(best->columns, kFreeBeside));
       tell_singular(columns);
       result_.moves_on = along && beside_->leads_on(start, *along, result_.aside);
       if (along) result_.time_beside = along->t;
     } else {
       if (surely.size() < suspects) tell_doubt(columns, surely);
-      tell_redundant(columns, kDependent);
+      tell_redundant(columns, kDependent, surely_null);
       if (along && !along->holds && surely.size() == suspects)
         result_.conflicts.push_back({along->worst, Conflict::Level::later, along->off, along->t});
     }
@@ -121,48 +122,50 @@ class Examination {
   void find_conflicts(Trial& trial, const std::vector<int>& without) {
     const Place& start = trial.start;
     const std::span<const double> off = beside_->measure_start(trial);
-    const std::unique_ptr<Problem> whole = intrinsic_formulation().make(model_, {});
-    std::vector<double> rate(index(whole->nc())), nu(rate.size());
-    whole->set_position(0, start.q);
-    whole->set_velocity(start.v);
-    whole->velocity_residual(rate);
-    whole->nu(nu);
+    RowsAside left_out(*model_, without);
+    std::vector<BodyState> states(states_.size());
+    trial.problem->set_position(0, start.q);
+    trial.problem->set_velocity(start.v);
+    trial.problem->to_bodies(std::vector<double>(start.v.size()), states);
+    (void)left_out.position_residual(0, states);
+    const std::span<const double> rate = left_out.velocity_residual(), nu = left_out.nu();
     const double speed = beside_->extent(start.v);
-    for (std::size_t k = 0; k < off.size(); ++k) {
-      const int row = space_->rows()[k];
-      if (!std::ranges::binary_search(without, row)) continue;
+    for (std::size_t r = 0; r < without.size(); ++r) {
+      const int row = without[r];
+      const std::size_t k =
+          index(static_cast<int>(std::ranges::lower_bound(space_->rows(), row) - space_->rows().begin()));
       const double size = space_->size_of_row(k), length = space_->lengths()[k];
-      const double rate_off = std::abs(rate[index(row)]) / length;
+      const double rate_off = std::abs(rate[r]) / length;
       if (off[k] > kContradicts * size)
         result_.conflicts.push_back({row, Conflict::Level::position, off[k], 0});
-      else if (rate_off > kContradicts * std::max({speed * size, std::abs(nu[index(row)]) / length, kHolds * size}))
+      else if (rate_off > kContradicts * std::max({speed * size, std::abs(nu[r]) / length, kHolds * size}))
         result_.conflicts.push_back({row, Conflict::Level::velocity, rate_off, 0});
     }
   }
 
-  void tell_redundant(const Sparse& columns, double tolerance) {
+  void tell_redundant(const Sparse& columns, double tolerance, const NullSpace& null) {
     if (names_ == RankNames::all) {
       ColumnDependencies found = column_dependencies(columns, tolerance);
       result_.named = found.named;
       for (ColumnDependency& d : found.columns)
         result_.dependent.push_back({space_->rows()[index(d.column)], of_model(std::move(d.others))});
     }
+    tell_undetermined(columns, null);
     // Beside rows that are barely independent nothing of the others' independence is to be given away.
-    result_.aside = result_.doubt > 0 ? chosen(columns, tolerance) : of_few_groups(columns, tolerance);
+    result_.aside = result_.doubt > 0 ? chosen(null) : of_few_groups(null);
     result_.aside_here = result_.aside;
     result_.rank = static_cast<int>(model_->rows.size() - result_.aside.size());
     result_.rank_here = result_.rank;
-    tell_undetermined(columns, tolerance);
   }
 
   // A null vector loads a group where what its rows do to one of the bodies does not add up to nothing.
-  void tell_undetermined(const Sparse& columns, double tolerance) {
+  void tell_undetermined(const Sparse& columns, const NullSpace& null) {
     std::vector<char> loaded(model_->groups.size(), 0);
     const auto row = [&](int column) -> const Row& { return model_->rows[index(space_->rows()[index(column)])]; };
-    if (result_.aside.size() > kMostChosen) {
+    if (many(null)) {
       for (int k = 0; k < columns.cols(); ++k) loaded[index(row(k).group)] = 1;
     } else {
-      for (const SparseEntries& z : null_space(columns, tolerance).vectors) {
+      for (const SparseEntries& z : null.vectors) {
         double largest = 0;
         for (const auto& [column, value] : z) largest = std::max(largest, std::abs(value));
         for (auto first = z.begin(); first != z.end();) {
@@ -199,7 +202,7 @@ class Examination {
     };
     for (ColumnDependency& d : column_dependencies(part, kIndependent).columns)
       result_.singular.push_back({space_->rows()[index(kept[index(d.column)])], whole(std::move(d.others))});
-    result_.aside_here = united(result_.aside, whole(choose(part, kIndependent)));
+    result_.aside_here = united(result_.aside, whole(choose(few(part, kIndependent))));
     result_.rank_here = result_.rank - static_cast<int>(result_.singular.size());
   }
 
@@ -216,6 +219,7 @@ class Examination {
   RankNames names_;
   std::optional<RowSpace> space_;
   std::optional<Beside> beside_;
+  NullSpace here_;            // of the rows at the given position, at kIndependent
   std::vector<int> without_;  // model rows: the others are independent at the given position
   RankAnalysis result_;
 };

@@ -12,17 +12,21 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-// Coefficient at which rows are chosen anew. Two directions at right angles of which one is set aside have the
-// coefficient cot α when the redundant one is α from the row that is kept in its place. Where a coefficient of kWorst
-// is as large as it may become, and two bodies turn against one another, the choice is good for half the difference of
-// these angles.
+// Coefficient at which rows are chosen anew, and as large as it may become. Two directions at right angles of which one
+// is set aside have the coefficient cot α when the redundant one is α from the row that is kept in its place. Of two
+// bodies that turn against one another α changes by kFast what each turns; as a rule much less: after a look by no more
+// than kSafety times what it changed by since the one before, but by kSlow.
 constexpr double kWorn = 6, kWorst = 20;
+constexpr double kFast = 2, kSlow = 1, kSafety = 3;
 constexpr double kNothing = 1e-12;    // of a coefficient beside the row set aside
 constexpr Eigen::Index kDense = 120;  // rows up to which full matrices are faster
 
-double turn_until_worst(double coefficient) {
+double angle(double coefficient) {
+  return std::atan(1 / coefficient);
+}
+double turn_until_worst(double coefficient, double rate) {
   constexpr double kLeast = 0.05;
-  return std::max(0.5 * (std::atan(1 / coefficient) - std::atan(1 / kWorst)), kLeast);
+  return std::max((angle(coefficient) - angle(kWorst)) / rate, kLeast);
 }
 
 // L of A = L Lᵀ in the place of A's lower triangle; false where A is not positive definite. Zeros of L are passed over.
@@ -134,14 +138,17 @@ bool RowChoice::find_dense() {
   take_parts();
   place_.assign(parts_.size(), -1);
   for (Eigen::Index j = 0; j < n; ++j) place_[index(kept_[index(j)])] = static_cast<int>(j);
-  gram_.setZero(n, n), C_.setZero(n, m);
+  gram_.resize(n, n), C_.setZero(n, m);
   const auto fill = [&](int k, Eigen::Index from, auto&& column) {
     for (const int l : beside_[index(k)]) {
       const int place = place_[index(l)];
       if (place >= from) column[place] = dot(k, l);
     }
   };
-  for (Eigen::Index j = 0; j < n; ++j) fill(kept_[index(j)], j, gram_.col(j));
+  for (Eigen::Index j = 0; j < n; ++j) {
+    gram_.col(j).tail(n - j).setZero();
+    fill(kept_[index(j)], j, gram_.col(j));
+  }
   for (Eigen::Index d = 0; d < m; ++d) fill(left_out_[index(d)], 0, C_.col(d));
   if (!cholesky(gram_)) return false;
   solve(gram_, C_);
@@ -212,12 +219,17 @@ void RowChoice::look(double t, std::span<const BodyState> states) {
 void RowChoice::weigh() {
   const bool found = find_coefficients();
   worst_ = C_.size() > 0 ? C_.cwiseAbs().maxCoeff() : 0;
-  good_for_ = aside_.size() > kMost ? HUGE_VAL : turn_until_worst(found ? worst_ : kWorst);
+  good_for_ = aside_.size() > kMost ? HUGE_VAL : turn_until_worst(found ? worst_ : kWorst, kFast);
 }
 
 bool RowChoice::renew(double t, std::span<const BodyState> states) {
+  const double before = angle(worst_), turned = good_for_;
   look(t, states);
-  if (!(worst_ > kWorn)) return false;
+  if (!(worst_ > kWorn)) {
+    const double rate = kSafety * std::abs(angle(worst_) - before) / turned;
+    good_for_ = std::max(good_for_, turn_until_worst(worst_, std::clamp(rate, kSlow, kFast)));
+    return false;
+  }
   refine();
   std::vector<int> chosen = left_out_;
   repair(unit_null_vectors(), chosen, group_);

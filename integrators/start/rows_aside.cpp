@@ -27,24 +27,27 @@ RowsAside::RowsAside(const Model& model, std::vector<int> rows) : rows_(std::mov
   }
   problem_ = intrinsic_formulation().make(std::move(alone), {});
   states_.resize(body_.size());
-  q_.resize(index(problem_->nq())), v_.resize(index(problem_->nv())), residual_.resize(rows_.size());
+  q_.resize(index(problem_->nq())), v_.resize(index(problem_->nv())), residual_.resize(rows_.size()),
+      nu_.resize(rows_.size());
 }
 
-void RowsAside::stand(double t, std::span<const BodyState> states) {
+std::span<const double> RowsAside::position_residual(double t, std::span<const BodyState> states) {
   for (std::size_t k = 0; k < body_.size(); ++k) states_[k] = states[index(body_[k])];
   check(problem_->from_bodies(states_, q_, v_).ok(), "rA represents every orientation");
   problem_->set_position(t, q_);
-  problem_->set_velocity(v_);
-}
-
-std::span<const double> RowsAside::position_residual() {
   problem_->position_residual(residual_);
   return residual_;
 }
 
 std::span<const double> RowsAside::velocity_residual() {
+  problem_->set_velocity(v_);
   problem_->velocity_residual(residual_);
   return residual_;
+}
+
+std::span<const double> RowsAside::nu() {
+  problem_->nu(nu_);
+  return nu_;
 }
 
 }  // namespace poinsot

@@ -1,5 +1,5 @@
-// Rows of a model alone, on the bodies they act on: what watches the rows that are set aside. Time grows with these
-// rows, not with the mechanism. In rA, whose residuals need no sines; Φ does not depend on the formulation.
+// Rows of a model alone, on the bodies they act on: those that are set aside. Time grows with these rows, not with the
+// mechanism. In rA, whose residuals need no sines; Φ does not depend on the formulation.
 #pragma once
 
 #include <memory>
@@ -17,16 +17,16 @@ class RowsAside {
   RowsAside(const Model& model, std::vector<int> rows);
 
   const std::vector<int>& rows() const { return rows_; }
-  // The model's bodies, at time t: before the residuals, one for each row.
-  void stand(double t, std::span<const BodyState> states);
-  std::span<const double> position_residual();
+  // By row, of the model's bodies at time t; the rates where Φ was asked for last.
+  std::span<const double> position_residual(double t, std::span<const BodyState> states);
   std::span<const double> velocity_residual();
+  std::span<const double> nu();
 
  private:
   std::vector<int> rows_, body_;  // of the model
   std::unique_ptr<Problem> problem_;
   std::vector<BodyState> states_;
-  std::vector<double> q_, v_, residual_;
+  std::vector<double> q_, v_, residual_, nu_;
 };
 
 }  // namespace poinsot

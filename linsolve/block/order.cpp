@@ -15,7 +15,8 @@ namespace {
 
 // Quotient graph: what was eliminated is kept as elements, each the set of atoms its elimination coupled. An atom's
 // neighbours and elements share the room its neighbours had at first, from both ends: an element takes the place of the
-// neighbour that became it, or of an element that went into it.
+// neighbour that became it, or of an element that went into it. A hub has twice that room, and its lists are searched
+// for what is gone when that is used up, not after every elimination beside it.
 class MinimumDegree {
  public:
   explicit MinimumDegree(const Graph& graph) : eliminated_(graph), begin_(1, 0), atoms_(index(graph.atoms())) {
@@ -23,7 +24,8 @@ class MinimumDegree {
     for (int a = 0; a < graph.atoms(); ++a) {
       const std::span<const int> neighbours = graph.neighbours[a];
       list_.insert(list_.end(), neighbours.begin(), neighbours.end());
-      top += static_cast<int>(neighbours.size());
+      top += static_cast<int>(neighbours.size()) * (neighbours.size() > kHub ? 2 : 1);
+      list_.resize(index(top));
       begin_.push_back(top);
       atoms_[index(a)].neighbours = static_cast<int>(neighbours.size());
       atoms_[index(a)].weight = static_cast<int>(graph.unknowns[a].size());
@@ -44,7 +46,7 @@ class MinimumDegree {
 
  private:
   using Entry = std::tuple<int, int>;  // degree, atom
-  static constexpr int kHub = 256;
+  static constexpr std::size_t kHub = 256;
 
   struct State {
     int neighbours = 0, elements = 0;  // lengths
@@ -75,8 +77,8 @@ class MinimumDegree {
   int degree(int a) {
     constexpr int kExact = 64;
     const State& state = atoms_[index(a)];
-    // What a hub saw at first has only become less; its list is not searched again and again.
-    if (state.neighbours > kHub && state.degree >= 0) return state.degree;
+    // What a hub saw at first has only become less; its lists are not searched again and again.
+    if (hub(a) && state.degree >= 0) return state.degree;
     ++stamp_;
     mark(a);
     int sum = 0;
@@ -125,8 +127,10 @@ class MinimumDegree {
     eliminated_.add(a);
 
     for (const int b : front_) {
-      drop_elements(b);
-      if (atoms_[index(b)].neighbours <= kHub || full(b)) drop_neighbours(b);
+      if (!hub(b) || full(b)) {
+        drop_elements(b);
+        drop_neighbours(b);
+      }
       if (front_.size() == 1) continue;  // couples nothing any more, only its atom may have become free to go
       check(!full(b), "a new element has the place of a neighbour or an element");
       list_[index(begin_[index(b) + 1] - ++atoms_[index(b)].elements)] = a;
@@ -135,6 +139,7 @@ class MinimumDegree {
     for (const int b : front_) push(b);
   }
 
+  bool hub(int b) const { return index(atoms_[index(b)].neighbours + atoms_[index(b)].elements) > kHub; }
   bool full(int b) const {
     return atoms_[index(b)].neighbours + atoms_[index(b)].elements == begin_[index(b) + 1] - begin_[index(b)];
   }
