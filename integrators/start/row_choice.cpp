@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "integrators/start/small_cholesky.h"
 
 namespace poinsot {
 namespace {
@@ -27,42 +28,6 @@ double angle(double coefficient) {
 double turn_until_worst(double coefficient, double rate) {
   constexpr double kLeast = 0.05;
   return std::max((angle(coefficient) - angle(kWorst)) / rate, kLeast);
-}
-
-// L of A = L Lᵀ in the place of A's lower triangle; false where A is not positive definite. Zeros of L are passed over.
-bool cholesky(Eigen::MatrixXd& A) {
-  const Eigen::Index n = A.cols();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    double* column = &A(j, j);
-    for (Eigen::Index k = 0; k < j; ++k) {
-      const double factor = A(j, k);
-      if (factor == 0) continue;
-      const double* other = &A(j, k);
-      for (Eigen::Index i = 0; i < n - j; ++i) column[i] -= factor * other[i];
-    }
-    if (!(column[0] > 0)) return false;
-    const double by = 1 / std::sqrt(column[0]);
-    for (Eigen::Index i = 0; i < n - j; ++i) column[i] *= by;
-  }
-  return true;
-}
-
-// X ← L⁻ᵀ L⁻¹ X.
-void solve(const Eigen::MatrixXd& L, Eigen::MatrixXd& X) {
-  const Eigen::Index n = L.cols();
-  for (Eigen::Index c = 0; c < X.cols(); ++c) {
-    double* x = X.col(c).data();
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const double* column = L.col(j).data();
-      x[j] /= column[j];
-      if (x[j] == 0) continue;
-      for (Eigen::Index i = j + 1; i < n; ++i) x[i] -= x[j] * column[i];
-    }
-    for (Eigen::Index j = n; j-- > 0;) {
-      const auto below = n - j - 1;
-      x[j] = (x[j] - L.col(j).tail(below).dot(X.col(c).tail(below))) / L(j, j);
-    }
-  }
 }
 
 }  // namespace
@@ -150,7 +115,7 @@ bool RowChoice::find_dense() {
     fill(kept_[index(j)], j, gram_.col(j));
   }
   for (Eigen::Index d = 0; d < m; ++d) fill(left_out_[index(d)], 0, C_.col(d));
-  if (!cholesky(gram_)) return false;
+  if (!small_cholesky(gram_)) return false;
   solve(gram_, C_);
   return C_.allFinite();
 }

@@ -9,7 +9,7 @@
 //   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
 //
 // Where the fresh one left more than rounding, solutions are looked at, too: all of them where it left much, else all
-// until they turn out good without refinement.
+// until they turn out good without refinement. After a few that did not, pivot blocks are inverted no more (pivots.h).
 //
 // Where this does not lead to a trustworthy answer the same values are handed over to klu, whose word counts, singular
 // included; so are all matrices without a saddle point's symmetric structure (kinematics). Each is counted, and
@@ -282,7 +282,7 @@ class Solver final : public LinearSolver {
   Answer answer_ = Answer::open;
   Answer near_ = Answer::trusted;  // with pivots near those of the last fresh factorization, by what that one left
   std::int64_t good_ = 0;          // solutions since one was not, as far as was looked
-  int refined_ = 0;                // solutions
+  int refined_ = 0;                // solutions that needed it, of whatever pattern
   int helped_ = 0;                 // by klu, times in a row
 };
 
