@@ -89,7 +89,7 @@ class Examination {
     if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
     if (!result_.conflicts.empty()) {  // told as a reader of the scene meets them: what contradicts rows before it
       std::vector<Conflict> as_chosen = std::exchange(result_.conflicts, {});
-      const std::vector<int> by_order = of_model(null_space(columns, kIndependent, columns.cols()).columns);
+      const std::vector<int> by_order = of_model(null_space(columns, kIndependent, space_->rows().size()).columns);
       Trial other = beside_->begin(by_order);
       if (other.regular) find_conflicts(other, by_order);
       if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);

@@ -15,10 +15,10 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 // Coefficient at which rows are chosen anew, and as large as it may become. Two directions at right angles of which one
 // is set aside have the coefficient cot α when the redundant one is α from the row that is kept in its place. Of two
-// bodies that turn against one another α changes by kFast what each turns; as a rule much less: after a look by no more
-// than kSafety times what it changed by since the one before, but by kSlow.
+// bodies that turn against one another α changes by kTurnsMost what each turns; as a rule much less: after a look by no
+// more than kTurnsMore times what it changed by since the one before, but by kTurnsLittle.
 constexpr double kWorn = 6, kWorst = 20;
-constexpr double kFast = 2, kSlow = 1, kSafety = 3;
+constexpr double kTurnsMost = 2, kTurnsLittle = 1, kTurnsMore = 3;
 constexpr double kNothing = 1e-12;    // of a coefficient beside the row set aside
 constexpr Eigen::Index kDense = 120;  // rows up to which full matrices are faster
 
@@ -184,15 +184,15 @@ void RowChoice::look(double t, std::span<const BodyState> states) {
 void RowChoice::weigh() {
   const bool found = find_coefficients();
   worst_ = C_.size() > 0 ? C_.cwiseAbs().maxCoeff() : 0;
-  good_for_ = aside_.size() > kMost ? HUGE_VAL : turn_until_worst(found ? worst_ : kWorst, kFast);
+  good_for_ = aside_.size() > kMost ? HUGE_VAL : turn_until_worst(found ? worst_ : kWorst, kTurnsMost);
 }
 
 bool RowChoice::renew(double t, std::span<const BodyState> states) {
   const double before = angle(worst_), turned = good_for_;
   look(t, states);
   if (!(worst_ > kWorn)) {
-    const double rate = kSafety * std::abs(angle(worst_) - before) / turned;
-    good_for_ = std::max(good_for_, turn_until_worst(worst_, std::clamp(rate, kSlow, kFast)));
+    const double rate = kTurnsMore * std::abs(angle(worst_) - before) / turned;
+    good_for_ = std::max(good_for_, turn_until_worst(worst_, std::clamp(rate, kTurnsLittle, kTurnsMost)));
     return false;
   }
   refine();
