@@ -36,7 +36,8 @@ ColumnDependencies column_dependencies(const Eigen::SparseMatrix<double>& A, dou
 std::vector<int> dependent_columns(const Eigen::SparseMatrix<double>& A, double tolerance);
 
 // The null space of A: a vector for each column that depends on others. `columns` are as many, ascending, without which
-// the others are independent; where there are more than `most` of them, or past kMostNamed, there are no vectors.
+// the others are independent; where there are more than `most` of them (or of those that only wide rows keep from
+// being dependent), or past kMostNamed, there are no vectors.
 struct NullSpace {
   std::vector<int> columns;
   std::vector<SparseEntries> vectors;

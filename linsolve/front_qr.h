@@ -25,7 +25,7 @@ class FrontQr {
 
   // Columns of A that depend on those before them in the order P.
   const std::vector<int>& dependent() const { return dependent_; }
-  // The most that was left of one of them: with no tolerance from that on it would have been another decomposition.
+  // The most that was left of one of them: tolerances between that and the one given lead to the same decomposition.
   double left() const { return most_left_; }
   // A z = 0 up to the tolerance, for a dependent column: 1 there, and columns that are independent, sorted.
   SparseEntries null_vector(int column);

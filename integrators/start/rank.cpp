@@ -59,7 +59,8 @@ class Examination {
 
  private:
   static NullSpace few(const Sparse& columns, double tolerance) { return null_space(columns, tolerance, kMostChosen); }
-  static bool many(const NullSpace& null) { return null.columns.size() > kMostChosen; }
+  // Too many for null vectors.
+  static bool many(const NullSpace& null) { return null.vectors.size() < null.columns.size(); }
   // Rows of the model without which the others are as independent as can be; beyond kMostChosen, just independent.
   std::vector<int> chosen(NullSpace null) const { return of_model(choose(std::move(null))); }
   static std::vector<int> choose(NullSpace null) {

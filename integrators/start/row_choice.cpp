@@ -116,7 +116,7 @@ bool RowChoice::find_dense() {
   }
   for (Eigen::Index d = 0; d < m; ++d) fill(left_out_[index(d)], 0, C_.col(d));
   if (!small_cholesky(gram_)) return false;
-  solve(gram_, C_);
+  small_cholesky_solve(gram_, C_);
   return C_.allFinite();
 }
 
@@ -139,7 +139,7 @@ void RowChoice::refine() {
       for (int i = 0; i < 2 && of.body[i] >= 0; ++i) change(k, d) += of.part[i].dot(left.segment<6>(6 * of.body[i]));
     }
   }
-  solve(gram_, change);
+  small_cholesky_solve(gram_, change);
   C_ += change;
 }
 

@@ -26,7 +26,7 @@ inline bool small_cholesky(Eigen::MatrixXd& A) {
 }
 
 // X ← L⁻ᵀ L⁻¹ X.
-inline void solve(const Eigen::MatrixXd& L, Eigen::MatrixXd& X) {
+inline void small_cholesky_solve(const Eigen::MatrixXd& L, Eigen::MatrixXd& X) {
   const Eigen::Index n = L.cols();
   for (Eigen::Index c = 0; c < X.cols(); ++c) {
     double* x = X.col(c).data();
