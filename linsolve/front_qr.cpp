@@ -12,12 +12,20 @@
 namespace poinsot {
 namespace {
 
-constexpr double kNothing = 1e-13;  // of a coefficient beside a column of unit length
+constexpr double kNothing = 1e-13;      // of a coefficient beside a column of unit length
+constexpr double kClear = 0.2;          // of a column of unit length: it need not wait
+constexpr double kWeak = 0.02;          // that much of it: another choice may be a better one
+constexpr Eigen::Index kMostWait = 16;  // columns of a front
 
 }  // namespace
 
-FrontQr::FrontQr(const Eigen::SparseMatrix<double>& A, const std::vector<char>& left_out, double tolerance)
-    : column_(index(static_cast<int>(A.cols()))), place_(column_.size()), local_(column_.size()) {
+FrontQr::FrontQr(const Eigen::SparseMatrix<double>& A, const std::vector<char>& left_out, double tolerance,
+                 Choice choice)
+    : tolerance_(tolerance),
+      choice_(choice),
+      column_(index(static_cast<int>(A.cols()))),
+      place_(column_.size()),
+      local_(2 * column_.size()) {
   const int n = static_cast<int>(A.cols());
   Eigen::SparseMatrix<double> kept = A;
   kept.prune([&](Eigen::Index row, Eigen::Index, double value) { return value != 0 && !left_out[index(int(row))]; });
@@ -34,9 +42,12 @@ FrontQr::FrontQr(const Eigen::SparseMatrix<double>& A, const std::vector<char>& 
   std::vector<std::vector<Front>> parts(index(n));
   for (int place = 0; place < n; ++place) {
     Front front = assemble(place, by_row, begin[index(place)], std::move(parts[index(place)]));
-    reduce(place, front, tolerance);
+    reduce(front);
     if (front.left().size() > 0) parts[index(front.places[index(int(front.first))])].push_back(std::move(front));
   }
+  column_ = std::move(order_);
+  for (int k = 0; k < n; ++k) place_[index(column_[index(k)])] = k;
+  for (Entry& entry : R_) entry.place = place_[index(entry.place)];
 }
 
 // All rows that begin at `place`. A part alone is taken as it is: the columns of one joint share a front.
@@ -71,8 +82,8 @@ FrontQr::Front FrontQr::assemble(int place, const RowMajor& A, const std::vector
   return front;
 }
 
-// Takes the first column off the front.
-void FrontQr::reduce(int place, Front& front, double tolerance) {
+// Takes the first column off the front, or lets it wait.
+void FrontQr::reduce(Front& front) {
   // More rows than columns say nothing more than a triangle does. Not every time, so that a wide front that is added to
   // often costs no more than its own elimination.
   if (2 * front.left().rows() > 3 * front.left().cols()) {
@@ -82,21 +93,73 @@ void FrontQr::reduce(int place, Front& front, double tolerance) {
     front.places.erase(front.places.begin(), front.places.begin() + front.first);
     front.top = front.first = 0;
   }
-  auto left = front.left();
+  const double norm = front.left().col(0).norm();
+  if (choice_ == Choice::clearest && norm > kNothing && norm < kClear)
+    wait(front);
+  else
+    take(front, 0, norm);
+  settle_waiting(front);
+}
+
+void FrontQr::wait(Front& front) {
+  front.places.push_back(static_cast<int>(column_.size()) + column_[index(front.places[index(int(front.first))])]);
+  front.rows.conservativeResize(Eigen::NoChange, front.rows.cols() + 1);
+  front.rows.rightCols(1) = front.rows.col(front.first);
   ++front.first;
-  if (const double norm = left.col(0).norm(); !(norm > tolerance)) {
+}
+
+// Those of which nothing is left go, and of too many the clearest. Where no other columns are left, so do all.
+void FrontQr::settle_waiting(Front& front) {
+  const int n = static_cast<int>(column_.size());
+  const auto begin = [&] { return std::ranges::lower_bound(front.places, n) - front.places.begin() - front.first; };
+  while (front.left().cols() > begin()) {
+    const Eigen::Index first = begin(), count = front.left().cols() - first;
+    Eigen::Index least = 0, most = 0;
+    const Eigen::RowVectorXd norms = front.left().rightCols(count).colwise().norm();
+    const double smallest = norms.minCoeff(&least), largest = norms.maxCoeff(&most);
+    if (!(smallest > kNothing))
+      take(front, first + least, smallest);
+    else if (first == 0 || count > (largest > tolerance_ ? kMostWait : 4 * kMostWait))
+      take(front, first + most, largest);
+    else
+      return;
+  }
+}
+
+// Column k of what is left, whose norm that is.
+void FrontQr::take(Front& front, Eigen::Index k, double norm) {
+  const int place = front.places[index(int(front.first + k))], n = static_cast<int>(column_.size());
+  const int column = place < n ? column_[index(place)] : place - n;
+  const int row = static_cast<int>(order_.size());
+  order_.push_back(column);
+  auto left = front.left();
+  if (norm > tolerance_) {
+    weak_ = weak_ || norm < kWeak;
+    double tau = 0, beta = 0;
+    left.col(k).makeHouseholderInPlace(tau, beta);
+    Eigen::VectorXd work(left.cols());
+    const auto v = left.col(k).tail(left.rows() - 1);
+    left.leftCols(k).applyHouseholderOnTheLeft(v, tau, work.data());
+    left.rightCols(left.cols() - k - 1).applyHouseholderOnTheLeft(v, tau, work.data());
+    left(0, k) = beta;
+    for (Eigen::Index j = 0; j < left.cols(); ++j)
+      if (const double value = left(0, j); value != 0) {
+        const int other = front.places[index(int(front.first + j))];
+        R_.push_back({row, other < n ? column_[index(other)] : other - n, value});
+      }
+    ++front.top;
+  } else {
     most_left_ = std::max(most_left_, norm);
-    dependent_.push_back(column_[index(place)]);
+    dependent_.push_back(column);
+  }
+  if (place < n) {
+    ++front.first;
     return;
   }
-  double tau = 0, beta = 0;
-  left.col(0).makeHouseholderInPlace(tau, beta);
-  Eigen::VectorXd work(left.cols());
-  left.rightCols(left.cols() - 1).applyHouseholderOnTheLeft(left.col(0).tail(left.rows() - 1), tau, work.data());
-  R_.push_back({place, place, beta});
-  for (Eigen::Index k = 1; k < left.cols(); ++k)
-    if (left(0, k) != 0) R_.push_back({place, front.places[index(int(front.first + k - 1))], left(0, k)});
-  ++front.top;
+  front.places[index(int(front.first + k))] = front.places.back();
+  front.places.pop_back();
+  front.rows.col(front.first + k) = front.rows.rightCols(1);
+  front.rows.conservativeResize(Eigen::NoChange, front.rows.cols() - 1);
 }
 
 void FrontQr::store_by_column() {

@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "core/scene_generator.h"
 #include "integrators/start/initial_state.h"
+#include "tests/support/hubs.h"
 #include "tests/support/scene_transform.h"
 
 namespace poinsot::test {
@@ -220,48 +221,11 @@ TEST(Rank, OfManyBodies) {
   EXPECT_EQ(loop.singular[0].row, 5001);
 }
 
-// A body with many joints, in triangles around it or each joint twice. Such a body's rows are left out of the
-// decomposition; what they hold is found by null vectors where these are asked for, else without.
-Scene hub(int bodies, bool twice) {
-  Scene scene = free_bodies(bodies);
-  const auto spoke = [](double b, double r) { return Vector3(r * std::cos(0.1 * b), r * std::sin(0.1 * b), 0); };
-  for (int b = 0; b < bodies; ++b) scene.bodies[index(b)].position = spoke(b, 2) + Vector3(0, 0, 0.01 * b);
-  scene.joints.push_back(joint(JointType::revolute, kGround, 0, {0, 0, 0}));
-  for (int b = 1; b < bodies; ++b) {
-    scene.joints.push_back(joint(JointType::revolute, 0, b, spoke(b, 1)));
-    if (twice) scene.joints.push_back(joint(JointType::revolute, 0, b, spoke(b, 1) + Vector3(0, 0, 0.5)));
-    if (!twice && b + 1 < bodies) scene.joints.push_back(joint(JointType::revolute, b, b + 1, spoke(b + 0.5, 1.5)));
-  }
-  return scene;
-}
-
-TEST(Rank, OfAHub) {
-  const struct {
-    int bodies;
-    bool twice;
-    RankNames names;
-  } cases[] = {{100, false, RankNames::all},
-               {100, false, RankNames::none},
-               {100, true, RankNames::all},
-               {5000, true, RankNames::none}};
-  for (const auto& [bodies, twice, names] : cases) {
-    SCOPED_TRACE(fmt::format("{} bodies{}", bodies, twice ? ", hinged twice" : ""));
-    const auto model = std::make_shared<const Model>(compile(hub(bodies, twice)));
-    const RankAnalysis found = analyze_rank(model, given_state(*model), names);
-    // In triangles all move as one; on hinges each turns by itself.
-    const int freedoms = twice ? bodies : 1;
-    EXPECT_EQ(found.rank, 6 * bodies - freedoms);
-    EXPECT_EQ(found.aside.size(), model->rows.size() - index(found.rank));
-    EXPECT_THAT(found.singular, IsEmpty());
-    EXPECT_THAT(found.conflicts, IsEmpty());
-  }
-}
-
 // The hub is one by bodies that constrain nothing too often, and without its rows 204 of the others would be dependent,
 // with them 199: above and below the 200 that null vectors are found for.
 TEST(Rank, OfAHubBesideTheMostThatIsChosen) {
   constexpr int kTriangles = 52, kPairs = 60, kBodies = kTriangles + 2 * kPairs;
-  Scene scene = hub(kTriangles, false);
+  Scene scene = hub(Hub::triangles, kTriangles - 1);
   const Scene free = free_bodies(kBodies);
   for (int b = kTriangles; b < kBodies; ++b)
     scene.bodies.emplace_back(free.bodies[index(b)]).position = {0.1 * b, 3, 1};

@@ -26,9 +26,9 @@ class Square {
   std::vector<Sized> entries_;
 };
 
-// Eliminates p pivots of n; false where one of them is cancelled. The pivots are those of factor_choosing().
-bool eliminate(Square& a, int p, int n, std::vector<double> weight, double part) {
-  bool good = true;
+// Eliminates p pivots of n and visits those that are cancelled. The pivots are those of factor_choosing().
+template <class Visit>
+void eliminate(Square& a, int p, int n, std::vector<double> weight, double part, Visit&& cancelled) {
   for (int k = 0; k < p; ++k) {
     int best = k;
     const auto candidate = [&](int i) { return std::abs(a(i, k).value) * weight[index(i)]; };
@@ -40,7 +40,7 @@ bool eliminate(Square& a, int p, int n, std::vector<double> weight, double part)
     }
     Sized& pivot = a(k, k);
     if (!(std::abs(pivot.value) > part * pivot.size)) {
-      good = false;
+      cancelled(k);
       pivot.value = pivot.size > 0 ? pivot.size : 1;
     }
     for (int i = k + 1; i < n; ++i) {
@@ -53,7 +53,6 @@ bool eliminate(Square& a, int p, int n, std::vector<double> weight, double part)
       }
     }
   }
-  return good;
 }
 
 }  // namespace
@@ -97,7 +96,7 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
     }
     std::vector<double> units(index(p));
     for (int i = 0; i < p; ++i) units[index(i)] = weight[index(s.unknown[index(f.first + i)])];
-    if (!eliminate(a, p, n, std::move(units), part)) bad.push_back(static_cast<int>(k));
+    eliminate(a, p, n, std::move(units), part, [&](int i) { bad.push_back(f.first + i); });
     for (int j = p; j < n; ++j)
       for (int i = p; i < n; ++i) updates[k].push_back(a(i, j));
   }

@@ -1,8 +1,8 @@
-// Which fronts of a block elimination have pivots that are mostly rounding.
+// Which pivots of a block elimination are mostly rounding.
 //
 // Beside every number of the elimination its size without cancellation is carried along: |a|, and |W| + |L||U|. A pivot
-// that is a small part of its own size came about by cancellation, and so did its relative error: its front has a block
-// that is not regular, or one before it was not. The measure does not depend on the units of rows and columns.
+// that is a small part of its own size came about by cancellation, and so did its relative error: the block
+// it belongs to is not regular, or one before it was not. The measure does not depend on the units of rows and columns.
 #pragma once
 
 #include <span>
@@ -12,8 +12,8 @@
 
 namespace poinsot::block {
 
-// Fronts, ascending, with a pivot that is less than `part` of its size; those above such a front are judged as if it
-// were good. Pivots are chosen in the units of rows, `weight` by unknown. An elimination on its own, at leisure.
+// Places in the order of elimination, ascending, whose pivot is less than `part` of its size; later ones are judged as
+// if it were good. Pivots are chosen in the units of rows, `weight` by unknown. An elimination on its own, at leisure.
 std::vector<int> cancelled_pivots(const Schedule& schedule, std::span<const double> values,
                                   std::span<const double> weight, double part);
 

@@ -11,7 +11,8 @@
 
 namespace poinsot::block {
 
-// What of the mechanism is eliminated, as connected components of bodies.
+// What of the mechanism is eliminated, as connected components of bodies. Hubs are places that do not move, but for
+// constraints between hubs alone.
 class Eliminated {
  public:
   explicit Eliminated(const Graph& graph)
@@ -20,8 +21,12 @@ class Eliminated {
         in_(left_.size(), 0),
         missing_(left_.size(), 0),
         parent_(left_.size()),
-        component_(left_.size()) {
+        component_(left_.size()),
+        among_hubs_(left_.size(), 1) {
     std::iota(parent_.begin(), parent_.end(), 0);
+    for (int g = 0; g < static_cast<int>(left_.size()); ++g)
+      for (const int b : graph.bodies[g])
+        if (!graph.is_hub(b)) among_hubs_[index(g)] = 0;
   }
 
   void add(int atom) {
@@ -30,9 +35,9 @@ class Eliminated {
     if (--left_[index(body)] > 0) return;
     in_[index(body)] = 1;
     for (const int g : graph_.groups[body])
-      if (in_[index(g)]) {
+      if (in_[index(g)] && counts(body, g)) {
         for (const int other : graph_.bodies[g])
-          if (other != body && in_[index(other)]) {
+          if (other != body && in_[index(other)] && counts(other, g)) {
             join(body, other);
             break;
           }
@@ -49,6 +54,7 @@ class Eliminated {
     const bool half = in_[index(g)] && missing_[index(g)] > 0;
     bool some = false, whole = true, floating = true;
     for (const int b : bodies) {
+      if (!counts(b, g)) continue;
       if (!in_[index(b)]) {
         whole = false;
         continue;
@@ -66,6 +72,9 @@ class Eliminated {
     int half = 0;  // groups eliminated before one of their bodies
     bool grounded = false, cyclic = false;
   };
+
+  // Whether a body of a group is more to it than such a place.
+  bool counts(int body, int g) const { return !graph_.is_hub(body) || among_hubs_[index(g)]; }
 
   int find(int k) {
     while (parent_[index(k)] != k) k = parent_[index(k)] = parent_[index(parent_[index(k)])];
@@ -88,8 +97,10 @@ class Eliminated {
     if (in_[index(g)]) return;
     in_[index(g)] = 1;
     const std::span<const int> bodies = graph_.bodies[g];
-    int first = -1;
+    int first = -1, count = 0;
     for (const int b : bodies) {
+      if (!counts(b, g)) continue;
+      ++count;
       if (!in_[index(b)])
         ++missing_[index(g)];
       else if (first < 0)
@@ -98,7 +109,7 @@ class Eliminated {
         join(first, b);
     }
     if (first < 0) return;
-    if (bodies.size() == 1) component_[index(find(first))].grounded = true;
+    if (count == 1) component_[index(find(first))].grounded = true;
     if (missing_[index(g)] > 0) ++component_[index(find(first))].half;
   }
 
@@ -107,6 +118,7 @@ class Eliminated {
   std::vector<char> in_;   // node eliminated: all of a body, some of a group
   std::vector<int> missing_, parent_;
   std::vector<Component> component_;
+  std::vector<char> among_hubs_;  // by group
 };
 
 }  // namespace poinsot::block

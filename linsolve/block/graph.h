@@ -8,6 +8,7 @@
 // a rod without inertia about its axis) it is fused with a group of its constraints to one atom.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -26,8 +27,12 @@ struct Graph {
   std::vector<int> fused_with;   // by node of constraints: the body it is fused with, or −1
 
   int atoms() const { return unknowns.size(); }
+  // A body with so many groups that they would not all share a front (order.h).
+  bool is_hub(int of_node) const { return groups[of_node].size() > kHub; }
   // `fused[g]` is the body node that takes in node g, or −1.
   void build(const CscLayout& layout, std::span<const int> node_of, std::span<const int> fused);
+
+  static constexpr std::size_t kHub = 32;  // with fewer a full front costs no more
 };
 
 // Share of the entries (i, j) of a pattern that have a mirror entry (j, i).

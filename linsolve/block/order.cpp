@@ -15,8 +15,8 @@ namespace {
 
 // Quotient graph: what was eliminated is kept as elements, each the set of atoms its elimination coupled. An atom's
 // neighbours and elements share the room its neighbours had at first, from both ends: an element takes the place of the
-// neighbour that became it, or of an element that went into it. A hub has twice that room, and its lists are searched
-// for what is gone when that is used up, not after every elimination beside it.
+// neighbour that became it, or of an element that went into it. Long lists have twice that room, and are searched for
+// what is gone when that is used up, not after every elimination beside them.
 class MinimumDegree {
  public:
   explicit MinimumDegree(const Graph& graph) : eliminated_(graph), begin_(1, 0), atoms_(index(graph.atoms())) {
@@ -24,11 +24,13 @@ class MinimumDegree {
     for (int a = 0; a < graph.atoms(); ++a) {
       const std::span<const int> neighbours = graph.neighbours[a];
       list_.insert(list_.end(), neighbours.begin(), neighbours.end());
-      top += static_cast<int>(neighbours.size()) * (neighbours.size() > kHub ? 2 : 1);
+      top += static_cast<int>(neighbours.size()) * (neighbours.size() > kLong ? 2 : 1);
       list_.resize(index(top));
       begin_.push_back(top);
       atoms_[index(a)].neighbours = static_cast<int>(neighbours.size());
       atoms_[index(a)].weight = static_cast<int>(graph.unknowns[a].size());
+      atoms_[index(a)].last = !graph.constraint[index(a)] && graph.is_hub(graph.node[index(a)]);
+      unknowns_ += atoms_[index(a)].weight;
     }
     for (int a = 0; a < graph.atoms(); ++a) push(a);
   }
@@ -46,13 +48,13 @@ class MinimumDegree {
 
  private:
   using Entry = std::tuple<int, int>;  // degree, atom
-  static constexpr std::size_t kHub = 256;
+  static constexpr std::size_t kLong = 256;
 
   struct State {
     int neighbours = 0, elements = 0;  // lengths
     int members = 0, member = 0;       // of the element it became: length and start; none once it went into another
     int weight = 0, degree = -1, mark = 0;
-    bool done = false;
+    bool done = false, last = false;
   };
 
   std::span<const int> neighbours(int a) const {
@@ -73,15 +75,16 @@ class MinimumDegree {
     queue_.push({atoms_[index(a)].degree, a});
   }
 
-  // Unknowns outside a that its elimination couples. Exact while a sees little, an upper bound for hubs.
+  // Unknowns outside a that its elimination couples. Exact while a sees little, else an upper bound; hubs come
+  // behind all others.
   int degree(int a) {
     constexpr int kExact = 64;
     const State& state = atoms_[index(a)];
-    // What a hub saw at first has only become less; its lists are not searched again and again.
-    if (hub(a) && state.degree >= 0) return state.degree;
+    // What it saw at first has only become less; long lists are not searched again and again.
+    if (long_lists(a) && state.degree >= 0) return state.degree;
     ++stamp_;
     mark(a);
-    int sum = 0;
+    int sum = state.last ? unknowns_ : 0;
     for (const int b : neighbours(a))
       if (!atoms_[index(b)].done && mark(b)) sum += atoms_[index(b)].weight;
     for (const int e : elements(a)) {
@@ -127,7 +130,7 @@ class MinimumDegree {
     eliminated_.add(a);
 
     for (const int b : front_) {
-      if (!hub(b) || full(b)) {
+      if (!long_lists(b) || full(b)) {
         drop_elements(b);
         drop_neighbours(b);
       }
@@ -139,7 +142,7 @@ class MinimumDegree {
     for (const int b : front_) push(b);
   }
 
-  bool hub(int b) const { return index(atoms_[index(b)].neighbours + atoms_[index(b)].elements) > kHub; }
+  bool long_lists(int b) const { return index(atoms_[index(b)].neighbours + atoms_[index(b)].elements) > kLong; }
   bool full(int b) const {
     return atoms_[index(b)].neighbours + atoms_[index(b)].elements == begin_[index(b) + 1] - begin_[index(b)];
   }
@@ -162,7 +165,7 @@ class MinimumDegree {
   Eliminated eliminated_;
   std::vector<int> list_, begin_, pool_, front_;
   std::vector<State> atoms_;
-  int stamp_ = 0;
+  int stamp_ = 0, unknowns_ = 0;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
 

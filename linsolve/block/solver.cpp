@@ -122,23 +122,32 @@ class Solver final : public LinearSolver {
       residual_.measure_by(equilibration.row(), equilibration.col());
     }
     answer_ = Answer::open;
-    for (int repairs = 0; !trustworthy(); ++repairs) {
-      const auto bad = cancelled_pivots(*schedule_, values_, residual_.rows(), kCancelled);
+    std::vector<int> bad;
+    for (int repairs = 0; !factored_well(bad); ++repairs) {
       if (repairs == kRepairs || !fuse(bad)) return factor_by_klu();
       if (order()) continue;
       answer_ = Answer::handed_over;
       return factor_by_klu();
     }
-    if (!cancelled_pivots(*schedule_, values_, weight_, kCancelled).empty()) {
-      // A pivot that is rounding may still pass for one in a system of very different masses; klu sees it at its own
-      // size.
-      if (!cancelled_pivots(*schedule_, values_, weight_, kRounding).empty()) return factor_by_klu();
-      near_ = Answer::checked;
-    }
     answer_ = near_;
     good_ = 0;
     helped_ = 0;
     return {};
+  }
+
+  // Factorizes; where that is not to be trusted, with the pivots that may be why.
+  bool factored_well(std::vector<int>& bad) {
+    const auto cancelled = [&](std::span<const double> weight, double part) {
+      return cancelled_pivots(*schedule_, values_, weight, part);
+    };
+    if (!trustworthy()) {
+      bad = cancelled(residual_.rows(), kCancelled);
+      return false;
+    }
+    if (cancelled(weight_, kCancelled).empty()) return true;
+    near_ = Answer::checked;
+    bad = cancelled(weight_, kRounding);  // may still pass for pivots, in a system of very different masses
+    return bad.empty();
   }
 
   // Factorizes with pivots chosen in the units of the equilibrated matrix and, where that does not serve, in those the
@@ -177,7 +186,7 @@ class Solver final : public LinearSolver {
   }
 
   // A body that is not regular by itself takes in a group of its constraints; a group that was a pivot too early goes
-  // to the last of its bodies. False where nothing is left to fuse.
+  // to the last of its bodies. `bad`: such pivots, by place. False where nothing is left to fuse.
   bool fuse(const std::vector<int>& bad) {
     Graph graph;
     graph.build(layout_, node_, fused_);
@@ -185,23 +194,21 @@ class Solver final : public LinearSolver {
     for (int k = 0; k < schedule_->n; ++k) place[index(node_[index(schedule_->unknown[index(k)])])] = k;
     bool any = false;
     for (const int k : bad) {
-      const Front& f = schedule_->fronts[index(k)];
-      for (int i = f.first; i < f.first + f.pivots; ++i) {
-        const int node = node_[index(schedule_->unknown[index(i)])];
-        if (graph.body_atoms[index(node)] == 0 && fused_[index(node)] < 0) {
-          const std::span<const int> bodies = graph.bodies[node];
-          if (bodies.empty()) continue;
-          fused_[index(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[index(b)]; });
-          any = true;
-        } else if (fused_[index(node)] < 0) {
-          for (const int g : graph.groups[node])
-            if (fused_[index(g)] < 0) {
-              fused_[index(g)] = node;
-              any = true;
-              break;
-            }
-        }
+      const int node = node_[index(schedule_->unknown[index(k)])];
+      if (fused_[index(node)] >= 0) continue;
+      if (graph.body_atoms[index(node)] == 0) {
+        const std::span<const int> bodies = graph.bodies[node];
+        if (bodies.empty()) continue;
+        fused_[index(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[index(b)]; });
+        any = true;
+        continue;
       }
+      for (const int g : graph.groups[node])
+        if (fused_[index(g)] < 0) {
+          fused_[index(g)] = node;
+          any = true;
+          break;
+        }
     }
     return any;
   }

@@ -1,0 +1,82 @@
+// Mechanisms round one body with many joints, which constrain too often.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "core/scene.h"
+
+namespace poinsot::test {
+
+// Round a hub on a hinge: arms that are hinged twice, arms hinged to their neighbours, too (so that all move as one, in
+// one plane or at different heights), four-bars. Or a coupler on parallel cranks, the hub; on hinges or on balls.
+enum class Hub { twice, triangles, flat_triangles, four_bars, cranks, ball_cranks };
+
+struct HubKind {
+  Hub hub;
+  std::string_view name;
+  int freedoms(int count) const {  // of the mechanism with so many arms, loops or cranks
+    if (hub == Hub::twice || hub == Hub::four_bars) return count + 1;
+    return hub == Hub::ball_cranks ? 2 : 1;  // a coupler turns about a line of balls
+  }
+};
+inline constexpr HubKind kHubs[] = {
+    {Hub::twice, "hinged twice"},  {Hub::triangles, "triangles"}, {Hub::flat_triangles, "flat triangles"},
+    {Hub::four_bars, "four-bars"}, {Hub::cranks, "cranks"},       {Hub::ball_cranks, "cranks with balls"},
+};
+
+inline Scene hub(Hub kind, int count) {
+  Scene scene;
+  const auto body = [&](const Vector3& position) {
+    Body& x = scene.bodies.emplace_back();
+    x.name = fmt::format("part {}", scene.bodies.size());
+    x.mass = 1;
+    x.inertia = Vector3(0.1, 0.2, 0.25).asDiagonal();
+    x.position = position;
+    return static_cast<int>(scene.bodies.size()) - 1;
+  };
+  const auto join = [&](int i, int j, const Vector3& point, JointType type = JointType::revolute) {
+    Joint& x = scene.joints.emplace_back();
+    x.name = fmt::format("joint {}", scene.joints.size());
+    x.type = type;
+    x.i = i, x.j = j;
+    x.point = point;
+    x.axis = Vector3::UnitZ();
+  };
+  const auto polar = [](double r, double angle) { return Vector3(r * std::cos(angle), r * std::sin(angle), 0); };
+  scene.gravity = {1, -2, 0};
+  const int centre = body({0, kind == Hub::cranks || kind == Hub::ball_cranks ? 1.0 : 0.0, 0});
+  if (kind == Hub::cranks || kind == Hub::ball_cranks) {
+    for (int k = 0; k < count; ++k) {
+      const Vector3 foot(0.1 * k, 0, 0);
+      const int crank = body(foot + Vector3(0, 0.5, 0));
+      join(kGround, crank, foot);
+      join(crank, centre, foot + Vector3::UnitY(), kind == Hub::cranks ? JointType::revolute : JointType::spherical);
+    }
+    return scene;
+  }
+  join(kGround, centre, Vector3::Zero());
+  int last = centre;
+  for (int k = 0; k < count; ++k) {
+    const double angle = kind == Hub::four_bars ? 2 * std::numbers::pi * k / count : 0.1 * k;
+    const double part = kind == Hub::four_bars ? 2.0 / count : 0.05;
+    const Vector3 height(0, 0, kind == Hub::flat_triangles ? 0.0 : 0.01 * k);
+    const int arm = body(polar(2, angle) + height);
+    join(centre, arm, polar(1, angle));
+    if (kind == Hub::twice) join(centre, arm, polar(1, angle) + Vector3(0, 0, 0.5));
+    if ((kind == Hub::triangles || kind == Hub::flat_triangles) && k > 0) join(last, arm, polar(1.5, angle - part));
+    last = arm;
+    if (kind == Hub::four_bars) {
+      const int coupler = body(polar(2, angle + part / 2)), other = body(polar(1.5, angle + part));
+      join(arm, coupler, polar(2, angle));
+      join(coupler, other, polar(2, angle + part));
+      join(other, centre, polar(1, angle + part));
+    }
+  }
+  return scene;
+}
+
+}  // namespace poinsot::test
