@@ -16,7 +16,6 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr int kWide = 300;            // entries of a row that fronts do without
 constexpr double kNegligible = 1e-9;  // of a sum beside the largest entry of its vector
 constexpr double kMentioned = 1e-6;   // of a coefficient beside that of the dependent column
-constexpr std::size_t kMany = 200;    // dependent columns: what is kept of the others is told apart by itself
 constexpr double kMostWork = 2e9;     // operations with what wide rows leave of columns
 
 // A z at the wide rows, as entries behind those of the columns: combined like them, and zero for a null vector of A.
@@ -108,8 +107,8 @@ struct Echelon {
     for (std::size_t k = 0; k < entries.size(); ++k)
       if (entries[k] > kWide) wide[k] = count++, left_out[k] = 1;
 
-    FrontQr qr(A, left_out, tolerance, FrontQr::Choice::by_order);
-    if (count > 0 && qr.dependent().size() > kMany && qr.weak()) qr = {A, left_out, tolerance, FrontQr::Choice::clearest};
+    // What wide rows hold is found by sums along null vectors: with columns that are barely independent these are long.
+    FrontQr qr(A, left_out, tolerance, count > 0 ? FrontQr::Choice::clearest : FrontQr::Choice::by_order);
     from = count > 0 ? tolerance : qr.left();
     const double work = static_cast<double>(qr.dependent().size()) * count * count;
     if (count > 0 && qr.dependent().size() > most && work < kMostWork) {

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kNothing = 1e-13;      // of a coefficient beside a column of unit length
 constexpr double kClear = 0.2;          // of a column of unit length: it need not wait
-constexpr double kWeak = 0.02;          // that much of it: another choice may be a better one
 constexpr Eigen::Index kMostWait = 16;  // columns of a front
 
 }  // namespace
@@ -98,7 +97,7 @@ void FrontQr::reduce(Front& front) {
     wait(front);
   else
     take(front, 0, norm);
-  settle_waiting(front);
+  if (choice_ == Choice::clearest) settle_waiting(front);
 }
 
 void FrontQr::wait(Front& front) {
@@ -110,10 +109,12 @@ void FrontQr::wait(Front& front) {
 
 // Those of which nothing is left go, and of too many the clearest. Where no other columns are left, so do all.
 void FrontQr::settle_waiting(Front& front) {
-  const int n = static_cast<int>(column_.size());
-  const auto begin = [&] { return std::ranges::lower_bound(front.places, n) - front.places.begin() - front.first; };
-  while (front.left().cols() > begin()) {
-    const Eigen::Index first = begin(), count = front.left().cols() - first;
+  const auto first_waiting = [&]() -> Eigen::Index {
+    return std::ranges::find_if(front.places, [&](int place) { return waits(place); }) - front.places.begin() -
+           front.first;
+  };
+  while (front.left().cols() > first_waiting()) {
+    const Eigen::Index first = first_waiting(), count = front.left().cols() - first;
     Eigen::Index least = 0, most = 0;
     const Eigen::RowVectorXd norms = front.left().rightCols(count).colwise().norm();
     const double smallest = norms.minCoeff(&least), largest = norms.maxCoeff(&most);
@@ -128,13 +129,14 @@ void FrontQr::settle_waiting(Front& front) {
 
 // Column k of what is left, whose norm that is.
 void FrontQr::take(Front& front, Eigen::Index k, double norm) {
-  const int place = front.places[index(int(front.first + k))], n = static_cast<int>(column_.size());
-  const int column = place < n ? column_[index(place)] : place - n;
+  const auto column_at = [&](Eigen::Index j) {
+    const int place = front.places[index(int(front.first + j))];
+    return waits(place) ? place - static_cast<int>(column_.size()) : column_[index(place)];
+  };
   const int row = static_cast<int>(order_.size());
-  order_.push_back(column);
+  order_.push_back(column_at(k));
   auto left = front.left();
   if (norm > tolerance_) {
-    weak_ = weak_ || norm < kWeak;
     double tau = 0, beta = 0;
     left.col(k).makeHouseholderInPlace(tau, beta);
     Eigen::VectorXd work(left.cols());
@@ -143,16 +145,13 @@ void FrontQr::take(Front& front, Eigen::Index k, double norm) {
     left.rightCols(left.cols() - k - 1).applyHouseholderOnTheLeft(v, tau, work.data());
     left(0, k) = beta;
     for (Eigen::Index j = 0; j < left.cols(); ++j)
-      if (const double value = left(0, j); value != 0) {
-        const int other = front.places[index(int(front.first + j))];
-        R_.push_back({row, other < n ? column_[index(other)] : other - n, value});
-      }
+      if (left(0, j) != 0) R_.push_back({row, column_at(j), left(0, j)});
     ++front.top;
   } else {
     most_left_ = std::max(most_left_, norm);
-    dependent_.push_back(column);
+    dependent_.push_back(column_at(k));
   }
-  if (place < n) {
+  if (!waits(front.places[index(int(front.first + k))])) {
     ++front.first;
     return;
   }

@@ -32,8 +32,6 @@ class FrontQr {
   const std::vector<int>& dependent() const { return dependent_; }
   // The most that was left of one of them: tolerances between that and the one given lead to the same decomposition.
   double left() const { return most_left_; }
-  // Whether of a column that is kept little was left.
-  bool weak() const { return weak_; }
   // A z = 0 up to the tolerance, for a dependent column: 1 there, and columns that are independent, sorted.
   SparseEntries null_vector(int column);
   // b·z for the null vector z of each dependent column, in their order; b has a number for each column of A. Without
@@ -57,6 +55,7 @@ class FrontQr {
   void wait(Front& front);
   void settle_waiting(Front& front);
   void take(Front& front, Eigen::Index k, double norm);
+  bool waits(int place) const { return place >= static_cast<int>(column_.size()); }
   void store_by_column();
 
   double tolerance_;
@@ -65,7 +64,6 @@ class FrontQr {
   std::vector<int> order_;           // P, as far as it is known
   std::vector<int> dependent_;
   double most_left_ = 0;
-  bool weak_ = false;
   std::vector<int> local_;    // place within the front being assembled
   std::vector<double> work_;  // by place, zero between calls
   struct Entry {

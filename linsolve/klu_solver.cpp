@@ -25,24 +25,28 @@ Klu::~Klu() {
   release();
 }
 
-// Two orders compete at the first factorization, and the one with fewer entries in the factors stays: AMD after a
-// permutation to block triangular form (chains, trees, determined mechanisms) and COLAMD (loops). The search for that
-// form takes time in the square of n on saddle points.
+// Orders compete at the first factorization, and the one with the fewest entries in the factors stays: AMD after a
+// permutation to block triangular form (trees, determined mechanisms), COLAMD (ladders), and AMD as the matrix stands
+// (chains, loops), which by its fill can take seconds on a ladder of 1000. The search for the block triangular form
+// takes time in the square of n on saddle points.
 LinearStatus Klu::do_symbolic() {
-  constexpr int kLargestSearched = 20000;
+  constexpr int kLargestSearched = 20000, kLargestAsItStands = 3000;
   release();
   fresh_pivots_.assign(static_cast<std::size_t>(layout().n), 0);
   first_place_.clear();
-  if (layout().n <= kLargestSearched) symbolic_ = analyze_as(0, true);
-  rival_ = analyze_as(1, false);
-  if (!symbolic_) std::swap(symbolic_, rival_);
-  return symbolic_ ? LinearStatus{} : library_status();
+  if (layout().n <= kLargestSearched) add_rival(0, true);
+  add_rival(1, false);
+  if (layout().n <= kLargestAsItStands) add_rival(0, false);
+  if (rivals_.empty()) return library_status();
+  symbolic_ = rivals_.front();
+  rivals_.erase(rivals_.begin());
+  return {};
 }
 
-klu_symbolic* Klu::analyze_as(int ordering, bool block_triangular) {
+void Klu::add_rival(int ordering, bool block_triangular) {
   common_.ordering = ordering;
   common_.btf = block_triangular;
-  return klu_analyze(layout().n, start(), row(), &common_);
+  if (klu_symbolic* one = klu_analyze(layout().n, start(), row(), &common_)) rivals_.push_back(one);
 }
 
 bool Klu::do_refactor() {
@@ -54,7 +58,7 @@ LinearStatus Klu::do_fresh() {
   if (numeric_) klu_free_numeric(&numeric_, &common_);
   numeric_ = klu_factor(start(), row(), scaled().data(), symbolic_, &common_);
   if (!numeric_) return library_status();
-  if (rival_) compare();
+  if (!rivals_.empty()) compare();
   statistics_.factor_nonzeros = entries(*numeric_);
   std::ranges::copy(pivots(), fresh_pivots_.begin());
   fresh_growth_ = reciprocal_growth();
@@ -86,13 +90,20 @@ std::uint64_t Klu::orientation() {
 }
 
 void Klu::compare() {
-  klu_numeric* other = klu_factor(start(), row(), scaled().data(), rival_, &common_);
-  if (other && entries(*other) < entries(*numeric_)) {
-    std::swap(numeric_, other);
-    std::swap(symbolic_, rival_);
+  for (klu_symbolic*& rival : rivals_) {
+    klu_numeric* other = klu_factor(start(), row(), scaled().data(), rival, &common_);
+    if (other && entries(*other) < entries(*numeric_)) {
+      std::swap(numeric_, other);
+      std::swap(symbolic_, rival);
+    }
+    if (other) klu_free_numeric(&other, &common_);
   }
-  if (other) klu_free_numeric(&other, &common_);
-  klu_free_symbolic(&rival_, &common_);
+  release_rivals();
+}
+
+void Klu::release_rivals() {
+  for (klu_symbolic* rival : rivals_) klu_free_symbolic(&rival, &common_);
+  rivals_.clear();
 }
 
 void Klu::do_substitute(std::span<double> b) {
@@ -131,7 +142,7 @@ LinearStatus Klu::library_status() const {
 void Klu::release() {
   if (numeric_) klu_free_numeric(&numeric_, &common_);
   if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
-  if (rival_) klu_free_symbolic(&rival_, &common_);
+  release_rivals();
 }
 
 std::unique_ptr<LinearSolver> make_klu() {

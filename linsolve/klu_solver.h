@@ -30,7 +30,7 @@ class Klu final : public ScaledLu {
   double pivot(int k) override { return fresh_pivots_[static_cast<std::size_t>(k)]; }
   int pivot_column(int k) override { return symbolic_->Q[k]; }
 
-  klu_symbolic* analyze_as(int ordering, bool block_triangular);
+  void add_rival(int ordering, bool block_triangular);
   void compare();
   static std::int64_t entries(const klu_numeric& n) { return std::int64_t{n.lnz} + n.unz + n.nzoff - n.n; }
   bool pivots_still_good();
@@ -41,6 +41,7 @@ class Klu final : public ScaledLu {
   int* start() { return const_cast<int*>(layout().start.data()); }
   int* row() { return const_cast<int*>(layout().row.data()); }
   void release();
+  void release_rivals();
 
   std::vector<double> fresh_pivots_;
   std::vector<int> first_place_;  // of every row, by the first pivots chosen
@@ -48,7 +49,8 @@ class Klu final : public ScaledLu {
   bool order_known_ = false;      // reversed_ is that of the last fresh factorization
   double fresh_growth_ = 0;
   klu_common common_;
-  klu_symbolic *symbolic_ = nullptr, *rival_ = nullptr;
+  klu_symbolic* symbolic_ = nullptr;
+  std::vector<klu_symbolic*> rivals_;  // until the first factorization
   klu_numeric* numeric_ = nullptr;
 };
 

@@ -6,13 +6,16 @@
 //              the block is a pivot of the Schur complement G M⁻¹ Gᵀ, definite for a regular system;
 //   floating   some of its bodies are not eliminated yet, but those that are belong to trees of bodies that hang on
 //              nothing else: such a body can move in every way, so the group's rows stay independent on it.
+// Leaf to root along a tree this is the articulated-body recursion; in loops the last rows wait for the whole loop.
+//
 // A hub, a body with dozens of groups, would have all that waits for it in one front. These groups are taken as if it
 // did not move, and it last, against both rules: rows that are independent stay so but for as many as a body can move,
-// six. The groups of these are found by numbers and wait for the hub after all (solver.cpp). Leaf to root along a tree
-// this is the articulated-body recursion; in loops the last rows wait for the whole loop. No library's minimum degree
-// can be told which vertex may be taken when. AMD's order of the same atoms has as little fill, and takes 253 of the
-// 400 atoms of constraints of a chain of 100 bodies before the rules let it, 421 of the 510 of a ladder. A mechanism
-// may violate what the rules take for granted (a body without inertia); pivots are checked by numbers later.
+// six. The groups of these are found by numbers and wait for the hub after all (solver.cpp).
+//
+// No library's minimum degree can be told which vertex may be taken when. AMD's order of the same atoms has as little
+// fill, and takes 253 of the 400 atoms of constraints of a chain of 100 bodies before the rules let it, 421 of the 510
+// of a ladder. A mechanism may violate what the rules take for granted (a body without inertia); pivots are checked by
+// numbers later.
 #pragma once
 
 #include <vector>
