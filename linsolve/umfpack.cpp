@@ -17,6 +17,7 @@ class Umfpack final : public ScaledLu {
     umfpack_di_defaults(control_);
     control_[UMFPACK_SCALE] = UMFPACK_SCALE_NONE;  // the matrix comes scaled
     control_[UMFPACK_IRSTEP] = 0;                  // as every other solver here: one substitution
+    control_[UMFPACK_AGGRESSIVE] = 0;              // with it residuals are up to 3.5e-14, without 6e-16
   }
   ~Umfpack() override { release(); }
 

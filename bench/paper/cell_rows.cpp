@@ -17,11 +17,11 @@ std::string file_name(Analysis analysis, std::string_view what) {
   return fmt::format("{}_{}", analysis_name(analysis), what);
 }
 
-const Mechanism& mechanism_of(const Cell& cell) {
-  return *std::ranges::find(kMechanisms, cell.name, &Mechanism::file);
+const PaperMechanism& mechanism_of(const Cell& cell) {
+  return *std::ranges::find(kMechanisms, cell.name, &PaperMechanism::file);
 }
 
-const Cell* find(std::span<const Cell> cells, Analysis analysis, const Mechanism& mechanism,
+const Cell* find(std::span<const Cell> cells, Analysis analysis, const PaperMechanism& mechanism,
                  std::string_view formulation, std::string_view jacobian) {
   for (const Cell& cell : cells)
     if (cell.settings.analysis == analysis && cell.name == mechanism.file && cell.settings.formulation == formulation &&

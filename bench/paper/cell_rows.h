@@ -23,10 +23,10 @@ std::string_view analysis_name(Analysis analysis);
 std::string title(Analysis analysis, std::string_view what);
 std::string file_name(Analysis analysis, std::string_view what);
 
-const Mechanism& mechanism_of(const study::Cell& cell);  // by its name
+const PaperMechanism& mechanism_of(const study::Cell& cell);  // by its name
 
 // Null where there is none.
-const study::Cell* find(std::span<const study::Cell> cells, Analysis analysis, const Mechanism& mechanism,
+const study::Cell* find(std::span<const study::Cell> cells, Analysis analysis, const PaperMechanism& mechanism,
                         std::string_view formulation, std::string_view jacobian);
 std::vector<std::string> jacobians_of(std::span<const study::Cell> cells);
 
@@ -37,7 +37,7 @@ std::string number(double value, int decimals);
 template <class Fill>
 void for_rows(study::Table& table, std::span<const study::Cell> cells, Analysis analysis,
               const std::vector<std::string>& jacobians, Fill&& fill) {
-  for (const Mechanism& mechanism : kMechanisms) {
+  for (const PaperMechanism& mechanism : kMechanisms) {
     if (analysis == Analysis::kinematics && !mechanism.driven) continue;
     for (const FormulationEntry& formulation : formulations()) {
       std::vector<std::string> row{std::string(mechanism.title), std::string(formulation.name)};

@@ -99,7 +99,7 @@ int TablesRequest::runs() const {
 
 MeasuredTables measure_tables(const TablesRequest& request, int core, const ProgressCallback& progress) {
   std::vector<Scene> scenes;
-  for (const Mechanism& mechanism : kMechanisms)
+  for (const PaperMechanism& mechanism : kMechanisms)
     scenes.push_back(read_scene(request.models / fmt::format("{}.json", mechanism.file)));
   MeasuredTables result;
   Report& report = result.report;

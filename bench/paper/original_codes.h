@@ -12,7 +12,7 @@ namespace poinsot::paper {
 
 struct OriginalTime {
   Analysis analysis;
-  std::string_view mechanism, formulation;  // Mechanism::file
+  std::string_view mechanism, formulation;  // PaperMechanism::file
   double c1, c2;                            // CPU time of a step, µs; C2 as released
   double c2_order1;                         // C2 held to order 1, as the paper describes it; 0: not measured
 

@@ -11,7 +11,7 @@ namespace poinsot::paper {
 
 // Constraints of a mechanism by type, as the paper counts them.
 struct PublishedCounts {
-  std::string_view mechanism;  // Mechanism::file
+  std::string_view mechanism;  // PaperMechanism::file
   int cd, dp1, dp2, d;
 };
 std::span<const PublishedCounts> published_counts();  // in the order of kMechanisms

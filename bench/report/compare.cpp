@@ -111,9 +111,9 @@ class Comparer {
 
   void compare_times(const RawCell& a, const RawCell& b) {
     std::vector<double> ratios, before, after;
-    for (const auto& [repetition, run] : a.runs) {
-      const auto other = b.runs.find(repetition);
-      if (other == b.runs.end() || !(run.total > 0) || !(other->second.total > 0)) continue;
+    for (const auto& [repetition, run] : a.repetitions) {
+      const auto other = b.repetitions.find(repetition);
+      if (other == b.repetitions.end() || !(run.total > 0) || !(other->second.total > 0)) continue;
       ratios.push_back(other->second.total / run.total);
       before.push_back(run.total), after.push_back(other->second.total);
     }

@@ -43,9 +43,9 @@ std::vector<Ratio> ratios(const CsvTable& raw) {
     if (subject == cells.end()) continue;
     std::vector<double> quotients;
     std::array<std::vector<double>, kPhases.size()> saved;
-    for (const auto& [repetition, run] : cell.runs) {
-      const auto other = subject->runs.find(repetition);
-      if (other == subject->runs.end() || !(other->second.total > 0) || !std::isfinite(run.total)) continue;
+    for (const auto& [repetition, run] : cell.repetitions) {
+      const auto other = subject->repetitions.find(repetition);
+      if (other == subject->repetitions.end() || !(other->second.total > 0) || !std::isfinite(run.total)) continue;
       quotients.push_back(run.total / other->second.total);
       for (std::size_t k = 0; k < saved.size(); ++k) saved[k].push_back(run.phase[k] - other->second.phase[k]);
     }

@@ -37,7 +37,7 @@ std::vector<RawCell> raw_cells(const CsvTable& raw) {
              c.linear_solver == field("linear_solver");
     };
     const auto last = std::find_if(cells.rbegin(), cells.rend(), its);
-    if (last == cells.rend() || last->runs.contains(repetition)) {
+    if (last == cells.rend() || last->repetitions.contains(repetition)) {
       RawCell cell{field("analysis"),
                    field("mechanism"),
                    field("formulation"),
@@ -51,9 +51,9 @@ std::vector<RawCell> raw_cells(const CsvTable& raw) {
     }
     RawCell& cell = *std::find_if(cells.rbegin(), cells.rend(), its);
     const double us = 1e6 / csv_number(field("steps"));
-    RawCell::Run run{us * csv_number(field("total_s")), {}};
-    for (std::size_t k = 0; k < kPhaseColumns.size(); ++k) run.phase[k] = us * csv_number(field(kPhaseColumns[k]));
-    cell.runs.emplace(repetition, run);
+    RawCell::Repetition one{us * csv_number(field("total_s")), {}};
+    for (std::size_t k = 0; k < kPhaseColumns.size(); ++k) one.phase[k] = us * csv_number(field(kPhaseColumns[k]));
+    cell.repetitions.emplace(repetition, one);
   }
   return cells;
 }

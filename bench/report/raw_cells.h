@@ -13,15 +13,15 @@ namespace poinsot::report {
 inline constexpr std::array<std::string_view, 4> kPhases{"assembly", "factorization", "solves", "the rest"};
 
 struct RawCell {
-  struct Run {
+  struct Repetition {
     double total = 0;               // µs a step
     std::array<double, 4> phase{};  // µs a step, by kPhases
   };
 
   std::string analysis, mechanism, formulation, jacobian, linear_solver;
-  int block = 0;                              // measured once more, beside other linear solvers: 1
-  std::map<std::string, Run> runs;            // by repetition
-  std::map<std::string, std::string> counts;  // steps, iterations and so on of the first repetition, by column
+  int block = 0;                                  // measured once more, beside other linear solvers: 1
+  std::map<std::string, Repetition> repetitions;  // by number
+  std::map<std::string, std::string> counts;      // steps, iterations and so on of the first repetition, by column
 
   std::string name() const;  // of its own in the file
 };

@@ -135,9 +135,9 @@ inline void lay_down(const Places& from, const double* update, const Front& f, d
 }
 
 template <int Length>
-inline const Run* add_runs(const Run* run, const Run* end, const double* values, double* store) {
-  for (; run != end; ++run) add(store + run->target, values + run->source, Length);
-  return run;
+inline const Strip* add_strips(const Strip* strip, const Strip* end, const double* values, double* store) {
+  for (; strip != end; ++strip) add(store + strip->target, values + strip->source, Length);
+  return strip;
 }
 
 }  // namespace poinsot::block

@@ -61,18 +61,18 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
                                   double part) {
   std::vector<int> bad;
   std::vector<std::vector<Sized>> updates(s.fronts.size());  // m × m, until the parent takes them
-  const Run* run = s.runs.data();
+  const Strip* strip = s.strips.data();
   const int* child = s.children.data();
   for (std::size_t k = 0; k < s.fronts.size(); ++k) {
     const Front& f = s.fronts[k];
     const int p = f.pivots, m = f.others, n = p + m;
     Square a(n);
-    for (const Run* end = s.runs.data() + f.runs.back(); run != end; ++run)
-      for (unsigned i = 0; i < run->length; ++i) {
+    for (const Strip* end = s.strips.data() + f.strips.back(); strip != end; ++strip)
+      for (unsigned i = 0; i < strip->length; ++i) {
         // Back from the store of D, L and U to rows and columns.
-        const int t = static_cast<int>(run->target + i), l = t - p * p, u = l - p * f.rows;
+        const int t = static_cast<int>(strip->target + i), l = t - p * p, u = l - p * f.rows;
         Sized& entry = l < 0 ? a(t % p, t / p) : u < 0 ? a(p + l % f.rows, l / f.rows) : a(u % p, p + u / p);
-        const double value = values[index(run->source) + i];
+        const double value = values[index(strip->source) + i];
         entry.value += value;
         entry.size += std::abs(value);
       }

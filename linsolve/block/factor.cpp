@@ -68,7 +68,7 @@ void Factor::resize(const Schedule& s) {
 
 Drift Factor::factor(const Schedule& s, std::span<const double> values, bool keep_order) {
   Drift drift;
-  const Run* run = s.runs.data();
+  const Strip* strip = s.strips.data();
   const int* child = s.children.data();
   const std::size_t ahead = store_.size() > kCached ? kAhead : s.fronts.size();
   for (std::size_t k = 0; k < s.fronts.size(); ++k) {
@@ -77,7 +77,8 @@ Drift Factor::factor(const Schedule& s, std::span<const double> values, bool kee
     if (k + ahead < s.fronts.size()) {
       const Front &next = s.fronts[k + ahead], &before = s.fronts[k + ahead - 1];
       fetch(store_.data() + next.store, next.pivots * (next.pivots + next.rows + next.others));
-      for (int r = before.runs[4]; r < next.runs[4]; ++r) __builtin_prefetch(values.data() + s.runs[index(r)].source);
+      for (int r = before.strips[4]; r < next.strips[4]; ++r)
+        __builtin_prefetch(values.data() + s.strips[index(r)].source);
     }
     double* W = update_.data();
     const int* end = s.children.data() + f.children;
@@ -87,12 +88,12 @@ Drift Factor::factor(const Schedule& s, std::span<const double> values, bool kee
       std::fill_n(D, f.pivots * (f.pivots + f.rows + f.others), 0.0);
       std::fill_n(W, f.rows * f.others, 0.0);
     }
-    run = block::add_runs<1>(run, s.runs.data() + f.runs[0], values.data(), D);
-    run = block::add_runs<2>(run, s.runs.data() + f.runs[1], values.data(), D);
-    run = block::add_runs<3>(run, s.runs.data() + f.runs[2], values.data(), D);
-    run = block::add_runs<4>(run, s.runs.data() + f.runs[3], values.data(), D);
-    for (const Run* last = s.runs.data() + f.runs[4]; run != last; ++run)
-      block::add(D + run->target, values.data() + run->source, static_cast<int>(run->length));
+    strip = block::add_strips<1>(strip, s.strips.data() + f.strips[0], values.data(), D);
+    strip = block::add_strips<2>(strip, s.strips.data() + f.strips[1], values.data(), D);
+    strip = block::add_strips<3>(strip, s.strips.data() + f.strips[2], values.data(), D);
+    strip = block::add_strips<4>(strip, s.strips.data() + f.strips[3], values.data(), D);
+    for (const Strip* last = s.strips.data() + f.strips[4]; strip != last; ++strip)
+      block::add(D + strip->target, values.data() + strip->source, static_cast<int>(strip->length));
     for (; child != end; ++child) {
       const Front& c = s.fronts[index(*child)];
       block::extend_add(c, stack_.data() + c.update, s.stretches.data(), f, D, W);

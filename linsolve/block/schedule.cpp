@@ -119,18 +119,19 @@ class Builder {
     for (std::size_t f = 0; f < s.fronts.size(); ++f)
       std::fill_n(front_at.begin() + s.fronts[f].first, s.fronts[f].pivots, static_cast<int>(f));
 
-    // By front; short runs, nearly all there are, by their length: they are copied without a loop.
-    constexpr int kKinds = std::tuple_size_v<decltype(Front::runs)>;
-    const auto place_of = [&](int front, const Run& run) {
-      return index(kKinds * front + std::min<int>(run.length, kKinds) - 1);
+    // By front; short strips, nearly all there are, by their length: they are copied without a loop.
+    constexpr int kKinds = std::tuple_size_v<decltype(Front::strips)>;
+    const auto place_of = [&](int front, const Strip& strip) {
+      return index(kKinds * front + std::min<int>(strip.length, kKinds) - 1);
     };
     std::vector<int> next(kKinds * s.fronts.size() + 1, 0);
-    visit_runs(s, front_at, [&](int front, const Run& run) { ++next[place_of(front, run) + 1]; });
+    visit_strips(s, front_at, [&](int front, const Strip& strip) { ++next[place_of(front, strip) + 1]; });
     std::partial_sum(next.begin(), next.end(), next.begin());
     for (std::size_t f = 0; f < s.fronts.size(); ++f)
-      std::copy_n(next.begin() + static_cast<std::ptrdiff_t>(kKinds * f + 1), kKinds, s.fronts[f].runs.begin());
-    s.runs.assign(index(next.back()), Run{});
-    visit_runs(s, front_at, [&](int front, const Run& run) { s.runs[index(next[place_of(front, run)]++)] = run; });
+      std::copy_n(next.begin() + static_cast<std::ptrdiff_t>(kKinds * f + 1), kKinds, s.fronts[f].strips.begin());
+    s.strips.assign(index(next.back()), Strip{});
+    visit_strips(s, front_at,
+                 [&](int front, const Strip& strip) { s.strips[index(next[place_of(front, strip)]++)] = strip; });
   }
 
   // Positions become unknowns.
@@ -148,11 +149,11 @@ class Builder {
     s.other.swap(named);
   }
 
-  // Calls visit(front, run) for stretches of the values that stay together in the store of a front.
+  // Calls visit(front, strip) for stretches of the values that stay together in the store of a front.
   template <class Visit>
-  void visit_runs(const Schedule& s, const std::vector<int>& front_at, Visit&& visit) const {
-    int open = -1;  // front of the run at hand
-    Run run{};
+  void visit_strips(const Schedule& s, const std::vector<int>& front_at, Visit&& visit) const {
+    int open = -1;  // front of the strip at hand
+    Strip strip{};
     for (int j = 0; j < layout_.n; ++j) {
       const int pj = position_[index(j)];
       for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k) {
@@ -163,18 +164,18 @@ class Builder {
         int target = lj * p + li;
         if (li >= p) target = p * p + lj * f.rows + li - p;
         if (lj >= p) target = p * (p + f.rows) + (lj - p) * p + li;
-        const int length = run.length;
-        if (open == front && run.source + length == k && static_cast<int>(run.target) + length == target &&
+        const int length = strip.length;
+        if (open == front && strip.source + length == k && static_cast<int>(strip.target) + length == target &&
             length < 255) {
-          run.length = static_cast<std::uint8_t>(length + 1);
+          strip.length = static_cast<std::uint8_t>(length + 1);
           continue;
         }
-        if (open >= 0) visit(open, run);
+        if (open >= 0) visit(open, strip);
         open = front;
-        run = {k, static_cast<std::uint32_t>(target) & 0xffffffu, 1};
+        strip = {k, static_cast<std::uint32_t>(target) & 0xffffffu, 1};
       }
     }
-    if (open >= 0) visit(open, run);
+    if (open >= 0) visit(open, strip);
   }
 
   const CscLayout& layout_;

@@ -26,19 +26,19 @@ struct Front {
   int list;                  // where its entries of `other` start
   int inner;                 // how many of the m unknowns are pivots of the parent: they come first
   int first_stretch, first_outer_stretch, last_stretch;  // of its update in the parent: pivots there, others there, end
-  // Ends of its runs of length 1, 2, 3, 4 and others; they start where those of the front before end.
-  std::array<int, 5> runs;
+  // Ends of its strips of length 1, 2, 3, 4 and others; they start where those of the front before end.
+  std::array<int, 5> strips;
   int children;         // end of its children, likewise
   std::int64_t store;   // of D, in doubles
   std::int64_t update;  // of W on the stack
 };
 
 // `length` values from `source` on go to `target` in the store of the front.
-struct Run {
+struct Strip {
   int source;
   std::uint32_t target : 24, length : 8;
 };
-static_assert(sizeof(Run) == 8);
+static_assert(sizeof(Strip) == 8);
 
 // `length` of a front's other unknowns from `from` on follow one after the other in the parent, too: from `to` on among
 // its pivots or among its others.
@@ -55,7 +55,7 @@ struct Schedule {
   // another.
   std::vector<int> other;
   std::vector<Stretch> stretches;
-  std::vector<Run> runs;
+  std::vector<Strip> strips;
   std::vector<int> children;
   std::int64_t store_size = 0, stack_size = 0, factor_nonzeros = 0;
   int largest_update = 0, largest_pivots = 0, largest_rows = 0;
