@@ -27,8 +27,8 @@ Klu::~Klu() {
 
 // Orders compete at the first factorization, and the one with the fewest entries in the factors stays: AMD after a
 // permutation to block triangular form (trees, determined mechanisms), COLAMD (ladders), and AMD as the matrix stands
-// (chains, loops), which by its fill can take seconds on a ladder of 1000. The search for the block triangular form
-// takes time in the square of n on saddle points.
+// (loops, ida's matrices), which by its fill can take seconds on a ladder of 1000 and gains nothing where there are
+// diagonal blocks. The search for the block triangular form takes time in the square of n on saddle points.
 LinearStatus Klu::do_symbolic() {
   constexpr int kLargestSearched = 20000, kLargestAsItStands = 3000;
   release();
@@ -36,8 +36,8 @@ LinearStatus Klu::do_symbolic() {
   first_place_.clear();
   if (layout().n <= kLargestSearched) add_rival(0, true);
   add_rival(1, false);
-  if (layout().n <= kLargestAsItStands) add_rival(0, false);
   if (rivals_.empty()) return library_status();
+  if (layout().n <= kLargestAsItStands && rivals_.front()->nblocks == 1) add_rival(0, false);
   symbolic_ = rivals_.front();
   rivals_.erase(rivals_.begin());
   return {};
