@@ -12,8 +12,8 @@
 namespace poinsot {
 namespace {
 
-constexpr double kNothing = 1e-13;      // of a coefficient beside a column of unit length
-constexpr double kClear = 0.2;          // of a column of unit length: it need not wait
+constexpr double kNothing = 1e-13;  // of a coefficient, or of what is left of a column, beside a column of unit length
+constexpr double kClear = 0.2;      // of a column of unit length: it need not wait
 constexpr Eigen::Index kMostWait = 16;  // columns of a front
 
 }  // namespace

@@ -1,8 +1,8 @@
 // Which pivots of a block elimination are mostly rounding.
 //
 // Beside every number of the elimination its size without cancellation is carried along: |a|, and |W| + |L||U|. A pivot
-// that is a small part of its own size came about by cancellation, and so did its relative error: the block
-// it belongs to is not regular, or one before it was not. The measure does not depend on the units of rows and columns.
+// that is a small part of its own size came about by cancellation, and so did its relative error: the block it belongs
+// to is not regular, or one before it was not. The measure does not depend on the units of rows and columns.
 #pragma once
 
 #include <span>
