@@ -61,8 +61,8 @@ TEST(Hubs, FactorsGrowWithTheirJoints) {
   }
 }
 
-// The cranks go past the position where they turn in the direction of the rows that hold the coupler. By block it moves on
-// hinges and on balls as it does on hinges by klu.
+// The cranks go past the position where they turn in the direction of the rows that hold the coupler. By block it moves
+// on hinges and on balls as it does on hinges by klu.
 TEST(Hubs, MoveAsOne) {
   const auto end = [](Hub kind, std::string_view solver) {
     Settings settings = dynamics("rA", 1e-3, 2, 1);
