@@ -1,11 +1,12 @@
 #include "formulations/elements.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
-#include <unordered_map>
+#include <bit>
+#include <cstdint>
+#include <utility>
 
-#include "core/check.h"
+#include "core/index.h"
+#include "core/index_table.h"
 
 namespace poinsot {
 namespace {
@@ -17,36 +18,21 @@ SpringLaw law_of(const Spring& s) {
   return {s.stiffness, s.damping, s.damping != 0, nullptr};
 }
 
-// Body and exact components: equal vectors are one attached vector.
-struct MarkerKey {
-  int body;
-  std::array<double, 3> s;
-  bool operator==(const MarkerKey&) const = default;
-};
-struct MarkerHash {
-  std::size_t operator()(const MarkerKey& k) const {
-    std::size_t h = std::hash<int>()(k.body);
-    for (double x : k.s) h = h * 1000003u ^ std::hash<double>()(x);
-    return h;
-  }
-};
-struct PairHash {
-  std::size_t operator()(const std::pair<int, int>& p) const {
-    return std::hash<long>()((static_cast<long>(p.first) << 32) ^ p.second);
-  }
-};
-
 }  // namespace
 
 struct Elements::Builder {
   Elements& e;
-  std::unordered_map<MarkerKey, int, MarkerHash> known_markers;
-  std::unordered_map<std::pair<int, int>, int, PairHash> known_pairs, known_nodes;
+  IndexTable known_markers, known_pairs, known_nodes;
+  std::vector<std::pair<int, int>> nodes;  // the two bodies of each
 
+  // Body and exact components: equal vectors are one attached vector.
   int marker(int body, const Vector3& s) {
-    const auto [at, fresh] = known_markers.try_emplace({body, {s[0], s[1], s[2]}}, static_cast<int>(e.markers.size()));
-    if (fresh) e.markers.push_back({body, s});
-    return at->second;
+    const auto word = [](double x) { return std::bit_cast<std::uint64_t>(x + 0.0); };  // of −0, too, that of 0
+    const auto same = [&](int k) { return e.markers[index(k)].body == body && e.markers[index(k)].s_bar == s; };
+    const std::uint64_t hash = IndexTable::hash({index(body), word(s[0]), word(s[1]), word(s[2])});
+    const int k = known_markers.find_or_add(hash, static_cast<int>(e.markers.size()), same);
+    if (index(k) == e.markers.size()) e.markers.push_back({body, s});
+    return k;
   }
   int right_side(const Expression& f, bool squared) {
     if (f.is_constant() && f.at(0.0).f == 0) return 0;
@@ -55,27 +41,34 @@ struct Elements::Builder {
   }
   int pair(int i, int j) {
     if (i == kGround || j == kGround) return -1;
-    const auto [at, fresh] = known_pairs.try_emplace({i, j}, static_cast<int>(e.pairs.size()));
-    if (fresh) e.pairs.push_back({.i = i, .j = j});
-    return at->second;
+    const auto same = [&](int k) { return e.pairs[index(k)].i == i && e.pairs[index(k)].j == j; };
+    const int next = static_cast<int>(e.pairs.size());
+    const int k = known_pairs.find_or_add(IndexTable::hash({index(i), index(j)}), next, same);
+    if (k == next) e.pairs.push_back({.i = i, .j = j});
+    return k;
+  }
+  int node(int i, int j) {
+    const std::pair<int, int> bodies = std::minmax(i, j);
+    const auto same = [&](int k) { return nodes[index(k)] == bodies; };
+    const int k =
+        known_nodes.find_or_add(IndexTable::hash({index(bodies.first), index(bodies.second)}), e.row_nodes, same);
+    if (k == e.row_nodes) nodes.push_back(bodies), ++e.row_nodes;
+    return k;
   }
   void couple(int pair_index, bool rr, bool rx, bool xr) {
     if (pair_index < 0) return;
-    Pair& p = e.pairs[static_cast<std::size_t>(pair_index)];
+    Pair& p = e.pairs[index(pair_index)];
     p.rr |= rr, p.rx |= rx, p.xr |= xr;
   }
   void touch(int body, bool rr, bool rx) {
     if (body == kGround) return;
-    e.body_rr[static_cast<std::size_t>(body)] |= static_cast<char>(rr);
-    e.body_rx[static_cast<std::size_t>(body)] |= static_cast<char>(rx);
+    e.body_rr[index(body)] |= static_cast<char>(rr);
+    e.body_rx[index(body)] |= static_cast<char>(rx);
   }
 
   void add(const Row& r) {
     const int row = e.rows++;
-    const auto key = std::minmax(r.i, r.j);
-    const auto [node, fresh] = known_nodes.try_emplace({key.first, key.second}, e.row_nodes);
-    if (fresh) ++e.row_nodes;
-    e.row_node.push_back(node->second);
+    e.row_node.push_back(node(r.i, r.j));
 
     // A constant direction on the coordinate of a row: CD couples no two bodies in the second variation.
     const RowBase base{row, r.i, r.j, right_side(r.f, r.squared), r.type == RowType::CD ? -1 : pair(r.i, r.j)};
@@ -145,7 +138,7 @@ struct Elements::Builder {
     for (Pair& p : e.pairs) {
       if (p.rr || p.rx || p.xr) p.with_r = e.pairs_with_r++;
     }
-    e.body_own.assign(static_cast<std::size_t>(e.nb), -1);
+    e.body_own.assign(index(e.nb), -1);
     for (std::size_t b = 0; b < e.body_own.size(); ++b) {
       if (e.body_rx[b]) e.body_own[b] = e.bodies_own++;
     }
@@ -155,18 +148,18 @@ struct Elements::Builder {
   void sort_markers() {
     std::vector<int> order(e.markers.size()), place(e.markers.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
-    const auto body_of = [&](int k) { return static_cast<unsigned>(e.markers[static_cast<std::size_t>(k)].body); };
+    const auto body_of = [&](int k) { return static_cast<unsigned>(e.markers[index(k)].body); };
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return body_of(a) < body_of(b); });
     std::vector<Marker> sorted;
     sorted.reserve(order.size());
     for (int k : order) {
-      place[static_cast<std::size_t>(k)] = static_cast<int>(sorted.size());
-      sorted.push_back(e.markers[static_cast<std::size_t>(k)]);
+      place[index(k)] = static_cast<int>(sorted.size());
+      sorted.push_back(e.markers[index(k)]);
     }
     e.markers = std::move(sorted);
     e.ground_markers = static_cast<int>(
         std::count_if(e.markers.begin(), e.markers.end(), [](const Marker& m) { return m.body != kGround; }));
-    const auto move = [&](auto&... index) { ((index = place[static_cast<std::size_t>(index)]), ...); };
+    const auto move = [&](auto&... marker) { ((marker = place[index(marker)]), ...); };
     for (auto& r : e.dp1) move(r.u, r.v);
     for (auto& r : e.alternates) move(r.normal.u, r.normal.v, r.alternate.u, r.alternate.v);
     for (auto& r : e.dp2) move(r.a, r.p, r.q);
@@ -189,15 +182,13 @@ Elements::Elements(std::shared_ptr<const Model> of, std::span<const int> dropped
   right_sides.push_back({Expression(0.0), false});
   row_of.assign(model->rows.size(), -1);
 
-  Builder build{*this, {}, {}, {}};
-  build.known_markers.reserve(model->rows.size());
-  build.known_pairs.reserve(model->groups.size());
-  build.known_nodes.reserve(model->groups.size());
+  const std::size_t joints = model->groups.size();
+  Builder build{*this, IndexTable(model->rows.size()), IndexTable(joints), IndexTable(joints), {}};
   for (std::size_t k = 0; k < model->rows.size(); ++k) {
-    const int index = static_cast<int>(k);
-    if (std::binary_search(dropped.begin(), dropped.end(), index)) continue;
+    const int row = static_cast<int>(k);
+    if (std::binary_search(dropped.begin(), dropped.end(), row)) continue;
     row_of[k] = rows;
-    model_row.push_back(index);
+    model_row.push_back(row);
     build.add(model->rows[k]);
   }
   build.join_coincidences();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <utility>
 
@@ -16,6 +17,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr int kWide = 300;            // entries of a row that fronts do without
 constexpr double kNegligible = 1e-9;  // of a sum beside the largest entry of its vector
 constexpr double kMentioned = 1e-6;   // of a coefficient beside that of the dependent column
+constexpr double kGrown = 1e6;        // times: rounding of 1e-12, as projections leave it, is 1e-6 of a column then
 constexpr double kMostWork = 2e9;     // operations with what wide rows leave of columns
 
 // A z at the wide rows, as entries behind those of the columns: combined like them, and zero for a null vector of A.
@@ -34,21 +36,11 @@ void append_wide_rows(const Sparse& A, const std::vector<int>& wide, double tole
 std::vector<int> dependent_on_wide_rows(const Sparse& A, const std::vector<int>& wide, int count, FrontQr& qr,
                                         double tolerance) {
   const std::vector<int>& columns = qr.dependent();
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(A.cols(), count);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(count, A.cols());
   for (int k = 0; k < A.outerSize(); ++k)
     for (Sparse::InnerIterator it(A, k); it; ++it)
-      if (const int row = wide[static_cast<std::size_t>(it.row())]; row >= 0) rows(k, row) = it.value();
-  const auto n = static_cast<Eigen::Index>(columns.size());
-  Eigen::MatrixXd sums(count, n);
-  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(n);
-  for (int row = 0; row < count; ++row) {
-    const std::vector<FrontQr::Sum> of_row =
-        qr.times_null_vectors({rows.col(row).data(), static_cast<std::size_t>(A.cols())});
-    for (Eigen::Index k = 0; k < n; ++k) {
-      sums(row, k) = of_row[static_cast<std::size_t>(k)].value;
-      sizes[k] = std::max(sizes[k], of_row[static_cast<std::size_t>(k)].size);
-    }
-  }
+      if (const int row = wide[static_cast<std::size_t>(it.row())]; row >= 0) rows(row, k) = it.value();
+  auto [sums, sizes] = qr.times_null_vectors(rows);
   std::vector<char> is_dependent(columns.size(), 1);
   for (int row = 0; row < count; ++row) {
     const Eigen::RowVectorXd parts = sums.cwiseAbs().colwise().maxCoeff().cwiseQuotient(sizes.transpose().cwiseMax(1));
@@ -90,6 +82,21 @@ std::map<int, SparseEntries> echelon(std::vector<SparseEntries> vectors) {
   return ends;
 }
 
+// Where the columns kept by their order are barely independent, and rounding of A decides about what is left of others,
+// those are kept that are clearest; unless `enough` of them are dependent all the same. So, too, beside wide rows: what
+// these hold is found by sums along null vectors, which such columns make long.
+FrontQr decomposed(const Sparse& A, const std::vector<char>& left_out, double tolerance, bool wide, std::size_t most,
+                   std::size_t enough) {
+  const auto choose = [&](FrontQr::Choice choice, std::size_t vectors) {
+    return FrontQr(A, left_out, tolerance, choice, vectors);
+  };
+  if (wide) return choose(FrontQr::Choice::clearest, SIZE_MAX);
+  FrontQr first = choose(FrontQr::Choice::by_order, most);
+  if (first.growth() <= kGrown || first.dependent().size() >= enough) return first;
+  FrontQr other = choose(FrontQr::Choice::clearest, most);
+  return other.growth() < first.growth() ? std::move(other) : std::move(first);
+}
+
 // Null vectors of A, by the last column of each.
 struct Echelon {
   std::map<int, SparseEntries> by_last;
@@ -98,7 +105,7 @@ struct Echelon {
   double from = 0;  // the least tolerance that comes to the same
 
   // Vectors are not needed where there are more than `most`.
-  Echelon(const Sparse& A, double tolerance, std::size_t most) {
+  Echelon(const Sparse& A, double tolerance, std::size_t most, std::size_t enough) {
     std::vector<int> entries(static_cast<std::size_t>(A.rows()), 0), wide(entries.size(), -1);
     for (int k = 0; k < A.outerSize(); ++k)
       for (Sparse::InnerIterator it(A, k); it; ++it) ++entries[static_cast<std::size_t>(it.row())];
@@ -107,9 +114,8 @@ struct Echelon {
     for (std::size_t k = 0; k < entries.size(); ++k)
       if (entries[k] > kWide) wide[k] = count++, left_out[k] = 1;
 
-    // What wide rows hold is found by sums along null vectors: with columns that are barely independent these are long.
-    FrontQr qr(A, left_out, tolerance, count > 0 ? FrontQr::Choice::clearest : FrontQr::Choice::by_order);
-    from = count > 0 ? tolerance : qr.left();
+    FrontQr qr = decomposed(A, left_out, tolerance, count > 0, most, enough);
+    from = qr.choice() == FrontQr::Choice::by_order ? qr.left() : tolerance;
     const double work = static_cast<double>(qr.dependent().size()) * count * count;
     if (count > 0 && qr.dependent().size() > most && work < kMostWork) {
       complete = false;
@@ -140,7 +146,7 @@ struct Echelon {
 }  // namespace
 
 ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
-  Echelon space(A, tolerance, kMostNamed);
+  Echelon space(A, tolerance, kMostNamed, SIZE_MAX);
   ColumnDependencies found;
   found.named = space.complete;
   for (const int column : space.dependent) found.columns.push_back({column, {}});
@@ -162,12 +168,12 @@ ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
   return found;
 }
 
-std::vector<int> dependent_columns(const Sparse& A, double tolerance) {
-  return Echelon(A, tolerance, 0).dependent;
+std::vector<int> dependent_columns(const Sparse& A, double tolerance, std::size_t enough) {
+  return Echelon(A, tolerance, 0, enough).dependent;
 }
 
 NullSpace null_space(const Sparse& A, double tolerance, std::size_t most) {
-  Echelon space(A, tolerance, most);
+  Echelon space(A, tolerance, most, SIZE_MAX);
   NullSpace found{std::move(space.dependent), {}, space.from};
   for (auto& [column, z] : space.by_last) found.vectors.push_back(std::move(z));
   return found;

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <cstdint>
 #include <vector>
 
 #include "linsolve/front_qr.h"
@@ -32,8 +33,10 @@ struct ColumnDependencies {
 // Columns of A have unit length or are zero; less than `tolerance` of one counts as nothing.
 ColumnDependencies column_dependencies(const Eigen::SparseMatrix<double>& A, double tolerance);
 
-// As many columns, ascending, without which the others are independent; not always those named above. Needs far less.
-std::vector<int> dependent_columns(const Eigen::SparseMatrix<double>& A, double tolerance);
+// As many columns, ascending, without which the others are independent; not always those named above. Needs far less,
+// and less again where it is not asked whether they are `enough` or more than that.
+std::vector<int> dependent_columns(const Eigen::SparseMatrix<double>& A, double tolerance,
+                                   std::size_t enough = SIZE_MAX);
 
 // The null space of A: a vector for each column that depends on others. `columns` are as many, ascending, without which
 // the others are independent; where there are more than `most` of them (or of those that only wide rows keep from

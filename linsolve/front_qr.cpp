@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
+#include <random>
 #include <utility>
 
+#include "core/check.h"
 #include "core/index.h"
+#include "linsolve/lists.h"
 
 namespace poinsot {
 namespace {
@@ -18,15 +21,18 @@ constexpr Eigen::Index kMostWait = 16;  // columns of a front
 
 }  // namespace
 
-FrontQr::FrontQr(const Eigen::SparseMatrix<double>& A, const std::vector<char>& left_out, double tolerance,
-                 Choice choice)
+FrontQr::FrontQr(const Sparse& A, const std::vector<char>& left_out, double tolerance, Choice choice, std::size_t most)
     : tolerance_(tolerance),
       choice_(choice),
+      most_(most),
       column_(index(static_cast<int>(A.cols()))),
       place_(column_.size()),
+      known_(column_.size()),
       local_(2 * column_.size()) {
+  std::mt19937 random(1);
+  for (double& b : known_) b = random() % 2 == 0 ? 1 : -1;
   const int n = static_cast<int>(A.cols());
-  Eigen::SparseMatrix<double> kept = A;
+  Sparse kept = A;
   kept.prune([&](Eigen::Index row, Eigen::Index, double value) { return value != 0 && !left_out[index(int(row))]; });
   kept.makeCompressed();
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> P(n);
@@ -34,13 +40,21 @@ FrontQr::FrontQr(const Eigen::SparseMatrix<double>& A, const std::vector<char>& 
   for (int k = 0; k < n; ++k) place_[index(k)] = P.indices()[k];
   for (int k = 0; k < n; ++k) column_[index(place_[index(k)])] = k;
 
-  const RowMajor by_row = kept * P.inverse();
-  std::vector<std::vector<int>> begin(index(n));
-  for (int row = 0; row < by_row.outerSize(); ++row)
-    if (const RowMajor::InnerIterator first(by_row, row); first) begin[index(int(first.col()))].push_back(row);
+  RowMajor by_row(kept.rows(), n);
+  Eigen::VectorXi entries = Eigen::VectorXi::Zero(kept.rows());
+  for (Eigen::Index k = 0; k < kept.nonZeros(); ++k) ++entries[kept.innerIndexPtr()[k]];
+  by_row.reserve(entries);
+  for (int place = 0; place < n; ++place)
+    for (Sparse::InnerIterator it(kept, column_[index(place)]); it; ++it)
+      by_row.insertBackUncompressed(it.row(), place) = it.value();
+  const Lists begin = Lists::collect(n, [&](auto&& emit) {
+    for (int row = 0; row < by_row.outerSize(); ++row)
+      if (const RowMajor::InnerIterator first(by_row, row); first) emit(static_cast<int>(first.col()), row);
+  });
   std::vector<std::vector<Front>> parts(index(n));
+  R_.reserve(2 * index(kept.nonZeros()));  // what most come to
   for (int place = 0; place < n; ++place) {
-    Front front = assemble(place, by_row, begin[index(place)], std::move(parts[index(place)]));
+    Front front = assemble(place, by_row, begin[place], std::move(parts[index(place)]));
     reduce(front);
     if (front.left().size() > 0) parts[index(front.places[index(int(front.first))])].push_back(std::move(front));
   }
@@ -50,8 +64,7 @@ FrontQr::FrontQr(const Eigen::SparseMatrix<double>& A, const std::vector<char>& 
 }
 
 // All rows that begin at `place`. A part alone is taken as it is: the columns of one joint share a front.
-FrontQr::Front FrontQr::assemble(int place, const RowMajor& A, const std::vector<int>& begins,
-                                 std::vector<Front> parts) {
+FrontQr::Front FrontQr::assemble(int place, const RowMajor& A, std::span<const int> begins, std::vector<Front> parts) {
   if (begins.empty() && parts.size() == 1) return std::move(parts.front());
   Front front;
   Eigen::Index rows = static_cast<Eigen::Index>(begins.size());
@@ -139,17 +152,23 @@ void FrontQr::take(Front& front, Eigen::Index k, double norm) {
   if (norm > tolerance_) {
     double tau = 0, beta = 0;
     left.col(k).makeHouseholderInPlace(tau, beta);
-    Eigen::VectorXd work(left.cols());
+    if (reflected_.size() < left.cols()) reflected_.resize(left.cols());
     const auto v = left.col(k).tail(left.rows() - 1);
-    left.leftCols(k).applyHouseholderOnTheLeft(v, tau, work.data());
-    left.rightCols(left.cols() - k - 1).applyHouseholderOnTheLeft(v, tau, work.data());
+    left.leftCols(k).applyHouseholderOnTheLeft(v, tau, reflected_.data());
+    left.rightCols(left.cols() - k - 1).applyHouseholderOnTheLeft(v, tau, reflected_.data());
     left(0, k) = beta;
-    for (Eigen::Index j = 0; j < left.cols(); ++j)
-      if (left(0, j) != 0) R_.push_back({row, column_at(j), left(0, j)});
+    const double y = known_[index(order_.back())] / beta;
+    growth_ = std::max(growth_, std::abs(y));
+    for (Eigen::Index j = 0; j < left.cols(); ++j) {
+      if (left(0, j) == 0) continue;
+      known_[index(column_at(j))] -= left(0, j) * y;
+      if (has_R_) R_.push_back({row, column_at(j), left(0, j)});
+    }
     ++front.top;
   } else {
     most_left_ = std::max(most_left_, norm);
     dependent_.push_back(column_at(k));
+    if (dependent_.size() > most_) std::vector<Entry>().swap(R_), has_R_ = false;
   }
   if (!waits(front.places[index(int(front.first + k))])) {
     ++front.first;
@@ -173,6 +192,7 @@ void FrontQr::store_by_column() {
 
 // Back substitution with the rows that are reached only.
 SparseEntries FrontQr::null_vector(int column) {
+  check(has_R_, "null vectors of no more columns than was said");
   if (start_.empty()) store_by_column();
   std::priority_queue<int> reached;
   std::vector<double>& b = work_;
@@ -199,27 +219,34 @@ SparseEntries FrontQr::null_vector(int column) {
   return z;
 }
 
-std::vector<FrontQr::Sum> FrontQr::times_null_vectors(std::span<const double> b) {
+FrontQr::Sums FrontQr::times_null_vectors(const Eigen::MatrixXd& b) {
+  check(has_R_, "null vectors of no more columns than was said");
   if (start_.empty()) store_by_column();
-  std::vector<double> y(place_.size(), 0.0);
-  std::vector<Sum> sums(place_.size());
-  for (std::size_t place = 0; place < y.size(); ++place) {
-    Sum& sum = sums[place];
-    sum.value = b[index(column_[place])];
-    sum.size = std::abs(sum.value);
-    for (std::size_t k = start_[place]; k < start_[place + 1]; ++k) {
-      if (index(R_[k].row) == place) {
-        y[place] = sum.value / R_[k].value;
+  Eigen::MatrixXd y(b.rows(), b.cols());  // of dependent columns, of which R has no row, the sums
+  Eigen::VectorXd sizes(b.cols()), size(b.rows());
+  for (Eigen::Index place = 0; place < y.cols(); ++place) {
+    auto sum = y.col(place);
+    sum = b.col(column_[index(place)]);
+    size = sum.cwiseAbs();
+    for (std::size_t k = start_[index(place)]; k < start_[index(place + 1)]; ++k) {
+      if (R_[k].row == place) {
+        sum /= R_[k].value;
         break;
       }
-      const double term = R_[k].value * y[index(R_[k].row)];
-      sum.value -= term;
-      sum.size += std::abs(term);
+      const auto row = y.col(R_[k].row);
+      sum -= R_[k].value * row;
+      size += std::abs(R_[k].value) * row.cwiseAbs();
     }
+    sizes[place] = size.maxCoeff();
   }
-  std::vector<Sum> of_dependent;
-  for (const int column : dependent_) of_dependent.push_back(sums[index(place_[index(column)])]);
-  return of_dependent;
+  const auto count = static_cast<Eigen::Index>(dependent_.size());
+  Sums sums{Eigen::MatrixXd(b.rows(), count), Eigen::VectorXd(count)};
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const int place = place_[index(dependent_[index(k)])];
+    sums.values.col(k) = y.col(place);
+    sums.sizes[k] = sizes[place];
+  }
+  return sums;
 }
 
 }  // namespace poinsot

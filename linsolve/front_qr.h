@@ -13,7 +13,9 @@
 // Xeon, release build): it goes by columns, with no fronts.
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,22 +26,30 @@ using SparseEntries = std::vector<std::pair<int, double>>;  // by index
 
 class FrontQr {
  public:
+  using Sparse = Eigen::SparseMatrix<double>;
   enum class Choice { by_order, clearest };
-  // `left_out`: rows of A that are passed over.
-  FrontQr(const Eigen::SparseMatrix<double>& A, const std::vector<char>& left_out, double tolerance, Choice choice);
+  // `left_out`: rows of A that are passed over. Null vectors can be asked for, and R is kept, where no more than `most`
+  // columns are dependent.
+  FrontQr(const Sparse& A, const std::vector<char>& left_out, double tolerance, Choice choice, std::size_t most);
 
+  Choice choice() const { return choice_; }
   // Columns of A that depend on those before them in the order P, that of their elimination.
   const std::vector<int>& dependent() const { return dependent_; }
   // The most that was left of one of them: tolerances between that and the one given lead to the same decomposition.
   double left() const { return most_left_; }
+  // The largest |y| of Rᵀ y = b for signs b: rounding of A is so many times as large in what is left of a dependent
+  // column. It grows with the length of a mechanism; where columns of which little is left are kept one after the other
+  // it is their product.
+  double growth() const { return growth_; }
   // A z = 0 up to the tolerance, for a dependent column: 1 there, and columns that are independent, sorted.
   SparseEntries null_vector(int column);
-  // b·z for the null vector z of each dependent column, in their order; b has a number for each column of A. Without
-  // the vectors, which may be long, by one pass over R: Rᵀ y = b, and b·z = b_c − y·r_c.
-  struct Sum {
-    double value = 0, size = 0;  // and that of its terms
+  // b z for the null vectors z of the dependent columns, in their order; b has a column for each of A. Without the
+  // vectors, which may be long, by one pass over R: Rᵀ y = b, and b z = b_c − y r_c.
+  struct Sums {
+    Eigen::MatrixXd values;
+    Eigen::VectorXd sizes;  // of the largest terms of each, added up
   };
-  std::vector<Sum> times_null_vectors(std::span<const double> b);
+  Sums times_null_vectors(const Eigen::MatrixXd& b);
 
  private:
   struct Front {
@@ -50,7 +60,7 @@ class FrontQr {
   };
   using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-  Front assemble(int place, const RowMajor& A, const std::vector<int>& begins, std::vector<Front> parts);
+  Front assemble(int place, const RowMajor& A, std::span<const int> begins, std::vector<Front> parts);
   void reduce(Front& front);
   void wait(Front& front);
   void settle_waiting(Front& front);
@@ -60,12 +70,17 @@ class FrontQr {
 
   double tolerance_;
   Choice choice_;
+  std::size_t most_;
+  bool has_R_ = true;
   std::vector<int> column_, place_;  // column at a place, place of a column: by fill, at the end in the order P
   std::vector<int> order_;           // P, as far as it is known
   std::vector<int> dependent_;
   double most_left_ = 0;
-  std::vector<int> local_;    // place within the front being assembled
-  std::vector<double> work_;  // by place, zero between calls
+  double growth_ = 0;
+  std::vector<double> known_;  // by column: b less what the rows of R so far take off
+  std::vector<int> local_;     // place within the front being assembled
+  std::vector<double> work_;   // by place, zero between calls
+  Eigen::VectorXd reflected_;
   struct Entry {
     int row, place;  // while it is made, `place` is the column
     double value;

@@ -30,8 +30,13 @@ std::shared_ptr<const Model> with_unit_masses(const Model& model, std::span<cons
 
 }  // namespace
 
-Beside::Beside(const std::shared_ptr<const Model>& model, std::span<const BodyState> states, RowSpace& space)
-    : model_(model), states_(states.begin(), states.end()), space_(space), sizes_(body_sizes(*model)) {
+Beside::Beside(const std::shared_ptr<const Model>& model, std::span<const BodyState> states, RowSpace& space,
+               std::size_t suspects)
+    : model_(model),
+      states_(states.begin(), states.end()),
+      space_(space),
+      suspects_(suspects),
+      sizes_(body_sizes(*model)) {
   unit_ = with_unit_masses(*model_, sizes_);
 }
 
@@ -128,7 +133,7 @@ std::span<const double> Beside::measure_start(Trial& trial) {
 void Beside::look(Problem& problem, Place& place) {
   stand(problem, place);
   place.columns = space_.columns();
-  place.dependent = dependent_columns(place.columns, kFreeBeside).size();
+  place.dependent = dependent_columns(place.columns, kFreeBeside, suspects_).size();
   std::vector<double> off(space_.rows().size());
   space_.distances(off);
   place.holds = true;

@@ -29,7 +29,7 @@ struct Place {
   double t = 0;
   std::vector<double> q, v;
   Eigen::SparseMatrix<double> columns;
-  std::size_t dependent = 0;  // of them
+  std::size_t dependent = 0;  // of them; all suspects where it is as many
   bool holds = false;
   int worst = -1;  // the row that is off most, of those left out
   double off = 0;  // m
@@ -47,8 +47,9 @@ struct Trial {
 
 class Beside {
  public:
-  // `space` stands where it was last looked.
-  Beside(const std::shared_ptr<const Model>& model, std::span<const BodyState> states, RowSpace& space);
+  // `space` stands where it was last looked. `suspects`: how many of its rows may be dependent.
+  Beside(const std::shared_ptr<const Model>& model, std::span<const BodyState> states, RowSpace& space,
+         std::size_t suspects);
 
   Trial begin(const std::vector<int>& without) const;
   // Makes the trial's start the one from which `holds` is judged: m that each row of the space is off there.
@@ -71,6 +72,7 @@ class Beside {
   std::shared_ptr<const Model> model_, unit_;
   std::vector<BodyState> states_;
   RowSpace& space_;
+  std::size_t suspects_;
   std::vector<double> sizes_, off_at_start_;
 };
 

@@ -13,7 +13,6 @@
 #include "integrators/start/loop_rows.h"
 #include "integrators/start/row_choice.h"
 #include "integrators/start/row_space.h"
-#include "integrators/start/rows_aside.h"
 #include "linsolve/column_dependencies.h"
 #include "linsolve/separation.h"
 
@@ -84,7 +83,7 @@ class Examination {
     const std::size_t suspects = here_.columns.size();  // how many rows may be dependent
     const NullSpace surely_null = here_.from <= kDependent ? here_ : few(columns, kDependent);
     const std::vector<int>& surely = surely_null.columns;
-    beside_.emplace(model_, states_, *space_);
+    beside_.emplace(model_, states_, *space_, suspects);
     Trial trial = beside_->begin(without_);
     if (trial.regular) find_conflicts(trial, without_);
     if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
@@ -123,23 +122,17 @@ class Examination {
   void find_conflicts(Trial& trial, const std::vector<int>& without) {
     const Place& start = trial.start;
     const std::span<const double> off = beside_->measure_start(trial);
-    RowsAside left_out(*model_, without);
-    std::vector<BodyState> states(states_.size());
-    trial.problem->set_position(0, start.q);
-    trial.problem->set_velocity(start.v);
-    trial.problem->to_bodies(std::vector<double>(start.v.size()), states);
-    (void)left_out.position_residual(0, states);
-    const std::span<const double> rate = left_out.velocity_residual(), nu = left_out.nu();
+    std::vector<double> rate(off.size()), nu(off.size());
+    space_->rates(start.v, rate, nu);
     const double speed = beside_->extent(start.v);
-    for (std::size_t r = 0; r < without.size(); ++r) {
-      const int row = without[r];
+    for (const int row : without) {
       const std::size_t k =
           index(static_cast<int>(std::ranges::lower_bound(space_->rows(), row) - space_->rows().begin()));
       const double size = space_->size_of_row(k), length = space_->lengths()[k];
-      const double rate_off = std::abs(rate[r]) / length;
+      const double rate_off = std::abs(rate[k]) / length;
       if (off[k] > kContradicts * size)
         result_.conflicts.push_back({row, Conflict::Level::position, off[k], 0});
-      else if (rate_off > kContradicts * std::max({speed * size, std::abs(nu[r]) / length, kHolds * size}))
+      else if (rate_off > kContradicts * std::max({speed * size, std::abs(nu[k]) / length, kHolds * size}))
         result_.conflicts.push_back({row, Conflict::Level::velocity, rate_off, 0});
     }
   }

@@ -130,6 +130,12 @@ void RowSpace::distances(std::span<double> out) const {
   for (std::size_t k = 0; k < out.size(); ++k) out[k] /= lengths_[k];
 }
 
+void RowSpace::rates(std::span<const double> v, std::span<double> residual, std::span<double> nu) {
+  problem_->set_velocity(v);
+  problem_->velocity_residual(residual);
+  problem_->nu(nu);
+}
+
 double RowSpace::size_of_row(std::size_t k) const {
   const Row& row = model_->rows[index(rows_[k])];
   double size = 0;

@@ -18,17 +18,20 @@ struct Sized {
 // A whole front, (p + m) × (p + m).
 class Square {
  public:
-  explicit Square(int n) : n_(index(n)), entries_(n_ * n_) {}
+  void clear(int n) {
+    n_ = index(n);
+    entries_.assign(n_ * n_, {});
+  }
   Sized& operator()(int i, int j) { return entries_[index(j) * n_ + index(i)]; }
 
  private:
-  std::size_t n_;
+  std::size_t n_ = 0;
   std::vector<Sized> entries_;
 };
 
 // Eliminates p pivots of n and visits those that are cancelled. The pivots are those of factor_choosing().
 template <class Visit>
-void eliminate(Square& a, int p, int n, std::vector<double> weight, double part, Visit&& cancelled) {
+void eliminate(Square& a, int p, int n, std::span<double> weight, double part, Visit&& cancelled) {
   for (int k = 0; k < p; ++k) {
     int best = k;
     const auto candidate = [&](int i) { return std::abs(a(i, k).value) * weight[index(i)]; };
@@ -61,12 +64,15 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
                                   double part) {
   std::vector<int> bad;
   std::vector<std::vector<Sized>> updates(s.fronts.size());  // m × m, until the parent takes them
+  Square a;
+  std::vector<int> places;
+  std::vector<double> units;
   const Strip* strip = s.strips.data();
   const int* child = s.children.data();
   for (std::size_t k = 0; k < s.fronts.size(); ++k) {
     const Front& f = s.fronts[k];
     const int p = f.pivots, m = f.others, n = p + m;
-    Square a(n);
+    a.clear(n);
     for (const Strip* end = s.strips.data() + f.strips.back(); strip != end; ++strip)
       for (unsigned i = 0; i < strip->length; ++i) {
         // Back from the store of D, L and U to rows and columns.
@@ -78,7 +84,7 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
       }
     for (const int* end = s.children.data() + f.children; child != end; ++child) {
       const Front& c = s.fronts[index(*child)];
-      std::vector<int> places(index(c.others));
+      places.resize(index(c.others));
       for (int r = c.first_stretch; r < c.last_stretch; ++r) {
         const Stretch& stretch = s.stretches[index(r)];
         for (int i = 0; i < stretch.length; ++i)
@@ -94,9 +100,10 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
         }
       std::vector<Sized>().swap(updates[index(*child)]);
     }
-    std::vector<double> units(index(p));
+    units.resize(index(p));
     for (int i = 0; i < p; ++i) units[index(i)] = weight[index(s.unknown[index(f.first + i)])];
-    eliminate(a, p, n, std::move(units), part, [&](int i) { bad.push_back(f.first + i); });
+    eliminate(a, p, n, units, part, [&](int i) { bad.push_back(f.first + i); });
+    updates[k].reserve(index(m) * index(m));
     for (int j = p; j < n; ++j)
       for (int i = p; i < n; ++i) updates[k].push_back(a(i, j));
   }

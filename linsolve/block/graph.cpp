@@ -87,6 +87,27 @@ std::vector<int> merge(const CscLayout& layout, UnionFind& part, const std::vect
 
 }  // namespace
 
+void Incidence::find(const CscLayout& layout, std::span<const int> node_of, std::span<const int> fused) {
+  const int nodes = 1 + *std::ranges::max_element(node_of);
+  fused_with.assign(index(nodes), -1);
+  if (!fused.empty()) std::ranges::copy(fused, fused_with.begin());
+  is_group.assign(index(nodes), 1);  // but for nodes with an entry on the diagonal that are not fused with another
+  entries(layout, [&](int i, int j) {
+    if (i == j && fused_with[index(node_of[index(i)])] < 0) is_group[index(node_of[index(i)])] = 0;
+  });
+  const Lists other = seen(layout, nodes, [&](int k) { return node_of[index(k)]; });
+  const auto between = [&](bool group) {
+    return Lists::collect(nodes, [&](auto&& emit) {
+      for (int a = 0; a < nodes; ++a)
+        if ((is_group[index(a)] != 0) == group)
+          for (const int b : other[a])
+            if ((is_group[index(b)] != 0) != group) emit(a, b);
+    });
+  };
+  bodies = between(true);
+  groups = between(false);
+}
+
 void Graph::build(const CscLayout& layout, std::span<const int> node_of, std::span<const int> fused) {
   const int n = layout.n;
   const int nodes = 1 + *std::ranges::max_element(node_of);
@@ -126,21 +147,7 @@ void Graph::build(const CscLayout& layout, std::span<const int> node_of, std::sp
   body_atoms.assign(index(nodes), 0);
   for (int a = 0; a < count; ++a)
     if (!constraint[index(a)]) ++body_atoms[index(node[index(a)])];
-  // Which groups act on which bodies, by the nodes of the pattern: fused groups included.
-  fused_with.assign(index(nodes), -1);
-  if (!fused.empty()) std::ranges::copy(fused, fused_with.begin());
-  const auto is_group = [&](int g) { return fused_with[index(g)] >= 0 || body_atoms[index(g)] == 0; };
-  const Lists other = seen(layout, nodes, [&](int k) { return node_of[index(k)]; });
-  const auto between = [&](bool group) {
-    return Lists::collect(nodes, [&](auto&& emit) {
-      for (int a = 0; a < nodes; ++a)
-        if (is_group(a) == group)
-          for (const int b : other[a])
-            if (is_group(b) != group) emit(a, b);
-    });
-  };
-  bodies = between(true);
-  groups = between(false);
+  find(layout, node_of, fused);
 }
 
 double symmetry(const CscLayout& layout) {

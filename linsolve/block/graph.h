@@ -17,22 +17,29 @@
 
 namespace poinsot::block {
 
-struct Graph {
-  Lists unknowns, neighbours;    // by atom
-  std::vector<char> constraint;  // by atom
-  std::vector<int> node;         // by atom
-  Lists bodies;                  // by node of constraints: the nodes of bodies it acts on
-  Lists groups;                  // by node of a body: the nodes of constraints on it
-  std::vector<int> body_atoms;   // by node: how many atoms of bodies it has
-  std::vector<int> fused_with;   // by node of constraints: the body it is fused with, or −1
+// Which groups act on which bodies, by the nodes of the pattern: fused groups included.
+struct Incidence {
+  std::vector<char> is_group;   // by node
+  Lists bodies;                 // by node of constraints: the nodes of bodies it acts on
+  Lists groups;                 // by node of a body: the nodes of constraints on it
+  std::vector<int> fused_with;  // by node of constraints: the body it is fused with, or −1
 
-  int atoms() const { return unknowns.size(); }
   // A body with so many groups that they would not all share a front (order.h).
   bool is_hub(int of_node) const { return groups[of_node].size() > kHub; }
   // `fused[g]` is the body node that takes in node g, or −1.
-  void build(const CscLayout& layout, std::span<const int> node_of, std::span<const int> fused);
+  void find(const CscLayout& layout, std::span<const int> node_of, std::span<const int> fused);
 
   static constexpr std::size_t kHub = 32;  // with fewer a full front costs no more
+};
+
+struct Graph : Incidence {
+  Lists unknowns, neighbours;    // by atom
+  std::vector<char> constraint;  // by atom
+  std::vector<int> node;         // by atom
+  std::vector<int> body_atoms;   // by node: how many atoms of bodies it has
+
+  int atoms() const { return unknowns.size(); }
+  void build(const CscLayout& layout, std::span<const int> node_of, std::span<const int> fused);
 };
 
 // Share of the entries (i, j) of a pattern that have a mirror entry (j, i).

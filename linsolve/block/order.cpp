@@ -1,9 +1,9 @@
 #include "linsolve/block/order.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <queue>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "core/check.h"
@@ -47,13 +47,15 @@ class MinimumDegree {
   }
 
  private:
-  using Entry = std::tuple<int, int>;  // degree, atom
+  // Degree and atom as one number: least degree first, then least atom.
+  static std::uint64_t entry(int degree, int atom) { return index(degree) << 32 | index(atom); }
   static constexpr std::size_t kLong = 256;
 
   struct State {
     int neighbours = 0, elements = 0;  // lengths
     int members = 0, member = 0;       // of the element it became: length and start; none once it went into another
     int weight = 0, degree = -1, mark = 0;
+    int front = -2;  // the last one it was in, by its pivot
     bool done = false, last = false;
   };
 
@@ -72,11 +74,11 @@ class MinimumDegree {
 
   void push(int a) {
     atoms_[index(a)].degree = degree(a);
-    queue_.push({atoms_[index(a)].degree, a});
+    queue_.push(entry(atoms_[index(a)].degree, a));
   }
 
   // Unknowns outside a that its elimination couples. Exact while a sees little, else an upper bound; hubs come
-  // behind all others.
+  // behind all others. Those of the last front are known together.
   int degree(int a) {
     constexpr int kExact = 64;
     const State& state = atoms_[index(a)];
@@ -84,13 +86,18 @@ class MinimumDegree {
     if (long_lists(a) && state.degree >= 0) return state.degree;
     ++stamp_;
     mark(a);
+    const auto in_front = [&](int b) { return atoms_[index(b)].front == last_; };
     int sum = state.last ? unknowns_ : 0;
+    if (in_front(a)) sum += front_weight_ - state.weight;
+    const auto count = [&](int b) {
+      if (!in_front(b) && mark(b)) sum += atoms_[index(b)].weight;
+    };
     for (const int b : neighbours(a))
-      if (!atoms_[index(b)].done && mark(b)) sum += atoms_[index(b)].weight;
+      if (!atoms_[index(b)].done) count(b);
     for (const int e : elements(a)) {
+      if (e == last_) continue;
       if (state.elements <= kExact) {
-        for (const int b : members(e))
-          if (mark(b)) sum += atoms_[index(b)].weight;
+        for (const int b : members(e)) count(b);
       } else {
         for (const int b : members(e)) sum += atoms_[index(b)].weight;
         sum -= state.weight;
@@ -101,9 +108,10 @@ class MinimumDegree {
 
   int next() {
     while (!queue_.empty()) {
-      const auto [degree, a] = queue_.top();
+      const std::uint64_t first = queue_.top();
+      const int a = static_cast<int>(first & UINT32_MAX);
       queue_.pop();
-      if (atoms_[index(a)].done || degree != atoms_[index(a)].degree) continue;
+      if (atoms_[index(a)].done || first != entry(atoms_[index(a)].degree, a)) continue;
       if (eliminated_.may_be_pivot(a)) return a;
       atoms_[index(a)].degree = -1;  // comes back when something next to it is eliminated
     }
@@ -129,7 +137,11 @@ class MinimumDegree {
     pool_.insert(pool_.end(), front_.begin(), front_.end());
     eliminated_.add(a);
 
+    last_ = a;
+    front_weight_ = 0;
     for (const int b : front_) {
+      atoms_[index(b)].front = a;
+      front_weight_ += atoms_[index(b)].weight;
       if (!long_lists(b) || full(b)) {
         drop_elements(b);
         drop_neighbours(b);
@@ -166,7 +178,8 @@ class MinimumDegree {
   std::vector<int> list_, begin_, pool_, front_;
   std::vector<State> atoms_;
   int stamp_ = 0, unknowns_ = 0;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+  int last_ = -1, front_weight_ = 0;  // of the last front: its pivot, and what its atoms weigh
+  std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>> queue_;
 };
 
 }  // namespace

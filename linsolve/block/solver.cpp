@@ -188,22 +188,22 @@ class Solver final : public LinearSolver {
   // A body that is not regular by itself takes in a group of its constraints; a group that was a pivot too early goes
   // to the last of its bodies. `bad`: such pivots, by place. False where nothing is left to fuse.
   bool fuse(const std::vector<int>& bad) {
-    Graph graph;
-    graph.build(layout_, node_, fused_);
+    Incidence incidence;
+    incidence.find(layout_, node_, fused_);
     std::vector<int> place(fused_.size(), 0);  // in the order of elimination, by node
     for (int k = 0; k < schedule_->n; ++k) place[index(node_[index(schedule_->unknown[index(k)])])] = k;
     bool any = false;
     for (const int k : bad) {
       const int node = node_[index(schedule_->unknown[index(k)])];
       if (fused_[index(node)] >= 0) continue;
-      if (graph.body_atoms[index(node)] == 0) {
-        const std::span<const int> bodies = graph.bodies[node];
+      if (incidence.is_group[index(node)]) {
+        const std::span<const int> bodies = incidence.bodies[node];
         if (bodies.empty()) continue;
         fused_[index(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[index(b)]; });
         any = true;
         continue;
       }
-      for (const int g : graph.groups[node])
+      for (const int g : incidence.groups[node])
         if (fused_[index(g)] < 0) {
           fused_[index(g)] = node;
           any = true;
