@@ -82,6 +82,21 @@ std::map<int, SparseEntries> echelon(std::vector<SparseEntries> vectors) {
   return ends;
 }
 
+// Rows that fronts do without.
+struct WideRows {
+  int count = 0;
+  std::vector<int> number;     // by row, −1 of others
+  std::vector<char> left_out;  // by row
+
+  explicit WideRows(const Sparse& A) : number(static_cast<std::size_t>(A.rows()), -1), left_out(number.size(), 0) {
+    std::vector<int> entries(number.size(), 0);
+    for (int k = 0; k < A.outerSize(); ++k)
+      for (Sparse::InnerIterator it(A, k); it; ++it) ++entries[static_cast<std::size_t>(it.row())];
+    for (std::size_t k = 0; k < entries.size(); ++k)
+      if (entries[k] > kWide) number[k] = count++, left_out[k] = 1;
+  }
+};
+
 // Where the columns kept by their order are barely independent, and rounding of A decides about what is left of others,
 // those are kept that are clearest; unless `enough` of them are dependent all the same. So, too, beside wide rows: what
 // these hold is found by sums along null vectors, which such columns make long.
@@ -106,14 +121,7 @@ struct Echelon {
 
   // Vectors are not needed where there are more than `most`.
   Echelon(const Sparse& A, double tolerance, std::size_t most, std::size_t enough) {
-    std::vector<int> entries(static_cast<std::size_t>(A.rows()), 0), wide(entries.size(), -1);
-    for (int k = 0; k < A.outerSize(); ++k)
-      for (Sparse::InnerIterator it(A, k); it; ++it) ++entries[static_cast<std::size_t>(it.row())];
-    std::vector<char> left_out(entries.size(), 0);
-    int count = 0;
-    for (std::size_t k = 0; k < entries.size(); ++k)
-      if (entries[k] > kWide) wide[k] = count++, left_out[k] = 1;
-
+    const auto [count, wide, left_out] = WideRows(A);
     FrontQr qr = decomposed(A, left_out, tolerance, count > 0, most, enough);
     from = qr.choice() == FrontQr::Choice::by_order ? qr.left() : tolerance;
     const double work = static_cast<double>(qr.dependent().size()) * count * count;
@@ -166,6 +174,14 @@ ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
     ++k;
   }
   return found;
+}
+
+std::vector<int> clearest_dependent_columns(const Sparse& A, double tolerance) {
+  const WideRows wide(A);
+  if (wide.count > 0) return dependent_columns(A, tolerance);
+  std::vector<int> columns = FrontQr(A, wide.left_out, tolerance, FrontQr::Choice::clearest, 0).dependent();
+  std::ranges::sort(columns);
+  return columns;
 }
 
 std::vector<int> dependent_columns(const Sparse& A, double tolerance, std::size_t enough) {

@@ -38,6 +38,9 @@ ColumnDependencies column_dependencies(const Eigen::SparseMatrix<double>& A, dou
 std::vector<int> dependent_columns(const Eigen::SparseMatrix<double>& A, double tolerance,
                                    std::size_t enough = SIZE_MAX);
 
+// The same, but the others are kept for being clear, not for their order: as independent as one finds without vectors.
+std::vector<int> clearest_dependent_columns(const Eigen::SparseMatrix<double>& A, double tolerance);
+
 // The null space of A: a vector for each column that depends on others. `columns` are as many, ascending, without which
 // the others are independent; where there are more than `most` of them (or of those that only wide rows keep from
 // being dependent), or past kMostNamed, there are no vectors.

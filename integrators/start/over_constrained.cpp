@@ -23,6 +23,8 @@ OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::share
       kept_(std::move(kept)),
       now_(states.begin(), states.end()) {
   choice_->rows.look(0, states);
+  // Of very many redundant rows those set aside are not chosen but found (integrators/start/rank.h).
+  if (choice_->rows.worn() && choice_->rows.renew(0, states)) kept_ = kept_->clone_without(choice_->rows.aside());
   look();
   bodies_ = kept_->bodies();
   nq_ = kept_->nq(), nv_ = kept_->nv(), nc_ = kept_->nc();

@@ -10,8 +10,8 @@
 
 #include "core/index.h"
 #include "integrators/start/beside.h"
+#include "integrators/start/block_choice.h"
 #include "integrators/start/loop_rows.h"
-#include "integrators/start/row_choice.h"
 #include "integrators/start/row_space.h"
 #include "linsolve/column_dependencies.h"
 #include "linsolve/separation.h"
@@ -21,9 +21,9 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double kContradicts = 1e-6;                  // of a body's size: by what the scene says
-constexpr double kNoLoad = 1e-7;                       // of a null vector on unit rows
-constexpr std::size_t kMostChosen = RowChoice::kMost;  // dependent rows: the time grows with their square
+constexpr double kContradicts = 1e-6;                    // of a body's size: by what the scene says
+constexpr double kNoLoad = 1e-7;                         // of a null vector on unit rows
+constexpr std::size_t kMostChosen = BlockChoice::kMost;  // dependent rows: the time grows with their square
 constexpr int kManyRows = 20'000;  // of loops: one random direction is looked at in the place of two
 
 std::vector<int> united(std::vector<int> a, const std::vector<int>& b) {

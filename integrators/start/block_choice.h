@@ -1,0 +1,89 @@
+// Of the redundant rows of one loop, or of loops that hang together (row_blocks.h): which to set aside now, and what
+// the others' multipliers leave open.
+//
+// With the rows G_K kept, a row set aside is g_d = Σ c_k g_k, on unit vectors. No |c_k| much above 1 means that the
+// kept rows are nearly as independent as any choice could be; as the mechanism turns the coefficients grow, and a kept
+// row whose coefficient has become large takes the place of the one set aside. Rows set aside are those of few joints
+// where that keeps the coefficients small (linsolve/separation.h): a loop that is held by few rows at one of its joints
+// is eliminated by small fronts, and such a choice wears out late.
+//
+//   c = argmin ‖G_Kᵀ c − g_d‖,   (G_K G_Kᵀ) c = G_K g_d, refined once
+//
+// e_d − Σ c_k e_k is a null vector of Gᵀ: reactions that balance one another.
+//
+// Time grows with the number of rows for each row set aside. Of many rows the coefficients are looked at one by one
+// only where the sums Σ_d ± c_kd, for some vectors of random signs, say that there may be large ones; where too many
+// are set aside, never: then rows are chosen anew as a whole, those that are clearest (linsolve/front_qr.h), and their
+// null vectors are not known.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <span>
+#include <vector>
+
+#include "integrators/start/row_space.h"
+#include "linsolve/separation.h"
+
+namespace poinsot {
+
+class BlockChoice {
+ public:
+  static constexpr std::size_t kMost = 200;  // rows set aside that have coefficients
+
+  // `rows`: places in `space`; `aside`: rows of the model among them without which they are independent.
+  BlockChoice(const Model& model, const RowSpace& space, std::vector<int> rows, const std::vector<int>& aside);
+
+  // Each where `space` stands. look() judges the choice.
+  void look(const RowSpace& space);
+  bool worn() const;
+  // Chooses anew where the present choice has worn out: true where other rows are set aside now. Bodies have turned by
+  // `turned` since it was looked at.
+  bool renew(const RowSpace& space, double turned);
+  // Where it was last looked at, rad: what bodies may turn by until it is to be looked at again.
+  double good_for() const { return good_for_; }
+  void add_aside(const RowSpace& space, std::vector<int>& rows) const;
+  // λ, by row of the model: of rows kept before ← that of those kept now, which are the same forces.
+  void carry_over(const RowSpace& space, std::span<double> lambda) const;
+  // Null vectors of Gᵀ by row of the model are added: one for each row set aside, or none.
+  void add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors);
+
+ private:
+  bool large() const;
+  void find_bodies(const RowSpace& space);
+  bool dense() const;
+  // C_ for the rows kept; false, and 0, where these are not independent.
+  bool find_coefficients(const RowSpace& space);
+  bool find_dense(const RowSpace& space);
+  bool find_sparse(const RowSpace& space);
+  void refine();
+  int place_of_body(int body) const;
+  Eigen::SparseMatrix<double> columns(const RowSpace& space, const std::vector<int>& some) const;
+  void take_parts(const RowSpace& space);
+  double dot(int k, int l) const;
+  void find_beside(const Model& model, const RowSpace& space);
+  void keep_others(const std::vector<int>& left_out);
+  double estimate(const RowSpace& space, const std::vector<int>& left_out) const;
+  std::vector<int> clearest(const RowSpace& space) const;
+  bool exchange(const RowSpace& space);
+  bool choose_clearest(const RowSpace& space);
+  std::vector<SparseEntries> unit_null_vectors() const;
+
+  struct Parts {
+    int body[2];  // place of it, −1: the ground
+    Eigen::Matrix<double, 6, 1> part[2];
+  };
+
+  std::vector<int> rows_;    // of the space; all that follow by place here
+  std::vector<int> bodies_;  // ascending
+  bool watched_ = true;
+  std::vector<int> group_;                // by row
+  std::vector<std::vector<int>> beside_;  // by row, where full matrices are used: rows that share a body
+  std::vector<int> place_;                // by row: among those kept, −1 where it is not
+  std::vector<int> kept_, left_out_;
+  Eigen::MatrixXd gram_, C_;         // the lower triangle's Cholesky factor; coefficients, kept × left out
+  std::vector<Parts> parts_;         // by row
+  double worst_ = 0, good_for_ = 0;  // the largest coefficient where last looked at, or what stands for it
+};
+
+}  // namespace poinsot

@@ -1,0 +1,100 @@
+// Hundreds of redundant rows that have to be exchanged on the way, in loops of their own and in loops that lean on one
+// another: more than have coefficients (integrators/start/block_choice.h).
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "integrators/start/rank.h"
+#include "integrators/start/row_blocks.h"
+#include "integrators/start/violation.h"
+#include "tests/support/carried.h"
+#include "tests/support/scene_transform.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+struct Motion {
+  Outcome outcome;
+  std::vector<BodyState> end;
+  double reaction = 0;  // of the base's hinge, N
+  int exchanges = 0;
+};
+
+Motion move(const Scene& scene, const Settings& settings) {
+  Motion m;
+  m.outcome = simulate(scene, settings, [&](const Sample& sample) {
+    m.end.resize(static_cast<std::size_t>(sample.problem.bodies()));
+    sample.problem.to_bodies(sample.a, m.end);
+    m.exchanges = sample.problem.revision();
+    Vector3 force, moment;
+    sample.problem.reaction(0, sample.lambda, force, moment);
+    m.reaction = force.norm();
+  });
+  return m;
+}
+
+class ManyLoops : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ManyLoops, MoveAsWithoutRedundancy) {
+  for (const std::string_view name : {"dopri5", "implicit_euler"}) {
+    Settings settings = dynamics(GetParam(), 4e-3, 0.6, 1);
+    settings.integrator = name;
+    settings.tolerance = 1e-9;
+    settings.rtol = 1e-8;
+    for (const auto make : {&Carried::four_bars, &Carried::ladder}) {
+      SCOPED_TRACE(fmt::format("{} {} {}", make == &Carried::ladder ? "ladder" : "four-bars", name, GetParam()));
+      constexpr int kCells = 69;  // 207 redundant rows
+      const Motion with = move(make(kCells, true), settings), without = move(make(kCells, false), settings);
+      ASSERT_TRUE(with.outcome.status.ok()) << with.outcome.status.message;
+      ASSERT_TRUE(without.outcome.status.ok()) << without.outcome.status.message;
+      double apart = 0;
+      for (std::size_t b = 0; b < with.end.size(); ++b)
+        apart = std::max(apart, (with.end[b].r - without.end[b].r).norm());
+      EXPECT_LT(apart, 1e-6);
+      EXPECT_NEAR(with.reaction, without.reaction, 1e-5 * without.reaction);
+      EXPECT_LT(with.outcome.statistics.violation.position, 1e-11);
+      EXPECT_GT(with.exchanges, 0);
+      EXPECT_LE(static_cast<double>(with.outcome.statistics.steps),
+                1.1 * static_cast<double>(without.outcome.statistics.steps));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ManyLoops, ::testing::Values("rA", "rp", "reps"));
+
+// Rows that are nearly combinations of others may come first: their order alone must not decide about rank. Ladders of
+// 40 cells and more were called singular.
+TEST(Rank, OfACarriedLadder) {
+  Transform turned;
+  turned.R = exp_so3(Vector3(1e-3, -2e-3, 1.5e-3));
+  for (const int cells : {20, 41, 50, 72, 110})
+    for (const bool tilted : {false, true}) {
+      SCOPED_TRACE(fmt::format("{} cells{}", cells, tilted ? ", tilted" : ""));
+      const Scene scene = Carried::ladder(cells, true);
+      const auto model = std::make_shared<const Model>(compile(tilted ? turned.apply(scene) : scene));
+      const RankAnalysis found = analyze_rank(model, given_state(*model), RankNames::none);
+      EXPECT_EQ(found.degrees_of_freedom(), cells + 1);
+      EXPECT_EQ(found.aside.size(), static_cast<std::size_t>(3 * cells));
+      EXPECT_TRUE(found.singular.empty());
+      EXPECT_EQ(found.doubt, 0);
+    }
+}
+
+// Loops that share a body are apart, those that share two are not; a joint outside of loops is alone.
+TEST(RowBlocks, AreLoopsThatShareTwoBodies) {
+  const auto sizes = [](const Scene& scene) {
+    const Model model = compile(scene);
+    std::vector<int> rows(model.rows.size());
+    for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = static_cast<int>(k);
+    const Lists blocks = row_blocks(model, rows);
+    std::vector<std::size_t> of;
+    for (int b = 0; b < blocks.size(); ++b) of.push_back(blocks[b].size());
+    return of;
+  };
+  EXPECT_THAT(sizes(Carried::four_bars(3, true)), ::testing::UnorderedElementsAre(5, 20, 20, 20));
+  EXPECT_THAT(sizes(Carried::ladder(4, true)), ::testing::UnorderedElementsAre(5, 80));
+}
+
+}  // namespace
+}  // namespace poinsot::test
