@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/index.h"
-#include "integrators/start/small_cholesky.h"
 #include "linsolve/column_dependencies.h"
 
 namespace poinsot {
@@ -22,8 +21,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 // more than kTurnsMore times what it changed by since the one before, but by kTurnsLittle.
 constexpr double kWorn = 6, kWorst = 20;
 constexpr double kTurnsMost = 2, kTurnsLittle = 1, kTurnsMore = 3;
-constexpr double kNothing = 1e-12;    // of a coefficient beside the row set aside
-constexpr Eigen::Index kDense = 120;  // rows up to which full matrices are faster
+constexpr double kNothing = 1e-12;  // of a coefficient beside the row set aside
 constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
 constexpr double kGain = 2;  // times better is a choice that is worth an exchange
@@ -40,48 +38,19 @@ double turn_until_worst(double coefficient, double rate) {
 
 BlockChoice::BlockChoice(const Model& model, const RowSpace& space, std::vector<int> rows,
                          const std::vector<int>& aside)
-    : rows_(std::move(rows)) {
+    : rows_(space, std::move(rows)), watched_(rows_.products() <= kMostProducts) {
   std::vector<int> left_out;
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const int row = space.rows()[index(rows_[k])];
+  for (int k = 0; k < static_cast<int>(rows_.size()); ++k) {
+    const int row = row_of(space, k);
     group_.push_back(model.rows[index(row)].group);
-    if (std::ranges::binary_search(aside, row)) left_out.push_back(static_cast<int>(k));
+    if (std::ranges::binary_search(aside, row)) left_out.push_back(k);
   }
-  find_bodies(space);
   keep_others(left_out);
-  find_beside(model, space);
+  if (kept_.size() <= SmallCoefficients::kMost) small_.emplace(model, space, rows_);
 }
 
-void BlockChoice::find_bodies(const RowSpace& space) {
-  std::vector<int> of_rows;
-  for (const int row : rows_) {
-    int last = -1;
-    for (Sparse::InnerIterator it(space.columns(), row); it; ++it)
-      if (const int body = static_cast<int>(it.row()) / 6; body != last) of_rows.push_back(last = body);
-  }
-  std::ranges::sort(of_rows);
-  double products = 0;  // of rows that share a body
-  for (auto first = of_rows.begin(); first != of_rows.end();) {
-    const auto last = std::ranges::upper_bound(first, of_rows.end(), *first);
-    products += std::pow(last - first, 2);
-    bodies_.push_back(*first);
-    first = last;
-  }
-  watched_ = products <= kMostProducts;
-}
-
-void BlockChoice::find_beside(const Model& model, const RowSpace& space) {
-  if (!dense()) return;
-  const std::size_t n = rows_.size();
-  beside_.resize(n);
-  const auto row = [&](std::size_t k) -> const Row& { return model.rows[index(space.rows()[index(rows_[k])])]; };
-  const auto share = [](const Row& a, const Row& b) {
-    const auto acts_on = [&](int body) { return body != kGround && (body == b.i || body == b.j); };
-    return acts_on(a.i) || acts_on(a.j);
-  };
-  for (std::size_t k = 0; k < n; ++k)
-    for (std::size_t l = 0; l < n; ++l)
-      if (share(row(k), row(l))) beside_[k].push_back(static_cast<int>(l));
+int BlockChoice::row_of(const RowSpace& space, int k) const {
+  return space.rows()[index(rows_.place_in_space(k))];
 }
 
 void BlockChoice::keep_others(const std::vector<int>& left_out) {
@@ -95,110 +64,14 @@ bool BlockChoice::large() const {
   return left_out_.size() > kMost || left_out_.size() * kept_.size() > kMostCoefficients;
 }
 
-bool BlockChoice::dense() const {
-  return static_cast<Eigen::Index>(kept_.size()) <= kDense;
-}
-
 bool BlockChoice::find_coefficients(const RowSpace& space) {
-  if (dense() ? find_dense(space) : find_sparse(space)) return true;
+  if (small_ ? small_->find(space, rows_, kept_, left_out_, C_) : find_sparse(space)) return true;
   C_.setZero(static_cast<Eigen::Index>(kept_.size()), static_cast<Eigen::Index>(left_out_.size()));
   return false;
 }
 
-int BlockChoice::place_of_body(int body) const {
-  return static_cast<int>(std::ranges::lower_bound(bodies_, body) - bodies_.begin());
-}
-
-// Unit vectors of some rows, on the bodies of the block.
-Sparse BlockChoice::columns(const RowSpace& space, const std::vector<int>& some) const {
-  Sparse of(6 * static_cast<Eigen::Index>(bodies_.size()), static_cast<Eigen::Index>(some.size()));
-  of.reserve(12 * static_cast<Eigen::Index>(some.size()));
-  for (std::size_t c = 0; c < some.size(); ++c) {
-    const auto column = static_cast<Eigen::Index>(c);
-    of.startVec(column);
-    for (Sparse::InnerIterator it(space.columns(), rows_[index(some[c])]); it; ++it)
-      if (it.value() != 0)
-        of.insertBack(6 * place_of_body(static_cast<int>(it.row()) / 6) + it.row() % 6, column) = it.value();
-  }
-  of.finalize();
-  return of;
-}
-
-// The parts of a unit row on its bodies.
-void BlockChoice::take_parts(const RowSpace& space) {
-  parts_.resize(rows_.size());
-  for (std::size_t k = 0; k < parts_.size(); ++k) {
-    Parts& of = parts_[k];
-    of.body[0] = of.body[1] = -1;
-    int at = -1, last = -1;
-    for (Sparse::InnerIterator it(space.columns(), rows_[k]); it; ++it) {
-      const int body = static_cast<int>(it.row()) / 6;
-      if (body != last) {
-        of.body[++at] = place_of_body(body);
-        of.part[at].setZero();
-        last = body;
-      }
-      of.part[at][it.row() % 6] = it.value();
-    }
-  }
-}
-
-double BlockChoice::dot(int k, int l) const {
-  const Parts &a = parts_[index(k)], &b = parts_[index(l)];
-  double sum = 0;
-  for (int i = 0; i < 2 && a.body[i] >= 0; ++i)
-    for (int j = 0; j < 2; ++j)
-      if (a.body[i] == b.body[j]) sum += a.part[i].dot(b.part[j]);
-  return sum;
-}
-
-bool BlockChoice::find_dense(const RowSpace& space) {
-  const auto n = static_cast<Eigen::Index>(kept_.size()), m = static_cast<Eigen::Index>(left_out_.size());
-  take_parts(space);
-  place_.assign(parts_.size(), -1);
-  for (Eigen::Index j = 0; j < n; ++j) place_[index(kept_[index(j)])] = static_cast<int>(j);
-  gram_.resize(n, n), C_.setZero(n, m);
-  const auto fill = [&](int k, Eigen::Index from, auto&& column) {
-    for (const int l : beside_[index(k)]) {
-      const int place = place_[index(l)];
-      if (place >= from) column[place] = dot(k, l);
-    }
-  };
-  for (Eigen::Index j = 0; j < n; ++j) {
-    gram_.col(j).tail(n - j).setZero();
-    fill(kept_[index(j)], j, gram_.col(j));
-  }
-  for (Eigen::Index d = 0; d < m; ++d) fill(left_out_[index(d)], 0, C_.col(d));
-  if (!small_cholesky(gram_)) return false;
-  small_cholesky_solve(gram_, C_);
-  return C_.allFinite();
-}
-
-// Takes out the rounding of C_: what is needed where multipliers are made of it.
-void BlockChoice::refine() {
-  if (!dense()) return;
-  Eigen::MatrixXd change(C_.rows(), C_.cols());
-  Eigen::VectorXd left(6 * static_cast<Eigen::Index>(bodies_.size()));
-  const auto add = [&](double factor, int k) {
-    const Parts& of = parts_[index(k)];
-    for (int i = 0; i < 2 && of.body[i] >= 0; ++i) left.segment<6>(6 * of.body[i]) += factor * of.part[i];
-  };
-  for (Eigen::Index d = 0; d < C_.cols(); ++d) {
-    left.setZero();
-    add(1, left_out_[index(d)]);
-    for (Eigen::Index k = 0; k < C_.rows(); ++k) add(-C_(k, d), kept_[index(k)]);
-    for (Eigen::Index k = 0; k < C_.rows(); ++k) {
-      const Parts& of = parts_[index(kept_[index(k)])];
-      change(k, d) = 0;
-      for (int i = 0; i < 2 && of.body[i] >= 0; ++i) change(k, d) += of.part[i].dot(left.segment<6>(6 * of.body[i]));
-    }
-  }
-  small_cholesky_solve(gram_, change);
-  C_ += change;
-}
-
 bool BlockChoice::find_sparse(const RowSpace& space) {
-  const Sparse K = columns(space, kept_), D = columns(space, left_out_);
+  const Sparse K = rows_.columns(space, kept_), D = rows_.columns(space, left_out_);
   const Eigen::SimplicialLDLT<Sparse> gram(K.transpose() * K);
   if (gram.info() != Eigen::Success) return false;
   C_ = gram.solve(Eigen::MatrixXd(K.transpose() * D));
@@ -242,7 +115,7 @@ bool BlockChoice::worn() const {
 bool BlockChoice::renew(const RowSpace& space, double turned) {
   if (!watched_) return false;
   const double before = angle(worst_);
-  const bool sums = !dense() && !large();
+  const bool sums = !small_ && !large();
   if (sums)
     worst_ = estimate(space, left_out_);
   else
@@ -257,14 +130,14 @@ bool BlockChoice::renew(const RowSpace& space, double turned) {
 }
 
 bool BlockChoice::exchange(const RowSpace& space) {
-  refine();
+  if (small_) small_->refine(kept_, left_out_, C_);
   std::vector<int> chosen = left_out_;
   repair(unit_null_vectors(), chosen, group_);
   std::ranges::sort(chosen);
   if (chosen == left_out_) return false;
   keep_others(chosen);
   look(space);
-  refine();
+  if (small_) small_->refine(kept_, left_out_, C_);
   return true;
 }
 
@@ -282,7 +155,7 @@ double BlockChoice::estimate(const RowSpace& space, const std::vector<int>& left
   std::vector<int> kept;
   for (int k = 0; k < static_cast<int>(rows_.size()); ++k)
     if (!std::ranges::binary_search(left_out, k)) kept.push_back(k);
-  const Sparse K = columns(space, kept), D = columns(space, left_out);
+  const Sparse K = rows_.columns(space, kept), D = rows_.columns(space, left_out);
   const Eigen::SimplicialLDLT<Sparse> gram(K.transpose() * K);
   if (gram.info() != Eigen::Success) return HUGE_VAL;
   std::mt19937 random(1);
@@ -295,23 +168,23 @@ double BlockChoice::estimate(const RowSpace& space, const std::vector<int>& left
 std::vector<int> BlockChoice::clearest(const RowSpace& space) const {
   std::vector<int> all(rows_.size());
   std::iota(all.begin(), all.end(), 0);
-  return clearest_dependent_columns(columns(space, all), kIndependent);
+  return clearest_dependent_columns(rows_.columns(space, all), kIndependent);
 }
 
 void BlockChoice::add_aside(const RowSpace& space, std::vector<int>& rows) const {
-  for (const int k : left_out_) rows.push_back(space.rows()[index(rows_[index(k)])]);
+  for (const int k : left_out_) rows.push_back(row_of(space, k));
 }
 
 void BlockChoice::carry_over(const RowSpace& space, std::span<double> lambda) const {
-  const auto at = [&](int k) -> double& { return lambda[index(space.rows()[index(rows_[index(k)])])]; };
-  const auto length = [&](int k) { return space.lengths()[index(rows_[index(k)])]; };
+  const auto at = [&](int k) -> double& { return lambda[index(row_of(space, k))]; };
+  const auto length = [&](int k) { return space.lengths()[index(rows_.place_in_space(k))]; };
   Eigen::VectorXd forces(static_cast<Eigen::Index>(left_out_.size()));
   for (std::size_t d = 0; d < left_out_.size(); ++d)
     forces[static_cast<Eigen::Index>(d)] = std::exchange(at(left_out_[d]), 0.0) * length(left_out_[d]);
   Eigen::VectorXd shares;  // of the kept rows
   if (large()) {
-    const Sparse K = columns(space, kept_);
-    const Eigen::VectorXd all = columns(space, left_out_) * forces;
+    const Sparse K = rows_.columns(space, kept_);
+    const Eigen::VectorXd all = rows_.columns(space, left_out_) * forces;
     const Eigen::SimplicialLDLT<Sparse> gram(K.transpose() * K);
     shares = gram.solve(K.transpose() * all);
     shares += gram.solve(K.transpose() * (all - K * shares));
@@ -324,12 +197,11 @@ void BlockChoice::carry_over(const RowSpace& space, std::span<double> lambda) co
 
 void BlockChoice::add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors) {
   if (!watched_ || large() || !find_coefficients(space)) return;
-  refine();
+  if (small_) small_->refine(kept_, left_out_, C_);
   for (SparseEntries& z : unit_null_vectors()) {
     for (auto& [k, value] : z) {
-      const int row = rows_[index(k)];
-      value /= space.lengths()[index(row)];
-      k = space.rows()[index(row)];
+      value /= space.lengths()[index(rows_.place_in_space(k))];
+      k = row_of(space, k);
     }
     vectors.push_back(std::move(z));
   }

@@ -18,11 +18,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "integrators/start/block_rows.h"
 #include "integrators/start/row_space.h"
+#include "integrators/start/small_coefficients.h"
 #include "linsolve/separation.h"
 
 namespace poinsot {
@@ -49,19 +51,11 @@ class BlockChoice {
   void add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors);
 
  private:
+  int row_of(const RowSpace& space, int k) const;  // of the model
   bool large() const;
-  void find_bodies(const RowSpace& space);
-  bool dense() const;
   // C_ for the rows kept; false, and 0, where these are not independent.
   bool find_coefficients(const RowSpace& space);
-  bool find_dense(const RowSpace& space);
   bool find_sparse(const RowSpace& space);
-  void refine();
-  int place_of_body(int body) const;
-  Eigen::SparseMatrix<double> columns(const RowSpace& space, const std::vector<int>& some) const;
-  void take_parts(const RowSpace& space);
-  double dot(int k, int l) const;
-  void find_beside(const Model& model, const RowSpace& space);
   void keep_others(const std::vector<int>& left_out);
   double estimate(const RowSpace& space, const std::vector<int>& left_out) const;
   std::vector<int> clearest(const RowSpace& space) const;
@@ -69,20 +63,12 @@ class BlockChoice {
   bool choose_clearest(const RowSpace& space);
   std::vector<SparseEntries> unit_null_vectors() const;
 
-  struct Parts {
-    int body[2];  // place of it, −1: the ground
-    Eigen::Matrix<double, 6, 1> part[2];
-  };
-
-  std::vector<int> rows_;    // of the space; all that follow by place here
-  std::vector<int> bodies_;  // ascending
-  bool watched_ = true;
-  std::vector<int> group_;                // by row
-  std::vector<std::vector<int>> beside_;  // by row, where full matrices are used: rows that share a body
-  std::vector<int> place_;                // by row: among those kept, −1 where it is not
+  BlockRows rows_;  // all that follow by their places here
+  bool watched_;
+  std::vector<int> group_;  // by row
   std::vector<int> kept_, left_out_;
-  Eigen::MatrixXd gram_, C_;         // the lower triangle's Cholesky factor; coefficients, kept × left out
-  std::vector<Parts> parts_;         // by row
+  std::optional<SmallCoefficients> small_;
+  Eigen::MatrixXd C_;                // kept × left out
   double worst_ = 0, good_for_ = 0;  // the largest coefficient where last looked at, or what stands for it
 };
 
