@@ -8,13 +8,11 @@
 
 namespace poinsot {
 
-using Sparse = Eigen::SparseMatrix<double>;
-
 BlockRows::BlockRows(const RowSpace& space, std::vector<int> rows) : rows_(std::move(rows)) {
   std::vector<int> of_rows;
   for (const int row : rows_) {
     int last = -1;
-    for (Sparse::InnerIterator it(space.columns(), row); it; ++it)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(space.columns(), row); it; ++it)
       if (const int body = static_cast<int>(it.row()) / 6; body != last) of_rows.push_back(last = body);
   }
   std::ranges::sort(of_rows);
@@ -30,13 +28,13 @@ int BlockRows::place_of_body(int body) const {
   return static_cast<int>(std::ranges::lower_bound(bodies_, body) - bodies_.begin());
 }
 
-Sparse BlockRows::columns(const RowSpace& space, std::span<const int> some) const {
-  Sparse of(6 * static_cast<Eigen::Index>(bodies_.size()), static_cast<Eigen::Index>(some.size()));
+Eigen::SparseMatrix<double> BlockRows::columns(const RowSpace& space, std::span<const int> some) const {
+  Eigen::SparseMatrix<double> of(6 * static_cast<Eigen::Index>(bodies_.size()), static_cast<Eigen::Index>(some.size()));
   of.reserve(12 * static_cast<Eigen::Index>(some.size()));
   for (std::size_t c = 0; c < some.size(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);
     of.startVec(column);
-    for (Sparse::InnerIterator it(space.columns(), rows_[index(some[c])]); it; ++it)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(space.columns(), rows_[index(some[c])]); it; ++it)
       if (it.value() != 0)
         of.insertBack(6 * place_of_body(static_cast<int>(it.row()) / 6) + it.row() % 6, column) = it.value();
   }
