@@ -98,14 +98,11 @@ void BlockChoice::look(const RowSpace& space) {
     good_for_ = HUGE_VAL;
     return;
   }
-  bool found = true;
-  if (large()) {
+  if (large())
     worst_ = estimate(space, left_out_);
-  } else {
-    found = find_coefficients(space);
-    worst_ = C_.cwiseAbs().maxCoeff();
-  }
-  good_for_ = turn_until_worst(found ? worst_ : kWorst, kTurnsMost);
+  else
+    worst_ = find_coefficients(space) ? C_.cwiseAbs().maxCoeff() : HUGE_VAL;
+  good_for_ = turn_until_worst(worst_, kTurnsMost);
 }
 
 bool BlockChoice::worn() const {
@@ -126,7 +123,7 @@ bool BlockChoice::renew(const RowSpace& space, double turned) {
     good_for_ = turn_until_worst(worst_, std::clamp(rate, kTurnsLittle, kTurnsMost));
     return false;
   }
-  return large() ? choose_clearest(space) : exchange(space);
+  return large() || !std::isfinite(worst_) ? choose_clearest(space) : exchange(space);
 }
 
 bool BlockChoice::exchange(const RowSpace& space) {
