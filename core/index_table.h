@@ -1,8 +1,8 @@
 // Finds what is equal among things that are numbered in the order they come in: a hash table that holds the numbers
 // alone, by open addressing.
 //
-// std::unordered_map allocates a node for every thing and looks it up by a chain of them: of a scene of 100 000 bodies
-// and a million rows the tables of a formulation (formulations/elements.h) took 1.6 times as long with it.
+// std::unordered_map allocates a node for every thing and looks it up by a chain of them: for a scene of a million rows
+// the tables of a formulation (formulations/elements.h) took 0.58 s with it and take 0.24 s (AMD EPYC, release build).
 #pragma once
 
 #include <bit>

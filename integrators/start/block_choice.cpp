@@ -3,7 +3,6 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <random>
 #include <utility>
 
@@ -55,9 +54,14 @@ int BlockChoice::row_of(const RowSpace& space, int k) const {
 
 void BlockChoice::keep_others(const std::vector<int>& left_out) {
   left_out_ = left_out;
-  kept_.clear();
+  kept_ = others(left_out);
+}
+
+std::vector<int> BlockChoice::others(const std::vector<int>& left_out) const {
+  std::vector<int> kept;
   for (int k = 0; k < static_cast<int>(rows_.size()); ++k)
-    if (!std::ranges::binary_search(left_out_, k)) kept_.push_back(k);
+    if (!std::ranges::binary_search(left_out, k)) kept.push_back(k);
+  return kept;
 }
 
 bool BlockChoice::large() const {
@@ -149,10 +153,7 @@ bool BlockChoice::choose_clearest(const RowSpace& space) {
 // About the largest coefficient: half of the largest √(Σ_d c_kd²), by three sums with random signs.
 double BlockChoice::estimate(const RowSpace& space, const std::vector<int>& left_out) const {
   constexpr Eigen::Index kVectors = 3;
-  std::vector<int> kept;
-  for (int k = 0; k < static_cast<int>(rows_.size()); ++k)
-    if (!std::ranges::binary_search(left_out, k)) kept.push_back(k);
-  const Sparse K = rows_.columns(space, kept), D = rows_.columns(space, left_out);
+  const Sparse K = rows_.columns(space, others(left_out)), D = rows_.columns(space, left_out);
   const Eigen::SimplicialLDLT<Sparse> gram(K.transpose() * K);
   if (gram.info() != Eigen::Success) return HUGE_VAL;
   std::mt19937 random(1);
@@ -163,9 +164,7 @@ double BlockChoice::estimate(const RowSpace& space, const std::vector<int>& left
 }
 
 std::vector<int> BlockChoice::clearest(const RowSpace& space) const {
-  std::vector<int> all(rows_.size());
-  std::iota(all.begin(), all.end(), 0);
-  return clearest_dependent_columns(rows_.columns(space, all), kIndependent);
+  return clearest_dependent_columns(rows_.columns(space, others({})), kIndependent);
 }
 
 void BlockChoice::add_aside(const RowSpace& space, std::vector<int>& rows) const {

@@ -57,6 +57,7 @@ class BlockChoice {
   bool find_coefficients(const RowSpace& space);
   bool find_sparse(const RowSpace& space);
   void keep_others(const std::vector<int>& left_out);
+  std::vector<int> others(const std::vector<int>& left_out) const;
   double estimate(const RowSpace& space, const std::vector<int>& left_out) const;
   std::vector<int> clearest(const RowSpace& space) const;
   bool exchange(const RowSpace& space);

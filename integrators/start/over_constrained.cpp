@@ -23,7 +23,7 @@ OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::share
       kept_(std::move(kept)),
       now_(states.begin(), states.end()) {
   choice_->rows.look(0, states);
-  // Of very many redundant rows those set aside are not chosen but found (integrators/start/rank.h).
+  // Where very many rows are redundant the analysis of rank leaves the others independent, but not as much as can be.
   if (choice_->rows.worn() && choice_->rows.renew(0, states)) kept_ = kept_->clone_without(choice_->rows.aside());
   look();
   bodies_ = kept_->bodies();

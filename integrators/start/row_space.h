@@ -40,7 +40,7 @@ class RowSpace {
   std::span<const double> lengths() const { return lengths_; }
   // Φ/‖g‖, m.
   void distances(std::span<double> out) const;
-  // G v − ν and ν, of the rows as they are, at v of intrinsic_formulation().
+  // G v − ν and ν in the rows' own units, where it stands, with velocities v of intrinsic_formulation().
   void rates(std::span<const double> v, std::span<double> residual, std::span<double> nu);
   // m: of the larger of its bodies.
   double size_of_row(std::size_t k) const;

@@ -55,7 +55,7 @@ class MinimumDegree {
     int neighbours = 0, elements = 0;  // lengths
     int members = 0, member = 0;       // of the element it became: length and start; none once it went into another
     int weight = 0, degree = -1, mark = 0;
-    int front = -2;  // the last one it was in, by its pivot
+    int front = -2;  // the newest one it was in, by its pivot
     bool done = false, last = false;
   };
 
@@ -78,7 +78,7 @@ class MinimumDegree {
   }
 
   // Unknowns outside a that its elimination couples. Exact while a sees little, else an upper bound; hubs come
-  // behind all others. Those of the last front are known together.
+  // behind all others. Those of the newest front are known together.
   int degree(int a) {
     constexpr int kExact = 64;
     const State& state = atoms_[index(a)];
@@ -86,7 +86,7 @@ class MinimumDegree {
     if (long_lists(a) && state.degree >= 0) return state.degree;
     ++stamp_;
     mark(a);
-    const auto in_front = [&](int b) { return atoms_[index(b)].front == last_; };
+    const auto in_front = [&](int b) { return atoms_[index(b)].front == newest_; };
     int sum = state.last ? unknowns_ : 0;
     if (in_front(a)) sum += front_weight_ - state.weight;
     const auto count = [&](int b) {
@@ -95,7 +95,7 @@ class MinimumDegree {
     for (const int b : neighbours(a))
       if (!atoms_[index(b)].done) count(b);
     for (const int e : elements(a)) {
-      if (e == last_) continue;
+      if (e == newest_) continue;
       if (state.elements <= kExact) {
         for (const int b : members(e)) count(b);
       } else {
@@ -137,7 +137,7 @@ class MinimumDegree {
     pool_.insert(pool_.end(), front_.begin(), front_.end());
     eliminated_.add(a);
 
-    last_ = a;
+    newest_ = a;
     front_weight_ = 0;
     for (const int b : front_) {
       atoms_[index(b)].front = a;
@@ -178,7 +178,7 @@ class MinimumDegree {
   std::vector<int> list_, begin_, pool_, front_;
   std::vector<State> atoms_;
   int stamp_ = 0, unknowns_ = 0;
-  int last_ = -1, front_weight_ = 0;  // of the last front: its pivot, and what its atoms weigh
+  int newest_ = -1, front_weight_ = 0;  // of the newest front: its pivot, and what its atoms weigh
   std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>> queue_;
 };
 
