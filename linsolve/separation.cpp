@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kNegligible = 1e-9;              // of a coefficient beside the largest of its vector
 constexpr std::size_t kMostCombined = 2'000'000;  // entries: a second's work
-constexpr double kFlat = 1.5, kGathered = 3.2;    // an entry larger than that takes the place of the pivot
 constexpr double kGood = 0.1;                     // the least entry that a group's pivot is worth
 constexpr int kPasses = 20;
 
@@ -212,15 +211,15 @@ std::vector<int> gather(std::vector<SparseEntries>&& vectors, std::span<const in
   return separation.take_pivots();
 }
 
-void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, std::span<const int> group) {
+void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, std::span<const int> group, double most) {
   const auto of_group = [&](int column) { return group[index(column)]; };
   const std::vector<int> before = pivots;
   Separation separation(std::move(vectors), std::move(pivots));
   if (!separation.too_long()) {
-    separation.flatten(kGathered, group);
+    separation.flatten(most, group);
     if (!std::ranges::equal(before, separation.pivots(), {}, of_group, of_group)) {
       separation.gather(group);
-      separation.flatten(kGathered, group);
+      separation.flatten(most, group);
     }
   }
   pivots = separation.take_pivots();

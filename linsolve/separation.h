@@ -13,15 +13,18 @@
 
 namespace poinsot {
 
-// No entry is above 1.5. Returns the pivots, by vector.
+// An entry larger than that takes the place of the pivot.
+inline constexpr double kFlat = 1.5, kGathered = 3.2;
+
+// No entry is above kFlat. Returns the pivots, by vector.
 std::vector<int> separate(std::vector<SparseEntries>&& vectors);
 
-// Pivots of as few groups as are enough, group[k] being that of column k: no entry is above 3.2.
+// Pivots of as few groups as are enough, group[k] being that of column k: no entry is above kGathered.
 std::vector<int> gather(std::vector<SparseEntries>&& vectors, std::span<const int> group);
 
 // The vectors have their pivots, and entries that have grown since. Others take the place of as few of them as lead
-// back to entries of at most 3.2, of the same group where that does.
-void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, std::span<const int> group);
+// back to entries of at most `most`, of the same group where that does.
+void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, std::span<const int> group, double most);
 
 // The parts that are negligible beside the largest entry are left out.
 double largest(const SparseEntries& z);

@@ -46,6 +46,25 @@ CarriedMotion carry(const Scene& scene, const Settings& settings) {
 
 class ManyLoops : public ::testing::TestWithParam<std::string> {};
 
+// Long steps turn the loops by as much as wears a choice of rows out: it has to be made anew before.
+TEST_P(ManyLoops, RejectNoStepsForTheirRows) {
+  for (const std::string_view name : {"dopri5", "dop853"}) {
+    Settings settings = dynamics(GetParam(), 1e-3, 5, 1);
+    settings.integrator = name;
+    settings.rtol = 1e-8;
+    for (const int count : {1, 3}) {
+      SCOPED_TRACE(fmt::format("{} {} of {}", name, GetParam(), count));
+      const CarriedMotion with = carry(Carried::four_bars(count, true), settings),
+                          without = carry(Carried::four_bars(count, false), settings);
+      ASSERT_TRUE(with.outcome.status.ok()) << with.outcome.status.message;
+      EXPECT_GT(with.exchanges, 0);
+      EXPECT_LE(with.outcome.statistics.rejected_steps, without.outcome.statistics.rejected_steps);
+      EXPECT_LE(static_cast<double>(with.outcome.statistics.steps),
+                1.03 * static_cast<double>(without.outcome.statistics.steps));
+    }
+  }
+}
+
 TEST_P(ManyLoops, MoveAsWithoutRedundancy) {
   for (const std::string_view name : {"dopri5", kFixedSteps}) {
     Settings settings = dynamics(GetParam(), 4e-3, 0.6, 1);

@@ -49,12 +49,12 @@ TEST(Separation, GathersInOneGroup) {
 TEST(Separation, RepairsWithinTheGroup) {
   const std::vector<int> group{0, 0, 1, 1};
   std::vector<int> pivots{1};
-  repair({{{0, 1.6}, {1, 1}, {2, 3}, {3, 0.5}}}, pivots, group);
+  repair({{{0, 1.6}, {1, 1}, {2, 3}, {3, 0.5}}}, pivots, group, kGathered);
   EXPECT_THAT(pivots, ElementsAre(1));  // nothing has grown too large
-  repair({{{0, 1.6}, {1, 1}, {2, 5}, {3, 0.5}}}, pivots, group);
+  repair({{{0, 1.6}, {1, 1}, {2, 5}, {3, 0.5}}}, pivots, group, kGathered);
   EXPECT_THAT(pivots, ElementsAre(0));
   pivots = {1};
-  repair({{{0, 1.2}, {1, 1}, {2, 5}, {3, 0.5}}}, pivots, group);
+  repair({{{0, 1.2}, {1, 1}, {2, 5}, {3, 0.5}}}, pivots, group, kGathered);
   EXPECT_THAT(pivots, ElementsAre(2));  // 5/1.2 would be too large again
 }
 

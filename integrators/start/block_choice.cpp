@@ -1,6 +1,5 @@
 #include "integrators/start/block_choice.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -12,32 +11,49 @@
 namespace poinsot {
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
-
 // Coefficient at which rows are chosen anew, and as large as it may become. Two directions at right angles of which one
 // is set aside have the coefficient cot α when the redundant one is α from the row that is kept in its place. Of two
 // bodies that turn against one another α changes by kTurnsMost what each turns; as a rule much less: after a look by no
 // more than kTurnsMore times what it changed by since the one before, but by kTurnsLittle.
+// Where one that is worn is all that is found, others are looked for again when that has grown by kGrowth.
 constexpr double kWorn = 6, kWorst = 20;
 constexpr double kTurnsMost = 2, kTurnsLittle = 1, kTurnsMore = 3;
+// Long steps turn bodies by as much as wears a choice out at once: what it changed by in the last one, and somewhat
+// more, is left to it before the next, and a few times that to a new choice.
+constexpr double kSooner = 1.3, kStays = 2.5;
 constexpr double kNothing = 1e-12;  // of a coefficient beside the row set aside
 constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
-constexpr double kGain = 2;  // times better is a choice that is worth an exchange
+constexpr double kGain = 2, kGrowth = 1.25;
 
 double angle(double coefficient) {
   return std::atan(1 / coefficient);
 }
-double turn_until_worst(double coefficient, double rate) {
-  constexpr double kLeast = 0.05;
-  return std::max((angle(coefficient) - angle(kWorst)) / rate, kLeast);
+
+// About the largest coefficient: half of the largest √(Σ_d c_kd²), by three sums with random signs.
+double estimate(const BlockRows& rows, SparseCoefficients& kept, const std::vector<int>& left_out) {
+  constexpr Eigen::Index kVectors = 3;
+  if (!kept.factor(rows)) return HUGE_VAL;
+  std::mt19937 random(1);
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(rows.variables(), kVectors);
+  for (Eigen::Index v = 0; v < kVectors; ++v)
+    for (const int d : left_out) rows.add(random() % 2 == 0 ? 1.0 : -1.0, d, F.col(v));
+  const Eigen::MatrixXd sums = kept.find(rows, F, 0);
+  return sums.allFinite() ? std::sqrt(sums.rowwise().squaredNorm().maxCoeff() / kVectors) / 2 : HUGE_VAL;
+}
+
+std::vector<int> others(std::size_t all, const std::vector<int>& left_out) {
+  std::vector<int> kept;
+  for (int k = 0; k < static_cast<int>(all); ++k)
+    if (!std::ranges::binary_search(left_out, k)) kept.push_back(k);
+  return kept;
 }
 
 }  // namespace
 
 BlockChoice::BlockChoice(const Model& model, const RowSpace& space, std::vector<int> rows,
                          const std::vector<int>& aside)
-    : rows_(space, std::move(rows)), watched_(rows_.products() <= kMostProducts) {
+    : rows_(space, std::move(rows)), watched_(rows_.products() <= kMostProducts), worn_(kWorn) {
   std::vector<int> left_out;
   for (int k = 0; k < static_cast<int>(rows_.size()); ++k) {
     const int row = row_of(space, k);
@@ -45,43 +61,38 @@ BlockChoice::BlockChoice(const Model& model, const RowSpace& space, std::vector<
     if (std::ranges::binary_search(aside, row)) left_out.push_back(k);
   }
   keep_others(left_out);
-  if (kept_.size() <= SmallCoefficients::kMost) small_.emplace(model, space, rows_);
 }
 
 int BlockChoice::row_of(const RowSpace& space, int k) const {
   return space.rows()[index(rows_.place_in_space(k))];
 }
 
+bool BlockChoice::small() const {
+  return kept_.size() <= SmallCoefficients::kMost;
+}
+
+bool BlockChoice::has_coefficients() const {
+  return left_out_.size() <= kMost && left_out_.size() * kept_.size() <= kMostCoefficients;
+}
+
 void BlockChoice::keep_others(const std::vector<int>& left_out) {
   left_out_ = left_out;
-  kept_ = others(left_out);
+  kept_ = others(rows_.size(), left_out);
+  if (watched_ && !small()) sparse_ = std::make_unique<SparseCoefficients>(rows_, kept_);
 }
 
-std::vector<int> BlockChoice::others(const std::vector<int>& left_out) const {
-  std::vector<int> kept;
-  for (int k = 0; k < static_cast<int>(rows_.size()); ++k)
-    if (!std::ranges::binary_search(left_out, k)) kept.push_back(k);
-  return kept;
-}
-
-bool BlockChoice::large() const {
-  return left_out_.size() > kMost || left_out_.size() * kept_.size() > kMostCoefficients;
-}
-
-bool BlockChoice::find_coefficients(const RowSpace& space) {
-  if (small_ ? small_->find(space, rows_, kept_, left_out_, C_) : find_sparse(space)) return true;
+// C_ for the rows kept; false, and 0, where these are not independent.
+bool BlockChoice::find_coefficients() {
+  if (small()) {
+    if (small_.find(rows_, kept_, left_out_, C_)) return true;
+  } else if (sparse_->factor(rows_)) {
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(rows_.variables(), static_cast<Eigen::Index>(left_out_.size()));
+    for (std::size_t d = 0; d < left_out_.size(); ++d) rows_.add(1, left_out_[d], F.col(static_cast<Eigen::Index>(d)));
+    C_ = sparse_->find(rows_, F, 1);
+    if (C_.allFinite()) return true;
+  }
   C_.setZero(static_cast<Eigen::Index>(kept_.size()), static_cast<Eigen::Index>(left_out_.size()));
   return false;
-}
-
-bool BlockChoice::find_sparse(const RowSpace& space) {
-  const Sparse K = rows_.columns(space, kept_), D = rows_.columns(space, left_out_);
-  const Eigen::SimplicialLDLT<Sparse> gram(K.transpose() * K);
-  if (gram.info() != Eigen::Success) return false;
-  C_ = gram.solve(Eigen::MatrixXd(K.transpose() * D));
-  const Eigen::MatrixXd left = Eigen::MatrixXd(D) - K * C_;
-  C_ += gram.solve(K.transpose() * left);
-  return C_.allFinite();
 }
 
 std::vector<SparseEntries> BlockChoice::unit_null_vectors() const {
@@ -97,103 +108,97 @@ std::vector<SparseEntries> BlockChoice::unit_null_vectors() const {
   return vectors;
 }
 
+double BlockChoice::worst() {
+  if (!small()) return estimate(rows_, *sparse_, left_out_);
+  return find_coefficients() ? C_.cwiseAbs().maxCoeff() : HUGE_VAL;
+}
+
+double BlockChoice::turn_until_worst(double rate) const {
+  constexpr double kLeast = 0.05;
+  return std::max((angle(worst_) - angle(kWorst / kWorn * worn_)) / rate, kLeast);
+}
+
 void BlockChoice::look(const RowSpace& space) {
-  if (!watched_) {
-    good_for_ = HUGE_VAL;
-    return;
-  }
-  if (large())
-    worst_ = estimate(space, left_out_);
-  else
-    worst_ = find_coefficients(space) ? C_.cwiseAbs().maxCoeff() : HUGE_VAL;
-  good_for_ = turn_until_worst(worst_, kTurnsMost);
+  good_for_ = HUGE_VAL;
+  if (!watched_) return;
+  rows_.stand(space);
+  worst_ = worst();
+  good_for_ = turn_until_worst(kTurnsMost);
 }
 
-bool BlockChoice::worn() const {
-  return worst_ > kWorn;
-}
-
-bool BlockChoice::renew(const RowSpace& space, double turned) {
+bool BlockChoice::renew(const RowSpace& space, double turned, double ahead) {
   if (!watched_) return false;
   const double before = angle(worst_);
-  const bool sums = !small_ && !large();
-  if (sums)
-    worst_ = estimate(space, left_out_);
-  else
-    look(space);
-  if (sums && worn()) look(space);
-  if (!worn()) {
-    const double rate = kTurnsMore * std::abs(angle(worst_) - before) / turned;
-    good_for_ = turn_until_worst(worst_, std::clamp(rate, kTurnsLittle, kTurnsMost));
+  look(space);
+  const double change = turned > 0 ? (before - angle(worst_)) / turned : 0, soon = std::max(change, 0.0) * ahead;
+  const bool will_be = has_coefficients() && angle(worst_) - kSooner * soon < angle(worn_);
+  if (!worn() && !will_be) {
+    const double rate = kTurnsMore * std::abs(change);
+    worn_ = std::max(kWorn, std::min(worn_, kGrowth * worst_));
+    good_for_ = turn_until_worst(std::clamp(rate, kTurnsLittle, kTurnsMost));
     return false;
   }
-  return large() || !std::isfinite(worst_) ? choose_clearest(space) : exchange(space);
+  const double most = std::clamp(1 / std::tan(angle(kWorn) + kStays * soon), kFlat, kGathered);
+  const bool others = has_coefficients() && std::isfinite(worst_) ? exchange(most) : choose_clearest(space);
+  worn_ = std::isfinite(worst_) ? std::max(kWorn, kGrowth * worst_) : kWorn;
+  good_for_ = turn_until_worst(kTurnsMost);
+  return others;
 }
 
-bool BlockChoice::exchange(const RowSpace& space) {
-  if (small_) small_->refine(kept_, left_out_, C_);
+bool BlockChoice::exchange(double most) {
+  if (small())
+    small_.refine(rows_, kept_, left_out_, C_);
+  else
+    find_coefficients();
   std::vector<int> chosen = left_out_;
-  repair(unit_null_vectors(), chosen, group_);
+  repair(unit_null_vectors(), chosen, group_, most);
   std::ranges::sort(chosen);
-  if (chosen == left_out_) return false;
-  keep_others(chosen);
-  look(space);
-  if (small_) small_->refine(kept_, left_out_, C_);
-  return true;
+  return chosen != left_out_ && take(chosen, HUGE_VAL);
 }
 
 bool BlockChoice::choose_clearest(const RowSpace& space) {
-  std::vector<int> chosen = clearest(space);
-  if (chosen.size() != left_out_.size() || !(kGain * estimate(space, chosen) < worst_)) return false;
+  const std::vector<int> chosen =
+      clearest_dependent_columns(rows_.columns(space, others(rows_.size(), {})), kIndependent);
+  return chosen.size() == left_out_.size() && take(chosen, worst_ / kGain);
+}
+
+// Leaves out others where no coefficient is as large as `limit` then.
+bool BlockChoice::take(const std::vector<int>& chosen, double limit) {
+  const std::vector<int> before = left_out_;
+  const double was = worst_;
   keep_others(chosen);
-  look(space);
-  return true;
-}
-
-// About the largest coefficient: half of the largest √(Σ_d c_kd²), by three sums with random signs.
-double BlockChoice::estimate(const RowSpace& space, const std::vector<int>& left_out) const {
-  constexpr Eigen::Index kVectors = 3;
-  const Sparse K = rows_.columns(space, others(left_out)), D = rows_.columns(space, left_out);
-  const Eigen::SimplicialLDLT<Sparse> gram(K.transpose() * K);
-  if (gram.info() != Eigen::Success) return HUGE_VAL;
-  std::mt19937 random(1);
-  const Eigen::MatrixXd signs =
-      Eigen::MatrixXd::NullaryExpr(D.cols(), kVectors, [&] { return random() % 2 == 0 ? 1.0 : -1.0; });
-  const Eigen::MatrixXd sums = gram.solve(K.transpose() * (D * signs));
-  return sums.allFinite() ? std::sqrt(sums.rowwise().squaredNorm().maxCoeff() / kVectors) / 2 : HUGE_VAL;
-}
-
-std::vector<int> BlockChoice::clearest(const RowSpace& space) const {
-  return clearest_dependent_columns(rows_.columns(space, others({})), kIndependent);
+  worst_ = worst();
+  if (worst_ < limit) return true;
+  keep_others(before);
+  worst_ = was;
+  return false;
 }
 
 void BlockChoice::add_aside(const RowSpace& space, std::vector<int>& rows) const {
   for (const int k : left_out_) rows.push_back(row_of(space, k));
 }
 
-void BlockChoice::carry_over(const RowSpace& space, std::span<double> lambda) const {
+void BlockChoice::carry_over(const RowSpace& space, std::span<double> lambda) {
   const auto at = [&](int k) -> double& { return lambda[index(row_of(space, k))]; };
   const auto length = [&](int k) { return space.lengths()[index(rows_.place_in_space(k))]; };
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(rows_.variables());
   Eigen::VectorXd forces(static_cast<Eigen::Index>(left_out_.size()));
-  for (std::size_t d = 0; d < left_out_.size(); ++d)
-    forces[static_cast<Eigen::Index>(d)] = std::exchange(at(left_out_[d]), 0.0) * length(left_out_[d]);
-  Eigen::VectorXd shares;  // of the kept rows
-  if (large()) {
-    const Sparse K = rows_.columns(space, kept_);
-    const Eigen::VectorXd all = rows_.columns(space, left_out_) * forces;
-    const Eigen::SimplicialLDLT<Sparse> gram(K.transpose() * K);
-    shares = gram.solve(K.transpose() * all);
-    shares += gram.solve(K.transpose() * (all - K * shares));
-  } else {
-    shares = C_ * forces;
+  for (std::size_t d = 0; d < left_out_.size(); ++d) {
+    const double force = std::exchange(at(left_out_[d]), 0.0) * length(left_out_[d]);
+    forces[static_cast<Eigen::Index>(d)] = force;
+    rows_.add(force, left_out_[d], f);
   }
+  if (small()) small_.refine(rows_, kept_, left_out_, C_);
+  const Eigen::VectorXd shares = small() ? Eigen::VectorXd(C_ * forces) : Eigen::VectorXd(sparse_->find(rows_, f, 1));
   for (std::size_t k = 0; k < kept_.size(); ++k)
     at(kept_[k]) += shares[static_cast<Eigen::Index>(k)] / length(kept_[k]);
 }
 
 void BlockChoice::add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors) {
-  if (!watched_ || large() || !find_coefficients(space)) return;
-  if (small_) small_->refine(kept_, left_out_, C_);
+  if (!watched_ || !has_coefficients()) return;
+  rows_.stand(space);
+  if (!find_coefficients()) return;
+  if (small()) small_.refine(rows_, kept_, left_out_, C_);
   for (SparseEntries& z : unit_null_vectors()) {
     for (auto& [k, value] : z) {
       value /= space.lengths()[index(rows_.place_in_space(k))];

@@ -18,13 +18,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "integrators/start/block_rows.h"
 #include "integrators/start/row_space.h"
 #include "integrators/start/small_coefficients.h"
+#include "integrators/start/sparse_coefficients.h"
 #include "linsolve/separation.h"
 
 namespace poinsot {
@@ -38,39 +39,42 @@ class BlockChoice {
 
   // Each where `space` stands. look() judges the choice.
   void look(const RowSpace& space);
-  bool worn() const;
-  // Chooses anew where the present choice has worn out: true where other rows are set aside now. Bodies have turned by
-  // `turned` since it was looked at.
-  bool renew(const RowSpace& space, double turned);
+  bool worn() const { return worst_ > worn_; }
+  // Chooses anew where the present choice has worn out, or will within the next step: true where other rows are set
+  // aside now. Bodies have turned by `turned` since it was looked at, and will by `ahead` in that step.
+  bool renew(const RowSpace& space, double turned, double ahead);
   // Where it was last looked at, rad: what bodies may turn by until it is to be looked at again.
   double good_for() const { return good_for_; }
   void add_aside(const RowSpace& space, std::vector<int>& rows) const;
-  // λ, by row of the model: of rows kept before ← that of those kept now, which are the same forces.
-  void carry_over(const RowSpace& space, std::span<double> lambda) const;
+  // After renew() has chosen others. λ, by row of the model: of rows kept before ← that of those kept now, which are
+  // the same forces.
+  void carry_over(const RowSpace& space, std::span<double> lambda);
   // Null vectors of Gᵀ by row of the model are added: one for each row set aside, or none.
   void add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors);
 
  private:
   int row_of(const RowSpace& space, int k) const;  // of the model
-  bool large() const;
-  // C_ for the rows kept; false, and 0, where these are not independent.
-  bool find_coefficients(const RowSpace& space);
-  bool find_sparse(const RowSpace& space);
+  bool small() const;
+  bool has_coefficients() const;
+  double worst();
+  double turn_until_worst(double rate) const;
+  bool find_coefficients();
   void keep_others(const std::vector<int>& left_out);
-  std::vector<int> others(const std::vector<int>& left_out) const;
-  double estimate(const RowSpace& space, const std::vector<int>& left_out) const;
-  std::vector<int> clearest(const RowSpace& space) const;
-  bool exchange(const RowSpace& space);
+  bool exchange(double most);
   bool choose_clearest(const RowSpace& space);
+  bool take(const std::vector<int>& chosen, double limit);
   std::vector<SparseEntries> unit_null_vectors() const;
 
   BlockRows rows_;  // all that follow by their places here
   bool watched_;
   std::vector<int> group_;  // by row
   std::vector<int> kept_, left_out_;
-  std::optional<SmallCoefficients> small_;
-  Eigen::MatrixXd C_;                // kept × left out
-  double worst_ = 0, good_for_ = 0;  // the largest coefficient where last looked at, or what stands for it
+  SmallCoefficients small_;
+  std::unique_ptr<SparseCoefficients> sparse_;  // of blocks that are not small
+  Eigen::MatrixXd C_;                           // kept × left out
+  double worst_ = 0;                            // the largest coefficient where last looked at, or what stands for it
+  double worn_;                                 // from here on a choice is worn out
+  double good_for_ = 0;
 };
 
 }  // namespace poinsot

@@ -7,36 +7,89 @@
 #include "core/index.h"
 
 namespace poinsot {
+namespace {
 
-BlockRows::BlockRows(const RowSpace& space, std::vector<int> rows) : rows_(std::move(rows)) {
-  std::vector<int> of_rows;
-  for (const int row : rows_) {
-    int last = -1;
-    for (Eigen::SparseMatrix<double>::InnerIterator it(space.columns(), row); it; ++it)
-      if (const int body = static_cast<int>(it.row()) / 6; body != last) of_rows.push_back(last = body);
-  }
-  std::ranges::sort(of_rows);
-  for (auto first = of_rows.begin(); first != of_rows.end();) {
-    const auto last = std::ranges::upper_bound(first, of_rows.end(), *first);
-    products_ += std::pow(last - first, 2);
-    bodies_.push_back(*first);
-    first = last;
-  }
+using Column = Eigen::SparseMatrix<double>::InnerIterator;
+
+int body_of(const Column& entry) {
+  return static_cast<int>(entry.row()) / 6;
+}
+
+}  // namespace
+
+BlockRows::BlockRows(const RowSpace& space, std::vector<int> rows) : rows_(std::move(rows)), parts_(rows_.size()) {
+  const auto visit = [&](auto&& take) {
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      int last = -1;
+      for (Column it(space.columns(), rows_[k]); it; ++it)
+        if (body_of(it) != last) take(k, last = body_of(it));
+    }
+  };
+  visit([&](std::size_t, int body) { bodies_.push_back(body); });
+  std::ranges::sort(bodies_);
+  bodies_.erase(std::ranges::unique(bodies_).begin(), bodies_.end());
+  visit([&](std::size_t k, int body) {
+    Parts& of = parts_[k];
+    of.body[of.body[0] < 0 ? 0 : 1] = place_of_body(body);
+  });
+  of_body_ = Lists::collect(static_cast<int>(bodies_.size()), [&](auto&& emit) {
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      for (const int body : parts_[k].body)
+        if (body >= 0) emit(body, static_cast<int>(k));
+  });
 }
 
 int BlockRows::place_of_body(int body) const {
   return static_cast<int>(std::ranges::lower_bound(bodies_, body) - bodies_.begin());
 }
 
+double BlockRows::products() const {
+  double sum = 0;
+  for (int body = 0; body < of_body_.size(); ++body) sum += std::pow(of_body_[body].size(), 2);
+  return sum;
+}
+
+void BlockRows::stand(const RowSpace& space) {
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    Parts& of = parts_[k];
+    of.part[0].setZero(), of.part[1].setZero();
+    int at = -1, last = -1;
+    for (Column it(space.columns(), rows_[k]); it; ++it) {
+      if (body_of(it) != last) ++at, last = body_of(it);
+      of.part[at][it.row() % 6] = it.value();
+    }
+  }
+}
+
+double BlockRows::dot(int k, int l) const {
+  const Parts &a = parts_[index(k)], &b = parts_[index(l)];
+  double sum = 0;
+  for (int i = 0; i < 2 && a.body[i] >= 0; ++i)
+    for (int j = 0; j < 2; ++j)
+      if (a.body[i] == b.body[j]) sum += a.part[i].dot(b.part[j]);
+  return sum;
+}
+
+void BlockRows::add(double factor, int k, Eigen::Ref<Eigen::VectorXd> f) const {
+  const Parts& of = parts_[index(k)];
+  for (int i = 0; i < 2 && of.body[i] >= 0; ++i) f.segment<6>(6 * of.body[i]) += factor * of.part[i];
+}
+
+double BlockRows::share(int k, const Eigen::Ref<const Eigen::VectorXd>& f) const {
+  const Parts& of = parts_[index(k)];
+  double sum = 0;
+  for (int i = 0; i < 2 && of.body[i] >= 0; ++i) sum += of.part[i].dot(f.segment<6>(6 * of.body[i]));
+  return sum;
+}
+
 Eigen::SparseMatrix<double> BlockRows::columns(const RowSpace& space, std::span<const int> some) const {
-  Eigen::SparseMatrix<double> of(6 * static_cast<Eigen::Index>(bodies_.size()), static_cast<Eigen::Index>(some.size()));
+  Eigen::SparseMatrix<double> of(variables(), static_cast<Eigen::Index>(some.size()));
   of.reserve(12 * static_cast<Eigen::Index>(some.size()));
   for (std::size_t c = 0; c < some.size(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);
     of.startVec(column);
-    for (Eigen::SparseMatrix<double>::InnerIterator it(space.columns(), rows_[index(some[c])]); it; ++it)
-      if (it.value() != 0)
-        of.insertBack(6 * place_of_body(static_cast<int>(it.row()) / 6) + it.row() % 6, column) = it.value();
+    for (Column it(space.columns(), rows_[index(some[c])]); it; ++it)
+      if (it.value() != 0) of.insertBack(6 * place_of_body(body_of(it)) + it.row() % 6, column) = it.value();
   }
   of.finalize();
   return of;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "integrators/start/row_space.h"
+#include "linsolve/lists.h"
 
 namespace poinsot {
 
@@ -14,19 +15,40 @@ class BlockRows {
   // `rows`: places in `space`.
   BlockRows(const RowSpace& space, std::vector<int> rows);
 
+  // Takes the rows where `space` stands; all that follows but columns() is there.
+  void stand(const RowSpace& space);
+
   std::size_t size() const { return rows_.size(); }
   int place_in_space(int k) const { return rows_[static_cast<std::size_t>(k)]; }
-  std::size_t bodies() const { return bodies_.size(); }
-  int place_of_body(int body) const;
+  Eigen::Index variables() const { return 6 * static_cast<Eigen::Index>(bodies_.size()); }
   // How many pairs of rows share a body: entries of G Gᵀ.
-  double products() const { return products_; }
+  double products() const;
+  // Rows that share a body with row k, itself among them; some of them twice.
+  template <typename Function>
+  void for_each_beside(int k, Function&& function) const {
+    for (const int body : parts_[static_cast<std::size_t>(k)].body)
+      if (body >= 0)
+        for (const int l : of_body_[body]) function(l);
+  }
+  double dot(int k, int l) const;
+  // f ← f + factor g_k
+  void add(double factor, int k, Eigen::Ref<Eigen::VectorXd> f) const;
+  // g_k · f
+  double share(int k, const Eigen::Ref<const Eigen::VectorXd>& f) const;
   // Some of them, as columns of 6 numbers for each body.
   Eigen::SparseMatrix<double> columns(const RowSpace& space, std::span<const int> some) const;
 
  private:
+  int place_of_body(int body) const;
+
+  struct Parts {
+    int body[2] = {-1, -1};  // place of it, −1: none
+    Eigen::Matrix<double, 6, 1> part[2];
+  };
   std::vector<int> rows_;    // of the space
   std::vector<int> bodies_;  // ascending
-  double products_ = 0;
+  Lists of_body_;            // rows
+  std::vector<Parts> parts_;
 };
 
 }  // namespace poinsot

@@ -12,7 +12,8 @@
 namespace poinsot {
 namespace {
 
-constexpr double kLost = 1e-5;  // of a body's size: far above what steps leave, far below what opens to the eye
+constexpr double kLookedAgain = 1;  // rad, at the latest
+constexpr double kLost = 1e-5;      // of a body's size: far above what steps leave, far below what opens to the eye
 
 }  // namespace
 
@@ -24,8 +25,8 @@ OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::share
       now_(states.begin(), states.end()) {
   choice_->rows.look(0, states);
   // Where very many rows are redundant the analysis of rank leaves the others independent, but not as much as can be.
-  if (choice_->rows.worn() && choice_->rows.renew(0, states)) kept_ = kept_->clone_without(choice_->rows.aside());
-  look();
+  if (choice_->rows.worn() && choice_->rows.renew(0, states, HUGE_VAL, 0))
+    kept_ = kept_->clone_without(choice_->rows.aside());
   bodies_ = kept_->bodies();
   nq_ = kept_->nq(), nv_ = kept_->nv(), nc_ = kept_->nc();
   watch();
@@ -37,6 +38,7 @@ OverConstrained::OverConstrained(const OverConstrained& other)
       kept_revision_(other.kept_revision_),
       kept_(other.kept_->clone()),
       t_(other.t_),
+      accepted_at_(other.accepted_at_),
       now_(other.now_) {
   watch();
 }
@@ -91,18 +93,11 @@ Status OverConstrained::measure(double t) {
                       t, describe_row(model(), aside_->rows()[worst]), off)};
 }
 
-// The choice was looked at where the bodies are.
-void OverConstrained::look() {
-  // |A − B|² = 8 sin²(angle/2)
-  const double half = std::sin(std::min(choice_->rows.good_for(), 1.0) / 2);
-  choice_->far = 8 * half * half;
-  choice_->at = now_;
-}
-
-bool OverConstrained::turned() const {
-  for (std::size_t b = 0; b < now_.size(); ++b)
-    if ((now_[b].A - choice_->at[b].A).squaredNorm() > choice_->far) return true;
-  return false;
+// Since the choice was looked at, rad: by the body that has turned most.
+double OverConstrained::turned() const {
+  double most = 0;
+  for (std::size_t b = 0; b < now_.size(); ++b) most = std::max(most, (now_[b].A - choice_->at[b].A).squaredNorm());
+  return 2 * std::asin(std::min(std::sqrt(most / 8), 1.0));  // |A − B|² = 8 sin²(angle/2)
 }
 
 Status OverConstrained::accept(double t, std::span<double> q, std::span<double> v, std::span<double> a,
@@ -114,9 +109,10 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
   }
   kept_->to_bodies(a, now_);
   if (Status status = measure(t); !status.ok()) return status;
-  if (!turned()) return {};
-  const bool others = choice_->rows.renew(t, now_);
-  look();
+  const double turn = turned(), ahead = (t - std::exchange(accepted_at_, t)) * kept_->fastest_turn();
+  if (turn + ahead < std::min(choice_->rows.good_for(), kLookedAgain)) return {};
+  const bool others = choice_->rows.renew(t, now_, turn, ahead);
+  choice_->at = now_;
   if (!others) return {};
   rewritten = true;
   exchange(t, q, v, lambda);

@@ -87,15 +87,13 @@ class OverConstrained final : public Problem {
     RowChoice rows;
     int revision = 0;
     std::vector<BodyState> at;  // where it was last looked at
-    double far = 0;             // |A − A then|² of a body at which it is to be looked at again
   };
 
   OverConstrained(const OverConstrained& other);
   void keep();
   void watch();
   Status measure(double t);
-  void look();
-  bool turned() const;
+  double turned() const;
   void exchange(double t, std::span<const double> q, std::span<const double> v, std::span<double> lambda);
   void normalize(std::span<const double> forces, std::span<double> lambda);
 
@@ -105,6 +103,7 @@ class OverConstrained final : public Problem {
   mutable std::optional<RowsAside> aside_;
   std::vector<double> allowed_;  // of |Φ|, by row set aside
   double t_ = 0;                 // where the problem stands
+  double accepted_at_ = 0;       // the last step's end
   mutable std::vector<BodyState> now_;
 };
 

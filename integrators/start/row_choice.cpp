@@ -35,11 +35,11 @@ bool RowChoice::worn() const {
   return std::ranges::any_of(blocks_, &BlockChoice::worn);
 }
 
-bool RowChoice::renew(double t, std::span<const BodyState> states) {
+bool RowChoice::renew(double t, std::span<const BodyState> states, double turned, double ahead) {
   space_.stand(t, states);
   bool any = false;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    renewed_[b] = blocks_[b].renew(space_, good_for_);
+    renewed_[b] = blocks_[b].renew(space_, turned, ahead);
     any = any || renewed_[b];
   }
   take_good_for();
@@ -50,7 +50,7 @@ bool RowChoice::renew(double t, std::span<const BodyState> states) {
   return true;
 }
 
-void RowChoice::carry_over(std::span<double> lambda) const {
+void RowChoice::carry_over(std::span<double> lambda) {
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     if (renewed_[b]) blocks_[b].carry_over(space_, lambda);
 }

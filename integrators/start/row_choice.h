@@ -20,13 +20,14 @@ class RowChoice {
   const std::vector<int>& aside() const { return aside_; }
   void look(double t, std::span<const BodyState> states);
   bool worn() const;  // where it was last looked at
-  // Chooses anew where the present choice has worn out: true where other rows are set aside now.
-  bool renew(double t, std::span<const BodyState> states);
+  // Chooses anew where the present choice has worn out, or will within the next step: true where other rows are set
+  // aside now. Bodies have turned by `turned` since it was looked at, and will by `ahead` in that step.
+  bool renew(double t, std::span<const BodyState> states, double turned, double ahead);
   // Of the choice where it was last looked at, rad: what bodies may turn by until it is to be looked at again.
   double good_for() const { return good_for_; }
   // After renew() has chosen others: λ, by row of the model, of rows kept before ← that of those kept now, which are
   // the same forces.
-  void carry_over(std::span<double> lambda) const;
+  void carry_over(std::span<double> lambda);
   // What Φ of a row is where the bodies are off it by their own size, at the position last looked at.
   double size_of(int row) const;
   // Null vectors of Gᵀ by row of the model: one for each row set aside, but for loops that hang together and have more

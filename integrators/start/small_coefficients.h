@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/model.h"
 #include "integrators/start/block_rows.h"
 
 namespace poinsot {
@@ -14,27 +13,15 @@ class SmallCoefficients {
  public:
   static constexpr std::size_t kMost = 120;  // rows kept; with more, sparse matrices are faster
 
-  SmallCoefficients(const Model& model, const RowSpace& space, const BlockRows& rows);
-
-  // C, kept × left out; false where the rows kept are not independent.
-  bool find(const RowSpace& space, const BlockRows& rows, const std::vector<int>& kept,
-            const std::vector<int>& left_out, Eigen::MatrixXd& C);
+  // C, kept × left out, where `rows` stand; false where the rows kept are not independent.
+  bool find(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out, Eigen::MatrixXd& C);
   // Takes out the rounding of what was found last: what is needed where multipliers are made of it.
-  void refine(const std::vector<int>& kept, const std::vector<int>& left_out, Eigen::MatrixXd& C) const;
+  void refine(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out,
+              Eigen::MatrixXd& C) const;
 
  private:
-  void take_parts(const RowSpace& space, const BlockRows& rows);
-  double dot(int k, int l) const;
-
-  struct Parts {
-    int body[2];  // place of it, −1: the ground
-    Eigen::Matrix<double, 6, 1> part[2];
-  };
-  Eigen::Index variables_;
-  std::vector<std::vector<int>> beside_;  // by row: rows that share a body
-  std::vector<int> place_;                // by row: among those kept, −1 where it is not
-  std::vector<Parts> parts_;              // by row
-  Eigen::MatrixXd gram_;                  // the lower triangle's Cholesky factor
+  std::vector<int> place_;  // by row: among those kept, −1 where it is not
+  Eigen::MatrixXd gram_;    // the lower triangle's Cholesky factor
 };
 
 }  // namespace poinsot

@@ -1,0 +1,31 @@
+// Of a block of many rows: what forces of rows set aside are by those kept (block_choice.h), by sparse matrices whose
+// pattern is analysed once for the same rows kept.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <span>
+#include <vector>
+
+#include "integrators/start/block_rows.h"
+
+namespace poinsot {
+
+class SparseCoefficients {
+ public:
+  SparseCoefficients(const BlockRows& rows, std::span<const int> kept);
+
+  // Where `rows` stand: false where the rows kept are not independent.
+  bool factor(const BlockRows& rows);
+  // Coefficients of the rows kept, a column for each column of F: argmin ‖G_Kᵀ c − f‖, refined as often as asked for.
+  Eigen::MatrixXd find(const BlockRows& rows, const Eigen::MatrixXd& F, int refinements) const;
+
+ private:
+  Eigen::MatrixXd shares(const BlockRows& rows, const Eigen::MatrixXd& F) const;
+
+  std::vector<int> kept_;
+  Eigen::SparseMatrix<double> gram_;  // lower triangle
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factored_;
+};
+
+}  // namespace poinsot
