@@ -27,7 +27,7 @@ BlockRows::BlockRows(const RowSpace& space, std::vector<int> rows) : rows_(std::
   };
   visit([&](std::size_t, int body) { bodies_.push_back(body); });
   std::ranges::sort(bodies_);
-  bodies_.erase(std::ranges::unique(bodies_).begin(), bodies_.end());
+  bodies_.erase(std::unique(bodies_.begin(), bodies_.end()), bodies_.end());
   visit([&](std::size_t k, int body) {
     Parts& of = parts_[k];
     of.body[of.body[0] < 0 ? 0 : 1] = place_of_body(body);
