@@ -50,7 +50,10 @@ TEST(Separation, RepairsWithinTheGroup) {
   const std::vector<int> group{0, 0, 1, 1};
   std::vector<int> pivots{1};
   repair({{{0, 1.6}, {1, 1}, {2, 3}, {3, 0.5}}}, pivots, group, kGathered);
-  EXPECT_THAT(pivots, ElementsAre(1));  // nothing has grown too large
+  EXPECT_THAT(pivots, ElementsAre(1));  // nothing has grown to more than it may
+  repair({{{0, 1.6}, {1, 1}, {2, 3}, {3, 0.5}}}, pivots, group, kFlat);
+  EXPECT_THAT(pivots, ElementsAre(2));
+  pivots = {1};
   repair({{{0, 1.6}, {1, 1}, {2, 5}, {3, 0.5}}}, pivots, group, kGathered);
   EXPECT_THAT(pivots, ElementsAre(0));
   pivots = {1};

@@ -138,11 +138,12 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead) {
     good_for_ = turn_until_worst(std::clamp(rate, kTurnsLittle, kTurnsMost));
     return false;
   }
-  const double most = std::clamp(1 / std::tan(angle(kWorn) + kStays * soon), kFlat, kGathered);
-  const bool others = has_coefficients() && std::isfinite(worst_) ? exchange(most) : choose_clearest(space);
+  const double lasts = std::min(angle(kWorn) + kStays * soon, angle(kFlat));
+  const double most = std::min(1 / std::tan(lasts), kGathered);
+  const bool exchanged = has_coefficients() && std::isfinite(worst_) ? exchange(most) : choose_clearest(space);
   worn_ = std::isfinite(worst_) ? std::max(kWorn, kGrowth * worst_) : kWorn;
   good_for_ = turn_until_worst(kTurnsMost);
-  return others;
+  return exchanged;
 }
 
 bool BlockChoice::exchange(double most) {

@@ -7,13 +7,16 @@
 // where that keeps the coefficients small (linsolve/separation.h): a loop that is held by few rows at one of its joints
 // is eliminated by small fronts, and such a choice wears out late.
 //
+// A step may turn bodies by as much as wears a choice out. Its stages on rows that are hardly independent any more have
+// larger errors, and may be rejected for them: such a choice is worn out before that step.
+//
 //   c = argmin ‖G_Kᵀ c − g_d‖,   (G_K G_Kᵀ) c = G_K g_d, refined once
 //
 // e_d − Σ c_k e_k is a null vector of Gᵀ: reactions that balance one another.
 //
-// Time grows with the number of rows for each row set aside. Of many rows the coefficients are looked at one by one
-// only where the sums Σ_d ± c_kd, for some vectors of random signs, say that there may be large ones; where too many
-// are set aside, never: then rows are chosen anew as a whole, those that are clearest (linsolve/front_qr.h), and their
+// Time grows with the number of rows for each row set aside. Of many rows the coefficients are found one by one only
+// where the sums Σ_d ± c_kd, for some vectors of random signs, say that there are large ones; where too many are set
+// aside, never: then rows are chosen anew as a whole, those that are clearest (linsolve/front_qr.h), and their
 // null vectors are not known.
 #pragma once
 
