@@ -15,7 +15,6 @@ namespace {
 // is set aside have the coefficient cot α when the redundant one is α from the row that is kept in its place. Of two
 // bodies that turn against one another α changes by kTurnsMost what each turns; as a rule much less: after a look by no
 // more than kTurnsMore times what it changed by since the one before, but by kTurnsLittle.
-// Where one that is worn is all that is found, others are looked for again when that has grown by kGrowth.
 constexpr double kWorn = 6, kWorst = 20;
 constexpr double kTurnsMost = 2, kTurnsLittle = 1, kTurnsMore = 3;
 // Long steps turn bodies by as much as wears a choice out at once: what it changed by in the last one, and somewhat
@@ -24,7 +23,8 @@ constexpr double kSooner = 1.3, kStays = 2.5;
 constexpr double kNothing = 1e-12;  // of a coefficient beside the row set aside
 constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
-constexpr double kGain = 2, kGrowth = 1.25;
+constexpr double kGain = 2;       // times better is a choice of clearest rows that is worth an exchange
+constexpr double kGrowth = 1.25;  // of a worn choice that is the best one found: then others are looked for again
 
 double angle(double coefficient) {
   return std::atan(1 / coefficient);

@@ -109,7 +109,8 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
   }
   kept_->to_bodies(a, now_);
   if (Status status = measure(t); !status.ok()) return status;
-  const double turn = turned(), ahead = (t - std::exchange(accepted_at_, t)) * kept_->fastest_turn();
+  const double turn = turned(), h = std::max(t - std::exchange(accepted_at_, t), 0.0),
+               ahead = h * kept_->fastest_turn();
   if (turn + ahead < std::min(choice_->rows.good_for(), kLookedAgain)) return {};
   const bool others = choice_->rows.renew(t, now_, turn, ahead);
   choice_->at = now_;
