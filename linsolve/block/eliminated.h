@@ -1,6 +1,7 @@
 // Which atoms an elimination may take next without looking at a number: the rules of linsolve/block/order.h.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <span>
@@ -45,6 +46,13 @@ class Eliminated {
       }
     for (const int g : graph_.groups[body])
       if (graph_.fused_with[index(g)] == body) add_group(g);
+  }
+
+  // Whether its group would go before one of the group's bodies.
+  bool is_early(int atom) const {
+    const int g = graph_.node[index(atom)];
+    if (!graph_.constraint[index(atom)] || in_[index(g)]) return false;
+    return std::ranges::any_of(graph_.bodies[g], [&](int b) { return counts(b, g) && !in_[index(b)]; });
   }
 
   bool may_be_pivot(int atom) {
