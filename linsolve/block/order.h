@@ -13,8 +13,8 @@
 // six. The groups of these are found by numbers and wait for the hub after all (solver.cpp).
 //
 // A group taken before one of its bodies keeps others beside it waiting for that body. Where it saves no more than one
-// entry a row it goes later, in small systems if the whole order is cheaper for it: in the loops of a carried mechanism
-// three rows wait in the place of seven.
+// entry a row it goes later, in small systems if the whole order is cheaper for it: factors of a ladder of thirty cells
+// on a moving body have 8 % less entries.
 //
 // No library's minimum degree can be told which vertex may be taken when. AMD's order of the same atoms has as little
 // fill, and takes 253 of the 400 atoms of constraints of a chain of 100 bodies before the rules let it, 421 of the 510
