@@ -46,22 +46,24 @@ CarriedMotion carry(const Scene& scene, const Settings& settings) {
 
 class ManyLoops : public ::testing::TestWithParam<std::string> {};
 
-// Long steps turn the loops by as much as wears a choice of rows out: it has to be made anew before.
+// Long steps turn the loops by as much as wears a choice of rows out: it has to be made anew before. Rows of loops that
+// share nothing but the body that carries them turn with it, and last.
 TEST_P(ManyLoops, RejectNoStepsForTheirRows) {
   for (const std::string_view name : {"dopri5", "dop853"}) {
-    Settings settings = dynamics(GetParam(), 1e-3, 5, 1);
-    settings.integrator = name;
-    settings.rtol = 1e-8;
-    for (const int count : {1, 3}) {
+    const auto compare = [&](auto&& make, int count, double end, std::int64_t more) {
       SCOPED_TRACE(fmt::format("{} {} of {}", name, GetParam(), count));
-      const CarriedMotion with = carry(Carried::four_bars(count, true), settings),
-                          without = carry(Carried::four_bars(count, false), settings);
-      ASSERT_TRUE(with.outcome.status.ok()) << with.outcome.status.message;
-      EXPECT_GT(with.exchanges, 0);
-      EXPECT_LE(with.outcome.statistics.rejected_steps, without.outcome.statistics.rejected_steps);
+      Settings settings = dynamics(GetParam(), 1e-3, end, 1);
+      settings.integrator = name;
+      settings.rtol = 1e-8;
+      const CarriedMotion with = carry(make(count, true), settings), without = carry(make(count, false), settings);
+      EXPECT_TRUE(with.outcome.status.ok()) << with.outcome.status.message;
+      EXPECT_LE(with.outcome.statistics.rejected_steps, without.outcome.statistics.rejected_steps + more);
       EXPECT_LE(static_cast<double>(with.outcome.statistics.steps),
                 1.03 * static_cast<double>(without.outcome.statistics.steps));
-    }
+      return with.exchanges;
+    };
+    for (const int count : {1, 3}) EXPECT_EQ(compare(&Carried::four_bars, count, 5, 0), 0);
+    EXPECT_GT(compare(&Carried::ladder, 5, 1.5, 1), 0);  // whose own motion has steps rejected: one more or less
   }
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "integrators/start/aside_weights.h"
 #include "linsolve/column_dependencies.h"
 
 namespace poinsot {
@@ -54,12 +55,14 @@ std::vector<int> others(std::size_t all, const std::vector<int>& left_out) {
 BlockChoice::BlockChoice(const Model& model, const RowSpace& space, std::vector<int> rows,
                          const std::vector<int>& aside)
     : rows_(space, std::move(rows)), watched_(rows_.products() <= kMostProducts), worn_(kWorn) {
-  std::vector<int> left_out;
+  std::vector<int> left_out, of_model;
   for (int k = 0; k < static_cast<int>(rows_.size()); ++k) {
     const int row = row_of(space, k);
+    of_model.push_back(row);
     group_.push_back(model.rows[index(row)].group);
     if (std::ranges::binary_search(aside, row)) left_out.push_back(k);
   }
+  weight_ = aside_weights(model, of_model);
   keep_others(left_out);
 }
 
@@ -151,8 +154,11 @@ bool BlockChoice::exchange(double most) {
     small_.refine(rows_, kept_, left_out_, C_);
   else
     find_coefficients();
+  std::vector<SparseEntries> vectors = unit_null_vectors();
+  for (std::size_t d = 0; d < vectors.size(); ++d)
+    for (auto& [k, value] : vectors[d]) value *= weight_[index(k)] / weight_[index(left_out_[d])];
   std::vector<int> chosen = left_out_;
-  repair(unit_null_vectors(), chosen, group_, most);
+  repair(std::move(vectors), chosen, group_, most);
   std::ranges::sort(chosen);
   return chosen != left_out_ && take(chosen, HUGE_VAL);
 }

@@ -70,7 +70,8 @@ class BlockChoice {
 
   BlockRows rows_;  // all that follow by their places here
   bool watched_;
-  std::vector<int> group_;  // by row
+  std::vector<int> group_;      // by row
+  std::vector<double> weight_;  // by row (aside_weights.h)
   std::vector<int> kept_, left_out_;
   SmallCoefficients small_;
   std::unique_ptr<SparseCoefficients> sparse_;  // of blocks that are not small

@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "core/index.h"
+#include "integrators/start/aside_weights.h"
 #include "integrators/start/beside.h"
 #include "integrators/start/block_choice.h"
 #include "integrators/start/loop_rows.h"
+#include "integrators/start/row_blocks.h"
 #include "integrators/start/row_space.h"
 #include "linsolve/column_dependencies.h"
 #include "linsolve/separation.h"
@@ -70,7 +72,21 @@ class Examination {
     if (many(null)) return of_model(std::move(null.columns));
     std::vector<int> group;
     for (const int row : space_->rows()) group.push_back(model_->rows[index(row)].group);
+    const std::vector<double> weight = weights();
+    for (SparseEntries& z : null.vectors)
+      for (auto& [column, value] : z) value *= weight[index(column)];
     return of_model(gather(std::move(null.vectors), group));
+  }
+  std::vector<double> weights() const {  // by row of the space (aside_weights.h)
+    std::vector<double> weight(space_->rows().size());
+    const Lists blocks = row_blocks(*model_, space_->rows());
+    for (int b = 0; b < blocks.size(); ++b) {
+      std::vector<int> rows;
+      for (const int k : blocks[b]) rows.push_back(space_->rows()[index(k)]);
+      const std::vector<double> of_block = aside_weights(*model_, rows);
+      for (std::size_t k = 0; k < rows.size(); ++k) weight[index(blocks[b][k])] = of_block[k];
+    }
+    return weight;
   }
   std::vector<int> of_model(std::vector<int> columns) const {
     for (int& column : columns) column = space_->rows()[index(column)];
