@@ -7,7 +7,7 @@
 namespace poinsot {
 namespace {
 
-constexpr double kAtRest = 0.3;  // of carried loops 0.1 and 0.6 made rows wear out more often
+constexpr double kAtRest = 0.3;  // a judgement: small beside 1, and yet no reason for choices with large coefficients
 
 }  // namespace
 
