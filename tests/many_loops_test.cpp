@@ -1,5 +1,6 @@
 // Hundreds of redundant rows that have to be exchanged on the way, in loops of their own and in loops that lean on one
-// another: more than have coefficients (integrators/start/block_choice.h).
+// another: more than have coefficients (integrators/start/block_choice.h), or than are chosen at once
+// (integrators/start/few_groups.h).
 #include <gmock/gmock.h>
 
 #include <string>
@@ -63,7 +64,8 @@ TEST_P(ManyLoops, RejectNoStepsForTheirRows) {
       return with.exchanges;
     };
     for (const int count : {1, 3}) EXPECT_EQ(compare(&Carried::four_bars, count, 5, 0), 0);
-    EXPECT_GT(compare(&Carried::ladder, 5, 1.5, 1), 0);  // whose own motion has steps rejected: one more or less
+    EXPECT_EQ(compare(&Carried::four_bars, 69, 0.6, 0), 0);  // 207 redundant rows: chosen loop by loop
+    EXPECT_GT(compare(&Carried::ladder, 5, 1.5, 1), 0);      // whose own motion has steps rejected: one more or less
   }
 }
 
@@ -92,7 +94,7 @@ TEST_P(ManyLoops, MoveAsWithoutRedundancy) {
         EXPECT_LT(off, 1e-5 * largest);
       }
       EXPECT_LT(with.outcome.statistics.violation.position, 1e-11);
-      EXPECT_GT(with.exchanges, 0);
+      EXPECT_EQ(with.exchanges > 0, make == &Carried::ladder);
       EXPECT_LE(static_cast<double>(with.outcome.statistics.steps),
                 1.1 * static_cast<double>(without.outcome.statistics.steps));
     }

@@ -150,17 +150,22 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead) {
 }
 
 bool BlockChoice::exchange(double most) {
-  if (small())
-    small_.refine(rows_, kept_, left_out_, C_);
-  else
-    find_coefficients();
-  std::vector<SparseEntries> vectors = unit_null_vectors();
-  for (std::size_t d = 0; d < vectors.size(); ++d)
-    for (auto& [k, value] : vectors[d]) value *= weight_[index(k)] / weight_[index(left_out_[d])];
-  std::vector<int> chosen = left_out_;
-  repair(std::move(vectors), chosen, group_, most);
-  std::ranges::sort(chosen);
-  return chosen != left_out_ && take(chosen, HUGE_VAL);
+  const std::vector<int> before = left_out_;
+  for (const bool weighted : {true, false}) {
+    if (small())
+      small_.refine(rows_, kept_, left_out_, C_);
+    else
+      find_coefficients();
+    std::vector<SparseEntries> vectors = unit_null_vectors();
+    for (std::size_t d = 0; weighted && d < vectors.size(); ++d)
+      for (auto& [k, value] : vectors[d]) value *= weight_[index(k)] / weight_[index(left_out_[d])];
+    std::vector<int> chosen = left_out_;
+    repair(std::move(vectors), chosen, group_, most);
+    std::ranges::sort(chosen);
+    if (chosen != left_out_) take(chosen, HUGE_VAL);
+    if (worst_ <= kWorn) break;  // rows that are rather not set aside have no coefficient that is too large
+  }
+  return left_out_ != before;
 }
 
 bool BlockChoice::choose_clearest(const RowSpace& space) {

@@ -4,16 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "core/index.h"
-#include "integrators/start/aside_weights.h"
 #include "integrators/start/beside.h"
-#include "integrators/start/block_choice.h"
+#include "integrators/start/few_groups.h"
 #include "integrators/start/loop_rows.h"
-#include "integrators/start/row_blocks.h"
 #include "integrators/start/row_space.h"
 #include "linsolve/column_dependencies.h"
 #include "linsolve/separation.h"
@@ -23,10 +20,9 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double kContradicts = 1e-6;                    // of a body's size: by what the scene says
-constexpr double kNoLoad = 1e-7;                         // of a null vector on unit rows
-constexpr std::size_t kMostChosen = BlockChoice::kMost;  // dependent rows: the time grows with their square
-constexpr int kManyRows = 20'000;  // of loops: one random direction is looked at in the place of two
+constexpr double kContradicts = 1e-6;  // of a body's size: by what the scene says
+constexpr double kNoLoad = 1e-7;       // of a null vector on unit rows
+constexpr int kManyRows = 20'000;      // of loops: one random direction is looked at in the place of two
 
 std::vector<int> united(std::vector<int> a, const std::vector<int>& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -51,7 +47,7 @@ class Examination {
       space_.emplace(model_, std::move(loops));
       space_->stand(0, states_);
     }
-    here_ = few(space_->columns(), kIndependent);
+    here_ = few_null_vectors(space_->columns(), kIndependent);
     if (here_.columns.empty()) return std::move(result_);
     without_ = chosen(here_);
     look_beside();
@@ -59,34 +55,10 @@ class Examination {
   }
 
  private:
-  static NullSpace few(const Sparse& columns, double tolerance) { return null_space(columns, tolerance, kMostChosen); }
-  // Too many for null vectors.
-  static bool many(const NullSpace& null) { return null.vectors.size() < null.columns.size(); }
-  // Rows of the model without which the others are as independent as can be; beyond kMostChosen, just independent.
+  // Rows of the model without which the others are as independent as can be; where there are many, just independent.
   std::vector<int> chosen(NullSpace null) const { return of_model(choose(std::move(null))); }
   static std::vector<int> choose(NullSpace null) {
     return many(null) ? std::move(null.columns) : separate(std::move(null.vectors));
-  }
-  // The same of as few joints as that allows.
-  std::vector<int> of_few_groups(NullSpace null) const {
-    if (many(null)) return of_model(std::move(null.columns));
-    std::vector<int> group;
-    for (const int row : space_->rows()) group.push_back(model_->rows[index(row)].group);
-    const std::vector<double> weight = weights();
-    for (SparseEntries& z : null.vectors)
-      for (auto& [column, value] : z) value *= weight[index(column)];
-    return of_model(gather(std::move(null.vectors), group));
-  }
-  std::vector<double> weights() const {  // by row of the space (aside_weights.h)
-    std::vector<double> weight(space_->rows().size());
-    const Lists blocks = row_blocks(*model_, space_->rows());
-    for (int b = 0; b < blocks.size(); ++b) {
-      std::vector<int> rows;
-      for (const int k : blocks[b]) rows.push_back(space_->rows()[index(k)]);
-      const std::vector<double> of_block = aside_weights(*model_, rows);
-      for (std::size_t k = 0; k < rows.size(); ++k) weight[index(blocks[b][k])] = of_block[k];
-    }
-    return weight;
   }
   std::vector<int> of_model(std::vector<int> columns) const {
     for (int& column : columns) column = space_->rows()[index(column)];
@@ -97,7 +69,7 @@ class Examination {
   void look_beside() {
     const Sparse columns = space_->columns();
     const std::size_t suspects = here_.columns.size();  // how many rows may be dependent
-    const NullSpace surely_null = here_.from <= kDependent ? here_ : few(columns, kDependent);
+    const NullSpace surely_null = here_.from <= kDependent ? here_ : few_null_vectors(columns, kDependent);
     const std::vector<int>& surely = surely_null.columns;
     beside_.emplace(model_, states_, *space_, suspects);
     Trial trial = beside_->begin(without_);
@@ -122,7 +94,7 @@ class Examination {
       }
     }
     if (best && best->dependent < suspects) {
-      tell_redundant(best->columns, kFreeBeside, few(best->columns, kFreeBeside));
+      tell_redundant(best->columns, kFreeBeside, few_null_vectors(best->columns, kFreeBeside));
       tell_singular(columns);
       result_.moves_on = along && beside_->leads_on(start, *along, result_.aside);
       if (along) result_.time_beside = along->t;
@@ -162,7 +134,8 @@ class Examination {
     }
     tell_undetermined(columns, null);
     // Beside rows that are barely independent nothing of the others' independence is to be given away.
-    result_.aside = result_.doubt > 0 ? chosen(null) : of_few_groups(null);
+    result_.aside = result_.doubt > 0 ? chosen(null)
+                                      : of_model(rows_of_few_groups(*model_, space_->rows(), columns, null, tolerance));
     result_.aside_here = result_.aside;
     result_.rank = static_cast<int>(model_->rows.size() - result_.aside.size());
     result_.rank_here = result_.rank;
@@ -212,7 +185,7 @@ class Examination {
     };
     for (ColumnDependency& d : column_dependencies(part, kIndependent).columns)
       result_.singular.push_back({space_->rows()[index(kept[index(d.column)])], whole(std::move(d.others))});
-    result_.aside_here = united(result_.aside, whole(choose(few(part, kIndependent))));
+    result_.aside_here = united(result_.aside, whole(choose(few_null_vectors(part, kIndependent))));
     result_.rank_here = result_.rank - static_cast<int>(result_.singular.size());
   }
 

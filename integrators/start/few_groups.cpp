@@ -1,0 +1,112 @@
+#include "integrators/start/few_groups.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "core/index.h"
+#include "integrators/start/aside_weights.h"
+#include "integrators/start/block_choice.h"
+#include "integrators/start/row_blocks.h"
+#include "linsolve/separation.h"
+
+namespace poinsot {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+constexpr std::size_t kMostChosen = BlockChoice::kMost;  // dependent rows: the time grows with their square
+
+class Choice {
+ public:
+  Choice(const Model& model, std::span<const int> rows, const Sparse& columns)
+      : model_(model), rows_(rows), columns_(columns), blocks_(row_blocks(model, rows)) {}
+
+  std::vector<int> at_once(std::vector<SparseEntries>&& vectors) const {
+    std::vector<double> weight(rows_.size());
+    for (int b = 0; b < blocks_.size(); ++b) {
+      const std::vector<double> of_block = aside_weights(model_, rows_of(blocks_[b]));
+      for (std::size_t k = 0; k < of_block.size(); ++k) weight[index(blocks_[b][k])] = of_block[k];
+    }
+    return gathered(std::move(vectors), weight, rows_);
+  }
+
+  // `dependent`: as many as are to be found.
+  std::vector<int> by_block(const std::vector<int>& dependent, double tolerance) const {
+    std::vector<int> of_all;
+    for (int b = 0; b < blocks_.size(); ++b) {
+      std::vector<int> of_block;
+      std::ranges::copy_if(blocks_[b], std::back_inserter(of_block),
+                           [&](int k) { return std::ranges::binary_search(dependent, k); });
+      if (!of_block.empty() && of_block.size() <= kMostChosen) choose(blocks_[b], tolerance, of_block);
+      of_all.insert(of_all.end(), of_block.begin(), of_block.end());
+    }
+    return of_all;
+  }
+
+ private:
+  // `dependent` ← others, unless a block by itself shows another number of them than it does among all.
+  void choose(std::span<const int> block, double tolerance, std::vector<int>& dependent) const {
+    NullSpace null = few_null_vectors(columns_of(block), tolerance);
+    if (null.vectors.size() != dependent.size()) return;
+    const std::vector<int> of_model = rows_of(block);
+    dependent = gathered(std::move(null.vectors), aside_weights(model_, of_model), of_model);
+    for (int& k : dependent) k = block[index(k)];
+  }
+
+  // On its own bodies: the others of a large scene would cost time for each block.
+  Sparse columns_of(std::span<const int> block) const {
+    std::vector<Eigen::Index> touched;
+    for (const int k : block)
+      for (Sparse::InnerIterator it(columns_, k); it; ++it) touched.push_back(it.row());
+    std::ranges::sort(touched);
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t c = 0; c < block.size(); ++c)
+      for (Sparse::InnerIterator it(columns_, block[c]); it; ++it)
+        entries.emplace_back(static_cast<int>(std::ranges::lower_bound(touched, it.row()) - touched.begin()),
+                             static_cast<int>(c), it.value());
+    Sparse part(static_cast<Eigen::Index>(touched.size()), static_cast<Eigen::Index>(block.size()));
+    part.setFromTriplets(entries.begin(), entries.end());
+    return part;
+  }
+
+  // `rows`: of the model, by what vectors refer to.
+  std::vector<int> gathered(std::vector<SparseEntries>&& vectors, const std::vector<double>& weight,
+                            std::span<const int> rows) const {
+    std::vector<int> group;
+    for (const int row : rows) group.push_back(model_.rows[index(row)].group);
+    for (SparseEntries& z : vectors)
+      for (auto& [k, value] : z) value *= weight[index(k)];
+    return gather(std::move(vectors), group);
+  }
+
+  std::vector<int> rows_of(std::span<const int> block) const {
+    std::vector<int> rows;
+    for (const int k : block) rows.push_back(rows_[index(k)]);
+    return rows;
+  }
+
+  const Model& model_;
+  std::span<const int> rows_;
+  const Sparse& columns_;
+  Lists blocks_;
+};
+
+}  // namespace
+
+NullSpace few_null_vectors(const Eigen::SparseMatrix<double>& columns, double tolerance) {
+  return null_space(columns, tolerance, kMostChosen);
+}
+
+bool many(const NullSpace& null) {
+  return null.vectors.size() < null.columns.size();
+}
+
+std::vector<int> rows_of_few_groups(const Model& model, std::span<const int> rows, const Sparse& columns,
+                                    NullSpace null, double tolerance) {
+  const Choice choice(model, rows, columns);
+  return many(null) ? choice.by_block(null.columns, tolerance) : choice.at_once(std::move(null.vectors));
+}
+
+}  // namespace poinsot
