@@ -162,7 +162,7 @@ bool BlockChoice::exchange(double most) {
     std::vector<int> chosen = left_out_;
     repair(std::move(vectors), chosen, group_, most);
     std::ranges::sort(chosen);
-    if (chosen != left_out_) take(chosen, HUGE_VAL);
+    if (chosen != left_out_ && !take(chosen, HUGE_VAL)) break;
     if (worst_ <= kWorn) break;  // rows that are rather not set aside have no coefficient that is too large
   }
   return left_out_ != before;
@@ -177,12 +177,11 @@ bool BlockChoice::choose_clearest(const RowSpace& space) {
 // Leaves out others where no coefficient is as large as `limit` then.
 bool BlockChoice::take(const std::vector<int>& chosen, double limit) {
   const std::vector<int> before = left_out_;
-  const double was = worst_;
   keep_others(chosen);
   worst_ = worst();
   if (worst_ < limit) return true;
   keep_others(before);
-  worst_ = was;
+  worst_ = worst();  // with the coefficients and factors that go with it
   return false;
 }
 
