@@ -1,6 +1,7 @@
 #include "integrators/methods/half_implicit.h"
 
 #include "integrators/stepping/broyden.h"
+#include "integrators/stepping/extrapolation.h"
 #include "integrators/stepping/fixed_steps.h"
 #include "integrators/stepping/growth.h"
 #include "integrators/stepping/newton_loop.h"
@@ -18,15 +19,21 @@ class HalfImplicit final : public FixedSteps {
         newton_(problem_, ends_.begin().system, settings_, Refresh::every_step, run.statistics),
         broyden_(problem_.nv() + problem_.nc(), problem_.nv()),
         velocity_rows_(velocity_rows(problem_)),
+        line_(x_.z),
         dq_(nv_),
         rows_(nc_),
         growth_(nv_) {}
 
   double index3_scale() const override { return h_ * h_; }
   Status prepare() override { return ends_.prepare(); }
+  void resize(double before) override { line_.resize(x_.z, h_ / before); }
+  Status forget() override {
+    line_.restart(x_.z);
+    return {};
+  }
   Status resume() override {
     velocity_rows_ = velocity_rows(ends_.begin().problem);
-    return {};
+    return forget();
   }
   Status leave_singular() override {
     place_beside(ends_.begin().problem);
@@ -36,6 +43,7 @@ class HalfImplicit final : public FixedSteps {
   Problem& last_seen() override { return stand(); }
 
   Status step(double t) override {
+    line_.lead(x_.z);
     StepEnds::End &begin = ends_.begin(), &end = ends_.end();
     const auto advance = [&] {
       x_.v.noalias() = v_n_ + h_ * x_.z.head(nv_);
@@ -73,6 +81,7 @@ class HalfImplicit final : public FixedSteps {
   NewtonLoop newton_;
   Broyden broyden_;
   std::vector<int> velocity_rows_;
+  Extrapolation line_;
   Vector dq_, rows_;
   Growth growth_;
 };

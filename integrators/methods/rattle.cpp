@@ -1,6 +1,7 @@
 #include "integrators/methods/rattle.h"
 
 #include "integrators/stepping/broyden.h"
+#include "integrators/stepping/extrapolation.h"
 #include "integrators/stepping/fixed_steps.h"
 #include "integrators/stepping/growth.h"
 #include "integrators/stepping/newton_loop.h"
@@ -19,6 +20,7 @@ class Rattle final : public FixedSteps {
         broyden_(problem_.nv() + problem_.nc(), problem_.nv()),
         velocity_rows_(velocity_rows(problem_)),
         z_(x_.z),
+        line_(z_),
         u_(nv_),
         dq_(nv_),
         e_(nv_),
@@ -33,7 +35,7 @@ class Rattle final : public FixedSteps {
     place(ends_.begin().problem);
     if (Status status = factor(ends_.begin(), x_.t); !status.ok()) return status;
     if (Status status = complete(); !status.ok()) return status;
-    z_ = x_.z;
+    start_from(x_.z);
     return {};
   }
 
@@ -42,13 +44,15 @@ class Rattle final : public FixedSteps {
     return run_.singular_for > 0 ? Status{} : factor(ends_.begin(), 0);
   }
   Status leave_singular() override {
-    z_ = x_.z;
+    start_from(x_.z);
     velocity_rows_ = velocity_rows(ends_.begin().problem);
     place_beside(ends_.begin().problem);
     return factor(ends_.begin(), x_.t);
   }
 
+  void resize(double before) override { line_.resize(z_, h_ / before); }
   Status step(double t) override {
+    line_.lead(z_);
     if (Status status = first_half(t); !status.ok()) return status;
     if (Status status = second_half(t); !status.ok()) return status;
     ends_.take_turns();
@@ -68,7 +72,7 @@ class Rattle final : public FixedSteps {
     bool rewritten = false;
     Status status = problem.accept(x_.t, span(x_.q), span(x_.v), span(rhs_, 0, nv_), span(rhs_, nv_, nc_), rewritten);
     if (!status.ok() || !rewritten) return status;
-    z_ = rhs_;
+    start_from(rhs_);
     velocity_rows_ = velocity_rows(problem);
     place(problem);
     return factor(ends_.begin(), x_.t);
@@ -84,6 +88,11 @@ class Rattle final : public FixedSteps {
   }
 
  private:
+  void start_from(const Vector& z) {
+    z_ = z;
+    line_.restart(z_);
+  }
+
   Status factor(StepEnds::End& end, double t) {
     return end.system.refresh(t, {}, {}, span(zeros_, 0, nv_), span(zeros_, nv_, nc_));
   }
@@ -152,7 +161,6 @@ class Rattle final : public FixedSteps {
     rhs_.tail(nc_) *= -2 / h_;
     if (Status status = ends_.end().system.solve(t, span(rhs_)); !status.ok()) return status;
     x_.v.noalias() = u_ + (0.5 * h_) * rhs_.head(nv_);
-    z_ = 2 * rhs_ - z_;  // where the next first half begins its iteration: the line through the last two halves
     return {};
   }
 
@@ -161,6 +169,7 @@ class Rattle final : public FixedSteps {
   Broyden broyden_;
   std::vector<int> velocity_rows_;
   Vector z_;  // unknowns of the first half; x_.z is the (a, λ) given out
+  Extrapolation line_;
   Vector u_, dq_, e_, momentum_, rows_, rhs_, zeros_;
   Growth growth_;
 };
