@@ -8,11 +8,24 @@ constexpr JacobianEntry kJacobians[] = {
     {"simplified",
      "the original study's: no variation of reactions, factored once, where the last step ended; no predictor",
      MatrixKind::simplified, Refresh::before_step},
-    {"kept", "the full Newton matrix, kept while it converges well, over iterations and steps (not in kinematics)",
-     MatrixKind::exact, Refresh::when_slow},
+    {"kept", "the full Newton matrix, kept while it converges well, over iterations and steps", MatrixKind::exact,
+     Refresh::when_slow},
 };
 
 }  // namespace
+
+bool due(Refresh refresh, int k, bool worn) {
+  switch (refresh) {
+    case Refresh::every_iteration:
+      return true;
+    case Refresh::every_step:
+    case Refresh::before_step:
+      return k == 0;
+    case Refresh::when_slow:
+      return worn;
+  }
+  return true;
+}
 
 Registry<JacobianEntry>& jacobians() {
   static Registry<JacobianEntry> table("jacobian", kJacobians);

@@ -25,6 +25,10 @@ struct JacobianEntry {
   Workload workload() const { return refresh == Refresh::when_slow ? Workload::solves : Workload::factorizations; }
 };
 
+// Whether the matrix is made anew in iteration k of a step. `worn`: one kept from before serves no more, or there is
+// none.
+bool due(Refresh refresh, int k, bool worn);
+
 Registry<JacobianEntry>& jacobians();
 
 }  // namespace poinsot

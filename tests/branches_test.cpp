@@ -14,6 +14,18 @@ namespace {
 using std::numbers::pi;
 constexpr const char* kFormulations[] = {"rA", "rp", "reps"};
 
+// With the matrix of every iterate, and with the one of the position before.
+class Branches : public ::testing::TestWithParam<const char*> {
+ protected:
+  static Settings kinematics(std::string_view formulation, double step, double end) {
+    Settings settings = test::kinematics(formulation, step, end);
+    settings.jacobian = GetParam();
+    return settings;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Kinematics, Branches, ::testing::Values("exact", "kept"),
+                         [](const auto& jacobian) { return std::string(jacobian.param); });
+
 // A four-bar in the plane z = 0: crank from the origin, rocker from (d, 0, 0), crank at `angle` at the start and the
 // coupler's far end B to the left of the way from the crank's end A to the rocker's pivot. The crank turns at 1 rad/s.
 struct FourBar {
@@ -80,7 +92,7 @@ double off_branch(const FourBar& of, double angle, const std::vector<Snapshot>& 
   return worst;
 }
 
-TEST(Branches, a_crank_rocker_beside_its_change_point_keeps_its_assembly) {
+TEST_P(Branches, a_crank_rocker_beside_its_change_point_keeps_its_assembly) {
   for (double gap : {1e-3, 1e-5, 1e-7}) {
     const FourBar close{1, 2 + gap, 2, 3};  // at crank angle pi the dyad is straight but for `gap`
     for (const char* formulation : kFormulations)
@@ -92,7 +104,7 @@ TEST(Branches, a_crank_rocker_beside_its_change_point_keeps_its_assembly) {
   }
 }
 
-TEST(Branches, keep_with_every_linear_solver_and_the_default_tolerance) {
+TEST_P(Branches, keep_with_every_linear_solver_and_the_default_tolerance) {
   const FourBar close{1, 2 + 1e-4, 2, 3};
   for (const auto& solver : linear_solvers()) {
     Settings settings = kinematics("rA", 0.02, 2 * pi);
@@ -102,7 +114,7 @@ TEST(Branches, keep_with_every_linear_solver_and_the_default_tolerance) {
   }
 }
 
-TEST(Branches, steps_of_more_than_half_a_turn_are_followed) {
+TEST_P(Branches, steps_of_more_than_half_a_turn_are_followed) {
   const FourBar easy{1, 3, 3, 4};
   for (const char* formulation : kFormulations)
     for (double step : {0.7, 2.5, 4.0, 6.0}) {
@@ -111,7 +123,7 @@ TEST(Branches, steps_of_more_than_half_a_turn_are_followed) {
     }
 }
 
-TEST(Branches, a_change_point_stops_the_run_and_is_named) {
+TEST_P(Branches, a_change_point_stops_the_run_and_is_named) {
   const FourBar change{1, 2, 2, 3}, parallelogram{1, 2, 1, 2};
   for (const char* formulation : kFormulations)
     for (double step : {0.01, 0.1, 0.35}) {
@@ -125,7 +137,7 @@ TEST(Branches, a_change_point_stops_the_run_and_is_named) {
     }
 }
 
-TEST(Branches, two_change_points_at_once_are_seen_each) {
+TEST_P(Branches, two_change_points_at_once_are_seen_each) {
   const FourBar of{1, 2, 1, 2};
   Scene scene = four_bar(of, pi / 2);
   add_dyad(scene, 0, of, pi / 2, Vector3::Zero());
@@ -134,7 +146,7 @@ TEST(Branches, two_change_points_at_once_are_seen_each) {
 }
 
 // A rod turned about z by its direction's cosine alone: at 0 and pi the constraint does not say which way.
-TEST(Branches, a_direction_driven_past_its_turning_point) {
+TEST_P(Branches, a_direction_driven_past_its_turning_point) {
   Scene bare;
   Body rod;
   rod.name = "rod", rod.mass = 1, rod.inertia = Matrix3::Identity(), rod.angular_velocity = {0, 0, 1};
@@ -159,7 +171,7 @@ TEST(Branches, a_direction_driven_past_its_turning_point) {
 }
 
 // Likewise where the turning point is a time of the grid itself, and nothing is given out there.
-TEST(Branches, a_direction_driven_to_its_turning_point_by_a_step) {
+TEST_P(Branches, a_direction_driven_to_its_turning_point_by_a_step) {
   Scene scene;
   Body rod;
   rod.name = "rod", rod.mass = 1, rod.inertia = Matrix3::Identity(), rod.angular_velocity = {0, 0, 1};
@@ -180,7 +192,7 @@ TEST(Branches, a_direction_driven_to_its_turning_point_by_a_step) {
 }
 
 // Six legs from a hexagon to the platform in its plane at t = pi/2, where it may go on up or down.
-TEST(Branches, a_platform_driven_through_its_flat_pose_stops) {
+TEST_P(Branches, a_platform_driven_through_its_flat_pose_stops) {
   Scene scene;
   Body platform;
   platform.name = "platform", platform.mass = 1, platform.inertia = Vector3(1, 1, 2).asDiagonal();
@@ -203,7 +215,7 @@ TEST(Branches, a_platform_driven_through_its_flat_pose_stops) {
     }
 }
 
-TEST(Branches, drivers_that_ask_for_the_pose_half_a_turn_off_or_a_negative_length_are_refused) {
+TEST_P(Branches, drivers_that_ask_for_the_pose_half_a_turn_off_or_a_negative_length_are_refused) {
   Scene sled;
   Body& body = sled.bodies.emplace_back();
   body.name = "sled", body.mass = 1, body.inertia.setIdentity(), body.position = {1, 0, 0};

@@ -17,6 +17,8 @@
 namespace poinsot {
 namespace {
 
+// A matrix of a position before is made anew where corrections shrink by less than this.
+constexpr double kSlow = 0.1;
 // A step is certain up to this ratio of the first two corrections (by Newton and Kantorovich the solution is the only
 // one about the prediction then), and up to this turn of a driven angle.
 constexpr double kContraction = 0.25;
@@ -42,7 +44,8 @@ class Kinematics final : public FixedSteps {
         q_next_(problem_.nq()),
         dq_(nv_),
         q_from_(problem_.nq()),
-        v_from_(nv_) {
+        v_from_(nv_),
+        a_from_(nv_) {
     if (settings_.reactions || settings_.signals) {
       inverse_dynamics_ = std::make_unique<Consistent>(problem_, settings_.linear());
     } else {
@@ -65,7 +68,7 @@ class Kinematics final : public FixedSteps {
   }
 
   Status step(double t) override {
-    q_from_ = q_n_, v_from_ = v_n_;
+    q_from_ = q_n_, v_from_ = v_n_, a_from_ = x_.z.head(nv_);
     const Status status = advance(x_.t, t, settings_.tolerance);
     return status.ok() && certain(t - x_.t, t) ? status : follow(t, status);
   }
@@ -102,7 +105,10 @@ class Kinematics final : public FixedSteps {
     if (refresh_ == Refresh::before_step) {  // the original study's codes predict nothing
       x_.q = q_from_;
     } else {
-      dq_.noalias() = (t - from) * v_from_;
+      const double h = t - from;
+      dq_.noalias() = h * v_from_;
+      // Where velocities turn round within the step, as beside a singular position, they alone say where it leads.
+      if (!careful_ && 0.25 * h * h * a_from_.squaredNorm() < v_from_.squaredNorm()) dq_ += (0.5 * h * h) * a_from_;
       problem_.retract(span(q_from_), span(dq_), span(x_.q));  // (11)
     }
     return find(t, tolerance);
@@ -205,11 +211,12 @@ class Kinematics final : public FixedSteps {
     constexpr double kStill = 1e-10;    // no motion to be uncertain of
     double correction = 0, first = 0;
     contraction_ = 0;
+    slow_ = false;
     for (int k = 0; k < settings_.max_iterations; ++k) {
       problem_.set_position(t, span(x_.q));
       problem_.position_residual(span(delta_));
-      // A kept matrix would carry the position past a bifurcation unseen: kinematics keeps none.
-      if (refresh_ != Refresh::before_step || k == 0) {
+      // Where a matrix of a position before serves too little to be certain of a step, its parts have their own.
+      if (due(refresh_, k, careful_ || slow_ || !system_.ready())) {
         if (Status status = system_.refresh(t, {}, {}, {}, {}); !status.ok()) return status;
       }
       delta_ = -delta_;
@@ -219,6 +226,7 @@ class Kinematics final : public FixedSteps {
       ++run_.statistics.newton_iterations;
       const double before = correction;
       correction = delta_.norm();
+      slow_ = k > 0 && !(correction < kSlow * before);
       if (!std::isfinite(correction)) {
         return {Failure::not_finite, t, fmt::format("at t = {:.9g} s the position's correction is not finite", t)};
       }
@@ -257,7 +265,9 @@ class Kinematics final : public FixedSteps {
   std::unique_ptr<Consistent> inverse_dynamics_;
   Vector delta_, q_next_, dq_;
   Vector q_from_, v_from_;  // where a step, or a part of it, begins
+  Vector a_from_;           // of a step
   bool careful_ = false;    // in parts of a step
+  bool slow_ = false;       // corrections did not shrink as they should
   double contraction_ = 0;  // second correction over the first
   std::uint64_t orientation_ = 0;
 };

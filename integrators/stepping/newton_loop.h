@@ -55,7 +55,7 @@ class NewtonLoop {
     for (int k = 0; k < settings_.max_iterations; ++k) {
       residual(delta_);
       if (stalled_ && balanced(position, z, q)) return {};
-      if (due(k)) {
+      if (due(refresh_, k, slow_ || !system_.ready())) {
         if (Status status = matrix(); !status.ok()) return status;
         slow_ = false;
         of_this_step = refresh_ != Refresh::before_step;
@@ -87,19 +87,6 @@ class NewtonLoop {
  private:
   // A kept matrix is made anew where corrections shrink by less than this: four more iterations would cost more.
   static constexpr double kSlow = 0.25;
-
-  bool due(int k) const {
-    switch (refresh_) {
-      case Refresh::every_iteration:
-        return true;
-      case Refresh::every_step:
-      case Refresh::before_step:
-        return k == 0;
-      case Refresh::when_slow:
-        return slow_ || !system_.ready();
-    }
-    return true;
-  }
 
   double relative(const Vector& z, bool of_this_step) const;
   bool is_rounding(double t, double position, const Vector& q);
