@@ -6,6 +6,7 @@
 // Entries are numbered as in [M Gᵀ; G 0]; those with row and column below nv belong to M, D and K, the others to G.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -51,10 +52,15 @@ struct EntryRecorder {
   std::vector<Block>& blocks;
   void operator()(int row, int column, double) { blocks.push_back({row, column, 1, 1}); }
 };
+// Sets the values: entries at one place add up.
 struct EntryWriter {
+  EntryWriter(std::span<const int> slots, std::span<double> of) : slot(slots.data()), values(of.data()) {
+    std::ranges::fill(of, 0.0);
+  }
+  void operator()(int, int, double value) { values[*slot++] += value; }
+
   const int* slot;
   double* values;
-  void operator()(int, int, double value) { values[*slot++] += value; }
 };
 
 }  // namespace poinsot

@@ -87,12 +87,12 @@ Status RadauStepper::refresh(const State& from, double to, Linearized& linear) {
       stand_at_stage(from, to, i);
       linear.at[static_cast<std::size_t>(i)].assemble(problem_, stage_.a(), stage_.lambda());
     }
-    write_stages(linear, h, static_cast<int>(n_), problem_.nv(), EntryWriter{slots.data(), values.data()});
+    write_stages(linear, h, static_cast<int>(n_), problem_.nv(), EntryWriter(slots, values));
   });
   linear.h = 0;
   if (status.ok() && !kept && &linear == &step_) {
     status = filter_.refresh(from.t, [&](std::span<const int> slots, std::span<double> values) {
-      write_filter(linear, h, problem_.nv(), EntryWriter{slots.data(), values.data()});
+      write_filter(linear, h, problem_.nv(), EntryWriter(slots, values));
     });
   }
   if (!status.ok()) return status;

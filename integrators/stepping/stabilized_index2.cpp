@@ -92,7 +92,7 @@ void StabilizedIndex2::assemble(double t, double alpha, std::span<const double> 
   stand(t, y);
   linear_.assemble(problem_, y_dot.subspan(nv(), nv()), lambda(y));
   problem_.assemble(MatrixKind::rates, {}, {}, {}, {}, rates_layout_.slots, rates_);
-  write(alpha, EntryWriter{slots.data(), values.data()});
+  write(alpha, EntryWriter(slots, values));
 }
 
 }  // namespace poinsot

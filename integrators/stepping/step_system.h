@@ -1,7 +1,6 @@
 // The linear system of a step: one pattern analysed once, then assemble, factor, solve, each counted and timed.
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
@@ -23,12 +22,11 @@ class TimedSystem {
   // Analyses the pattern. Call once, before the clock starts. unknowns[k]: which of the problem's unknowns the system's
   // k-th belongs to, for messages; empty: they are the same.
   Status prepare(const Pattern& pattern, std::vector<int> unknowns = {});
-  // write(slots, values) adds the matrix to zeros; then it is factored. The time up to the call belongs to
+  // write(slots, values) sets the matrix; then it is factored. The time up to the call belongs to
   // Phase::other.
   template <class Write>
   Status refresh(double t, Write&& write) {
     clock_.lap(Phase::other);
-    std::ranges::fill(linear_.values(), 0.0);
     write(linear_.slots(), linear_.values());
     return factor(t);
   }
