@@ -1,7 +1,7 @@
 #include "integrators/start/loop_rows.h"
 
 #include <Eigen/QR>
-#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "core/index.h"

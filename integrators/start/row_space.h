@@ -33,7 +33,6 @@ class RowSpace {
   void stand(double t, std::span<const BodyState> states);
 
   const std::vector<int>& rows() const { return rows_; }
-  int variables() const { return problem_->nv(); }
   // Gᵀ, a column of unit length for each row; 0 where the gradient is nothing but rounding.
   const Eigen::SparseMatrix<double>& columns() const { return Gt_; }
   // ‖g‖ by row; of a row that vanishes, that of its terms.
