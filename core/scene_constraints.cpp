@@ -11,18 +11,9 @@
 namespace poinsot {
 namespace {
 
-template <class Type, std::size_t N>
-const TypeName<Type>& read_type(const JsonValue& item, const TypeName<Type> (&table)[N]) {
-  const JsonValue value = item.required("type");
-  const auto* entry = std::ranges::find(table, value.string(), &TypeName<Type>::name);
-  if (entry == std::end(table)) value.expected(one_of(table));
-  return *entry;
-}
-
 template <class Item>
 void read_bodies(const JsonValue& item, const BodyNames& bodies, Item& out) {
-  const JsonValue pair = item.required("bodies");
-  std::tie(out.i, out.j) = bodies.read_pair(pair);
+  std::tie(out.i, out.j) = bodies.read_pair(item.required("bodies"));
 }
 
 void read_points(const JsonValue& item, Vector3& s_i, Vector3& s_j) {
@@ -38,7 +29,7 @@ Constraint::Alternate read_alternate(const JsonValue& value) {
 }  // namespace
 
 Constraint read_constraint(const JsonValue& item, const BodyNames& bodies) {
-  const ConstraintType type = read_type(item, kConstraintTypes).type;
+  const ConstraintType type = read_entry(item.required("type"), kConstraintTypes).type;
   Constraint c;
   c.type = type;
   switch (type) {
@@ -99,7 +90,7 @@ JointFrames read_frames(const JsonValue& item, std::string_view owner, JointType
 }  // namespace
 
 Joint read_joint(const JsonValue& item, const BodyNames& bodies) {
-  const auto& [type_name, type] = read_type(item, kJointTypes);
+  const auto& [type_name, type] = read_entry(item.required("type"), kJointTypes);
   Joint j;
   j.type = type;
   if (has_any(item, {"s_i", "s_j"})) {
@@ -107,35 +98,27 @@ Joint read_joint(const JsonValue& item, const BodyNames& bodies) {
       item.fail("found a joint in the bodies' frames (s_i, s_j) and globally (point, axis), expected one of the two");
     }
     j.frames = read_frames(item, fmt::format("a {} joint in the bodies' frames", type_name), type);
-    read_bodies(item, bodies, j);
-    j.name = optional_or(item, "name", read_name, std::string());
-    return j;
-  }
-  switch (type) {
-    case JointType::spherical:
-    case JointType::fixed:
-      item.keys(fmt::format("a {} joint", type_name), {"type", "name", "bodies", "point"});
-      break;
-    case JointType::universal:
-      item.keys("a universal joint", {"type", "name", "bodies", "point", "axis_i", "axis_j"});
+  } else {
+    const std::string owner = fmt::format("a {} joint", type_name);
+    if (type == JointType::spherical || type == JointType::fixed) {
+      item.keys(owner, {"type", "name", "bodies", "point"});
+    } else if (type == JointType::universal) {
+      item.keys(owner, {"type", "name", "bodies", "point", "axis_i", "axis_j"});
       j.axis_i = read_vector(item.required("axis_i"));
       j.axis_j = read_vector(item.required("axis_j"));
-      break;
-    case JointType::revolute:
-    case JointType::cylindrical:
-    case JointType::translational:
-      item.keys(fmt::format("a {} joint", type_name), {"type", "name", "bodies", "point", "axis"});
+    } else {
+      item.keys(owner, {"type", "name", "bodies", "point", "axis"});
       j.axis = read_vector(item.required("axis"));
-      break;
+    }
+    j.point = read_vector(item.required("point"));
   }
-  j.point = read_vector(item.required("point"));
   read_bodies(item, bodies, j);
   j.name = optional_or(item, "name", read_name, std::string());
   return j;
 }
 
 Driver read_driver(const JsonValue& item, const BodyNames& bodies) {
-  const DriverType type = read_type(item, kDriverTypes).type;
+  const DriverType type = read_entry(item.required("type"), kDriverTypes).type;
   Driver d;
   d.type = type;
   if (type == DriverType::angle) {

@@ -1,5 +1,4 @@
 // Applied forces of a scene file. For each type: the keys it has, then what they hold.
-#include <algorithm>
 #include <tuple>
 
 #include "core/scene_parts.h"
@@ -9,21 +8,14 @@
 namespace poinsot {
 namespace {
 
-Frame read_frame(const JsonValue& item, Frame otherwise) {
-  const std::optional<JsonValue> value = item.optional("frame");
-  if (!value) return otherwise;
-  const auto* entry = std::ranges::find(kFrames, value->string(one_of(kFrames)), &TypeName<Frame>::name);
-  if (entry == std::end(kFrames)) value->expected(one_of(kFrames));
-  return entry->type;
+Frame read_frame(const JsonValue& value) {
+  return read_entry(value, kFrames, one_of(kFrames)).type;
 }
 
 void read_functions(const JsonValue& value, Expression (&out)[3]) {
   constexpr std::string_view kAllowed = "an array of 3 numbers or strings holding expressions in t";
   if (value.size(kAllowed) != 3) value.expected(kAllowed);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const JsonValue component = value.at(k);
-    out[k] = read_function(component);
-  }
+  for (std::size_t k = 0; k < 3; ++k) out[k] = read_function(value.at(k));
 }
 
 double read_number(const JsonValue& value) {
@@ -36,7 +28,7 @@ PointForce read_point_force(const JsonValue& item, const BodyNames& bodies) {
   force.body = bodies.read_moving(item.required("body"));
   force.point = read_vector(item.required("point"));
   read_functions(item.required("force"), force.force);
-  force.frame = read_frame(item, Frame::global);
+  force.frame = optional_or(item, "frame", read_frame, Frame::global);
   return force;
 }
 
@@ -45,7 +37,7 @@ Torque read_torque(const JsonValue& item, const BodyNames& bodies) {
   Torque torque;
   torque.body = bodies.read_moving(item.required("body"));
   read_functions(item.required("torque"), torque.torque);
-  torque.frame = read_frame(item, Frame::body);
+  torque.frame = optional_or(item, "frame", read_frame, Frame::body);
   return torque;
 }
 
@@ -109,10 +101,7 @@ static_assert(std::size(kRead) == std::size(kForceTypes));
 }  // namespace
 
 Force read_force(const JsonValue& item, const BodyNames& bodies) {
-  const JsonValue type = item.required("type");
-  const auto* entry = std::ranges::find(kForceTypes, type.string(), &TypeName<std::size_t>::name);
-  if (entry == std::end(kForceTypes)) type.expected(one_of(kForceTypes));
-  Force force = kRead[entry->type](item, bodies);
+  Force force = kRead[read_entry(item.required("type"), kForceTypes).type](item, bodies);
   std::visit([&](auto& concrete) { concrete.name = optional_or(item, "name", read_name, std::string()); }, force);
   return force;
 }

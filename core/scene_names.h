@@ -23,6 +23,8 @@ class BodyNames {
   std::pair<int, int> read_pair(const JsonValue& value) const;  // [i, j]
 
  private:
+  int number(const JsonValue& value, std::string_view allowed, std::string_view first) const;
+
   const std::vector<Body>& bodies_;
   std::unordered_map<std::string_view, int> numbers_;
 };
