@@ -39,9 +39,4 @@ std::string after_colon(std::string_view first, const std::vector<Body>& bodies)
   return text.empty() ? "" : ": " + text;
 }
 
-std::string ItemNames::next(const std::string& given, std::string_view type) {
-  const int number = ++counts_[type];
-  return given.empty() ? fmt::format("{}{}", type, number) : given;
-}
-
 }  // namespace poinsot
