@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/element_error.h"
+#include "core/input_error.h"
 #include "core/line_search.h"
 #include "core/printable.h"
 #include "core/scene_names.h"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/definitions.h"
-#include "core/element_error.h"
+#include "core/input_error.h"
 #include "core/json_document.h"
 #include "core/places.h"
 #include "core/printable.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/element_error.h"
+#include "core/input_error.h"
 #include "core/scene.h"
 #include "core/scene_types.h"
 
