@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <ranges>
 
 #include "core/check.h"
 #include "core/index.h"
@@ -10,23 +12,17 @@
 namespace poinsot {
 namespace {
 
-std::vector<int> all_but(std::size_t count, const std::vector<int>& rows) {
-  std::vector<int> others;
-  auto next = rows.begin();
-  for (int k = 0; k < static_cast<int>(count); ++k) {
-    if (next != rows.end() && *next == k)
-      ++next;
-    else
-      others.push_back(k);
-  }
-  return others;
-}
-
 bool has_points(RowType type) {
   return type == RowType::DP2 || type == RowType::D || type == RowType::CD || type == RowType::pfaffian;
 }
 
 }  // namespace
+
+std::vector<int> all_but(std::size_t count, const std::vector<int>& some) {
+  std::vector<int> others;
+  std::ranges::set_difference(std::views::iota(0, static_cast<int>(count)), some, std::back_inserter(others));
+  return others;
+}
 
 std::vector<double> body_sizes(const Model& model) {
   std::vector<double> sizes(model.bodies.size(), 0.0);

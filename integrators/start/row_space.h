@@ -21,6 +21,9 @@ namespace poinsot {
 
 inline constexpr double kDependent = 1e-9, kIndependent = 1e-5;
 
+// The numbers below `count` that are not among `some`; both ascending.
+std::vector<int> all_but(std::size_t count, const std::vector<int>& some);
+
 // m, by body: the longest arm of a row on it; bodies without one take that of the bodies they share rows with.
 std::vector<double> body_sizes(const Model& model);
 
