@@ -69,7 +69,6 @@ class Assembler {
   }
 
  private:
-  const std::vector<int>& kept_out() const { return result_.rank.aside_here; }
   bool off_position() const { return before_.position > kSatisfied; }
   bool off_velocity() const { return before_.velocity > kSatisfied; }
 
@@ -77,19 +76,17 @@ class Assembler {
   void refuse_any() const {
     if (settings_.assembly != Assembly::never || !(off_position() || off_velocity())) return;
     const bool position = off_position();
+    const int row = position ? before_.position_row : before_.velocity_row;
+    const double by = position ? before_.position : before_.velocity;
     throw InputError(fmt::format("the initial {} violates {} by {}; allowed with --no-assemble: {:.0e}",
-                                 position ? "pose" : "velocity",
-                                 describe_row(*model_, position ? before_.position_row : before_.velocity_row),
-                                 position ? describe_residual(*model_, before_.position_row, before_.position, 0)
-                                          : describe_residual(*model_, before_.velocity_row, before_.velocity, 1),
-                                 kSatisfied));
+                                 position ? "pose" : "velocity", describe_row(*model_, row),
+                                 describe_residual(*model_, row, by, position ? 0 : 1), kSatisfied));
   }
 
   // A pose far from the constraints is closed first where the scene or the settings ask for it, or refused.
   void close_from_afar() {
     const std::vector<Gap> open = gaps(*model_, given_);
-    const auto size = [](const Gap& g) { return std::max(g.metres, g.radians); };
-    const auto most = std::ranges::max_element(open, {}, size);
+    const auto most = std::ranges::max_element(open, {}, &Gap::largest);
     const double limit = kNearlyRight * size_of(given_);
     if (open.empty() || (most->metres <= limit && most->radians <= std::min(limit, kQuarter))) return;
     const int group = static_cast<int>(most - open.begin());
@@ -161,7 +158,7 @@ class Assembler {
   // Position and velocity where they are off.
   Status project() {
     if (!off_position() && !off_velocity()) return {};
-    const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, kept_out());
+    const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, result_.rank.aside_here);
     std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
     check(problem->from_bodies(given_, q, v).ok(), "rA represents every orientation");
     Consistent consistent(*problem, settings_.linear());
@@ -228,8 +225,7 @@ class Assembler {
   // Redundant rows must hold where the others do.
   void refuse_conflicts() const {
     if (result_.rank.conflicts.empty()) return;
-    const auto size = [](const Conflict& c) { return c.by; };
-    const Conflict& worst = *std::ranges::max_element(result_.rank.conflicts, {}, size);
+    const Conflict& worst = *std::ranges::max_element(result_.rank.conflicts, {}, &Conflict::by);
     throw InputError(
         fmt::format("the constraints conflict: with the others satisfied, {} is still violated by {}; `poinsot check` "
                     "names what it depends on",

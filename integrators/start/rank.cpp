@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -23,13 +24,6 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr double kContradicts = 1e-6;  // of a body's size: by what the scene says
 constexpr double kNoLoad = 1e-7;       // of a null vector on unit rows
 constexpr int kManyRows = 20'000;      // of loops: one random direction is looked at in the place of two
-
-std::vector<int> united(std::vector<int> a, const std::vector<int>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  std::ranges::sort(a);
-  a.erase(std::unique(a.begin(), a.end()), a.end());
-  return a;
-}
 
 class Examination {
  public:
@@ -185,7 +179,9 @@ class Examination {
     };
     for (ColumnDependency& d : column_dependencies(part, kIndependent).columns)
       result_.singular.push_back({space_->rows()[index(kept[index(d.column)])], whole(std::move(d.others))});
-    result_.aside_here = united(result_.aside, whole(choose(few_null_vectors(part, kIndependent))));
+    result_.aside_here.clear();
+    std::ranges::set_union(result_.aside, whole(choose(few_null_vectors(part, kIndependent))),
+                           std::back_inserter(result_.aside_here));
     result_.rank_here = result_.rank - static_cast<int>(result_.singular.size());
   }
 

@@ -162,7 +162,7 @@ ClosedPose close_mechanism(const Model& model, std::span<const BodyState> given)
   result.states = std::move(closing.states());
   if (result.closed) return result;
   const std::vector<Gap> open = gaps(model, result.states);
-  const auto most = std::ranges::max_element(open, {}, [](const Gap& g) { return std::max(g.metres, g.radians); });
+  const auto most = std::ranges::max_element(open, {}, &Gap::largest);
   result.worst = static_cast<int>(most - open.begin());
   result.gap = *most;
   return result;

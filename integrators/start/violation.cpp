@@ -20,12 +20,7 @@ std::string describe_residual(const Model& model, int row, double value, int ord
 std::vector<BodyState> given_state(const Model& model) {
   std::vector<BodyState> states;
   for (const Body& body : model.bodies) {
-    BodyState state;
-    state.r = body.position;
-    state.A = body.orientation;
-    state.rd = body.velocity;
-    state.w = body.angular_velocity;
-    states.push_back(state);
+    states.push_back({.r = body.position, .A = body.orientation, .rd = body.velocity, .w = body.angular_velocity});
   }
   return states;
 }
@@ -38,20 +33,14 @@ Violation violation(const std::shared_ptr<const Model>& model, const std::vector
   problem->set_velocity(v);
   std::vector<double> r(static_cast<std::size_t>(problem->nc()));
   Violation largest;
+  const auto find_largest = [&](double& most, int& row) {
+    for (std::size_t k = 0; k < r.size(); ++k)
+      if (!(std::abs(r[k]) <= most)) most = std::abs(r[k]), row = static_cast<int>(k);
+  };
   problem->position_residual(r);
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    if (!(std::abs(r[k]) <= largest.position)) {
-      largest.position = std::abs(r[k]);
-      largest.position_row = static_cast<int>(k);
-    }
-  }
+  find_largest(largest.position, largest.position_row);
   problem->velocity_residual(r);
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    if (!(std::abs(r[k]) <= largest.velocity)) {
-      largest.velocity = std::abs(r[k]);
-      largest.velocity_row = static_cast<int>(k);
-    }
-  }
+  find_largest(largest.velocity, largest.velocity_row);
   return largest;
 }
 
