@@ -95,7 +95,7 @@ void tell_axes(const Model& model, std::vector<std::string>& sentences) {
   struct Hinge {
     std::pair<int, int> bodies;
     Vector3 axis;  // in the frame of the first
-    std::size_t group;
+    const Group* joint;
   };
   std::vector<Hinge> hinges;  // from either body
   std::size_t doubts = 0;
@@ -113,17 +113,13 @@ void tell_axes(const Model& model, std::vector<std::string>& sentences) {
       first = fmt::format(
           "{} '{}' turns about an axis {:.3g} rad from that of joint '{}' on the same bodies: it is taken in the frame "
           "of {}, where a joint's \"axis\" is global",
-          kind, name, least, model.groups[nearest->group].name, frame_of(model, i));
+          kind, name, least, nearest->joint->name, frame_of(model, i));
   };
-  std::size_t joint = 0;
-  for (std::size_t k = 0; k < model.groups.size(); ++k) {
-    const Group& group = model.groups[k];
-    if (group.kind != GroupKind::joint) continue;
-    const JointFrames& frames = model.joints[joint++];
-    if (group.type != "revolute" && group.type != "cylindrical") continue;
-    hinges.push_back({{group.i, group.j}, frames.axis_i, k});
-    hinges.push_back({{group.j, group.i}, frames.axis_j, k});
-  }
+  for_each_joint(model, [&](const Group& joint, const JointFrames& frames) {
+    if (joint.type != "revolute" && joint.type != "cylindrical") return;
+    hinges.push_back({{joint.i, joint.j}, frames.axis_i, &joint});
+    hinges.push_back({{joint.j, joint.i}, frames.axis_j, &joint});
+  });
   std::ranges::stable_sort(hinges, {}, &Hinge::bodies);
   for (const Group& group : model.groups) {
     const Row& row = model.rows[static_cast<std::size_t>(group.first_row)];

@@ -89,17 +89,14 @@ std::vector<std::string> Signals::names(const Model& model) {
 
 std::vector<FollowedAngle> joint_angles(const Model& model) {
   std::vector<FollowedAngle> angles;
-  std::size_t k = 0;
-  for (const Group& group : model.groups) {
-    if (group.kind != GroupKind::joint) continue;
-    const JointFrames& f = model.joints[k++];
+  for_each_joint(model, [&](const Group& group, const JointFrames& f) {
     const bool universal = group.type == type_name(JointType::universal);
     const bool turns = group.type == type_name(JointType::revolute) || group.type == type_name(JointType::cylindrical);
     if (turns) angles.push_back({group.i, group.j, f.a_i, f.axis_i.cross(f.a_i), f.a_j});
-    if (!universal) continue;
+    if (!universal) return;
     angles.push_back({group.i, group.j, f.a_i, f.axis_i.cross(f.a_i), f.axis_j});
     angles.push_back({group.j, group.i, f.a_j, f.axis_j.cross(f.a_j), f.axis_i});  // of i relative to j
-  }
+  });
   return angles;
 }
 
@@ -143,10 +140,9 @@ void Signals::add_totals() {
 }
 
 void Signals::add_joints() {
-  const Model& model = sample_->problem.model();
-  std::size_t joint = 0, followed = 0;
-  for (const Group& group : model.groups)
-    if (group.kind == GroupKind::joint) add_joint(group, model.joints[joint++], followed);
+  std::size_t followed = 0;
+  for_each_joint(sample_->problem.model(),
+                 [&](const Group& group, const JointFrames& f) { add_joint(group, f, followed); });
 }
 
 void Signals::add_joint(const Group& group, const JointFrames& f, std::size_t& followed) {

@@ -37,24 +37,19 @@ double own_size(const Body& body) {
 
 void tell_far_joints(const Model& model, std::vector<std::string>& notices) {
   constexpr double kFar = 2;
+  if (model.joints.empty()) return;
   double first = 0, second = 0;  // the two longest arms
-  std::size_t k = 0;
-  for (const Group& group : model.groups) {
-    if (group.kind != GroupKind::joint) continue;
-    const double a = arm(group, model.joints[k++]);
+  for_each_joint(model, [&](const Group& group, const JointFrames& f) {
+    const double a = arm(group, f);
     second = std::max(second, std::min(first, a));
     first = std::max(first, a);
-  }
-  if (k == 0) return;
+  });
   const double centres = extent(model.bodies);
-  k = 0;
-  for (const Group& group : model.groups) {
-    if (group.kind != GroupKind::joint) continue;
-    const JointFrames& f = model.joints[k++];
+  for_each_joint(model, [&](const Group& group, const JointFrames& f) {
     const double a = arm(group, f), others = std::max(centres, a == first ? second : first);
     const bool alone = others == 0;
     const double size = alone ? own_size(model.bodies[index(group.i == kGround ? group.j : group.i)]) : others;
-    if (group.body_fixed || a <= kFar * size) continue;
+    if (group.body_fixed || a <= kFar * size) return;
     const auto from = [&](int body, const Vector3& s) {
       return body == kGround ? std::string()
                              : fmt::format(" {:.3g} m from '{}'", s.norm(), model.bodies[index(body)].name);
@@ -64,7 +59,7 @@ void tell_far_joints(const Model& model, std::vector<std::string>& notices) {
         "joint '{}' is far from its bodies:{}{}{}, where {} {:.3g} m; is its point meant?", group.name, i,
         i.empty() || j.empty() ? "" : " and", j,
         alone ? "the body's size and its way from the origin are at most" : "the mechanism without it measures", size));
-  }
+  });
 }
 
 }  // namespace poinsot
