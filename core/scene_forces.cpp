@@ -22,7 +22,7 @@ double read_number(const JsonValue& value) {
   return value.number();
 }
 
-PointForce read_point_force(const JsonValue& item, const BodyNames& bodies) {
+Force read_point_force(const JsonValue& item, const BodyNames& bodies) {
   item.keys("a force", {"type", "name", "body", "point", "force", "frame"});
   PointForce force;
   force.body = bodies.read_moving(item.required("body"));
@@ -32,7 +32,7 @@ PointForce read_point_force(const JsonValue& item, const BodyNames& bodies) {
   return force;
 }
 
-Torque read_torque(const JsonValue& item, const BodyNames& bodies) {
+Force read_torque(const JsonValue& item, const BodyNames& bodies) {
   item.keys("a torque", {"type", "name", "body", "torque", "frame"});
   Torque torque;
   torque.body = bodies.read_moving(item.required("body"));
@@ -55,7 +55,7 @@ void read_law(const JsonValue& item, Spring& spring) {
   }
 }
 
-Spring read_spring(const JsonValue& item, const BodyNames& bodies) {
+Force read_spring(const JsonValue& item, const BodyNames& bodies) {
   item.keys("a spring", {"type", "name", "bodies", "s_i", "s_j", "stiffness", "damping", "length", "law"});
   Spring spring;
   std::tie(spring.i, spring.j) = bodies.read_pair(item.required("bodies"));
@@ -66,7 +66,7 @@ Spring read_spring(const JsonValue& item, const BodyNames& bodies) {
   return spring;
 }
 
-TorsionSpring read_torsion_spring(const JsonValue& item, const BodyNames& bodies) {
+Force read_torsion_spring(const JsonValue& item, const BodyNames& bodies) {
   item.keys("a torsion spring",
             {"type", "name", "bodies", "axis", "a_i", "a_j", "stiffness", "damping", "angle", "law"});
   TorsionSpring spring;
@@ -78,7 +78,7 @@ TorsionSpring read_torsion_spring(const JsonValue& item, const BodyNames& bodies
   return spring;
 }
 
-LinearDrag read_linear_drag(const JsonValue& item, const BodyNames& bodies) {
+Force read_linear_drag(const JsonValue& item, const BodyNames& bodies) {
   item.keys("a linear drag", {"type", "name", "body", "translational", "rotational"});
   LinearDrag drag;
   drag.body = bodies.read_moving(item.required("body"));
@@ -87,15 +87,9 @@ LinearDrag read_linear_drag(const JsonValue& item, const BodyNames& bodies) {
   return drag;
 }
 
-template <auto read>
-Force as_force(const JsonValue& item, const BodyNames& bodies) {
-  return read(item, bodies);
-}
-
 // In the order of kForceTypes.
 constexpr Force (*kRead[])(const JsonValue& item, const BodyNames& bodies) = {
-    as_force<read_point_force>, as_force<read_torque>, as_force<read_spring>, as_force<read_torsion_spring>,
-    as_force<read_linear_drag>};
+    read_point_force, read_torque, read_spring, read_torsion_spring, read_linear_drag};
 static_assert(std::size(kRead) == std::size(kForceTypes));
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 #include "core/check.h"
 #include "core/index.h"
@@ -127,39 +128,33 @@ class Assembler {
 
   // The way each body was moved.
   void tell_closed(const ClosedPose& pose, int group, const Gap& gap) {
-    double turn = 0;
-    std::size_t turned = 0;
+    std::vector<Gap> ways(given_.size());
+    for (std::size_t b = 0; b < given_.size(); ++b)
+      ways[b] = {(pose.states[b].r - given_[b].r).norm(), turn_between(given_[b].A, pose.states[b].A)};
     std::vector<std::size_t> order(given_.size());
-    std::vector<double> moved(given_.size()), angle(given_.size());
-    for (std::size_t b = 0; b < given_.size(); ++b) {
-      order[b] = b;
-      moved[b] = (pose.states[b].r - given_[b].r).norm();
-      angle[b] = turn_between(given_[b].A, pose.states[b].A);
-      if (angle[b] > turn) turn = angle[b], turned = b;
-    }
-    std::ranges::stable_sort(order, std::greater(), [&](std::size_t b) { return std::max(moved[b], angle[b]); });
-    result_.notices.push_back(
-        fmt::format("initial pose assembled: {} was open by {}; {}", describe_group(*model_, group), describe(gap),
-                    listed(order, [&](std::size_t b) {
-                      return fmt::format("'{}' {}", model_->bodies[b].name,
-                                         describe({moved[b], angle[b]}, "moved by ", "turned by "));
-                    })));
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::greater(), [&](std::size_t b) { return ways[b].largest(); });
+    result_.notices.push_back(fmt::format(
+        "initial pose assembled: {} was open by {}; {}", describe_group(*model_, group), describe(gap),
+        listed(order, [&](std::size_t b) {
+          return fmt::format("'{}' {}", model_->bodies[b].name, describe(ways[b], "moved by ", "turned by "));
+        })));
     if (pose.from_beside)
       result_.notices.push_back(
           "the given pose is a singular one, from which the constraints can be closed in several ways, and one was "
           "taken; start nearer to the one that is meant");
-    else if (turn > kBranch)
+    else if (const auto most = std::ranges::max_element(ways, {}, &Gap::radians); most->radians > kBranch)
       result_.notices.push_back(fmt::format(
           "body '{}' had to turn by {:.3g} rad: on so long a way there can be other positions that close the "
           "mechanism; if another is meant, start nearer to it",
-          model_->bodies[turned].name, turn));
+          model_->bodies[index(most - ways.begin())].name, most->radians));
   }
 
   // Position and velocity where they are off.
   Status project() {
     if (!off_position() && !off_velocity()) return {};
     const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, result_.rank.aside_here);
-    std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
+    std::vector<double> q(index(problem->nq())), v(index(problem->nv()));
     check(problem->from_bodies(given_, q, v).ok(), "rA represents every orientation");
     Consistent consistent(*problem, settings_.linear());
     if (off_position()) {

@@ -27,11 +27,11 @@ std::vector<BodyState> given_state(const Model& model) {
 
 Violation violation(const std::shared_ptr<const Model>& model, const std::vector<BodyState>& states) {
   const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model, {});
-  std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
+  std::vector<double> q(index(problem->nq())), v(index(problem->nv()));
   check(problem->from_bodies(states, q, v).ok(), "rA represents every orientation");
   problem->set_position(0, q);
   problem->set_velocity(v);
-  std::vector<double> r(static_cast<std::size_t>(problem->nc()));
+  std::vector<double> r(index(problem->nc()));
   Violation largest;
   const auto find_largest = [&](double& most, int& row) {
     for (std::size_t k = 0; k < r.size(); ++k)
