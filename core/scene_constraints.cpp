@@ -11,11 +11,6 @@
 namespace poinsot {
 namespace {
 
-template <class Item>
-void read_bodies(const JsonValue& item, const BodyNames& bodies, Item& out) {
-  std::tie(out.i, out.j) = bodies.read_pair(item.required("bodies"));
-}
-
 void read_points(const JsonValue& item, Vector3& s_i, Vector3& s_j) {
   s_i = read_vector(item.required("s_i"));
   s_j = read_vector(item.required("s_j"));
@@ -59,7 +54,7 @@ Constraint read_constraint(const JsonValue& item, const BodyNames& bodies) {
       read_points(item, c.s_i, c.s_j);
       break;
   }
-  read_bodies(item, bodies, c);
+  std::tie(c.i, c.j) = bodies.read_pair(item.required("bodies"));
   c.f = optional_or(item, "f", read_function, Expression());
   c.name = optional_or(item, "name", read_name, std::string());
   return c;
@@ -112,7 +107,7 @@ Joint read_joint(const JsonValue& item, const BodyNames& bodies) {
     }
     j.point = read_vector(item.required("point"));
   }
-  read_bodies(item, bodies, j);
+  std::tie(j.i, j.j) = bodies.read_pair(item.required("bodies"));
   j.name = optional_or(item, "name", read_name, std::string());
   return j;
 }
@@ -131,7 +126,7 @@ Driver read_driver(const JsonValue& item, const BodyNames& bodies) {
     read_points(item, d.s_i, d.s_j);
     d.value = read_function(item.required("length"));
   }
-  read_bodies(item, bodies, d);
+  std::tie(d.i, d.j) = bodies.read_pair(item.required("bodies"));
   d.name = optional_or(item, "name", read_name, std::string());
   return d;
 }
