@@ -22,11 +22,10 @@ std::shared_ptr<const Spline> read_table(const std::string& name, const JsonValu
   for (std::size_t k = 0; k < size; ++k) {
     const JsonValue point = points.at(k);
     if (point.size("a point [x, y]") != 2) point.expected("a point [x, y]");
-    const JsonValue first = point.at(0), second = point.at(1);
-    x.push_back(first.number());
-    y.push_back(second.number());
+    x.push_back(point.at(0).number());
+    y.push_back(point.at(1).number());
     if (k > 0 && !(x[k] > x[k - 1]))
-      first.fail(fmt::format("found {}, expected more than {}, the x before it", x[k], x[k - 1]));
+      point.at(0).fail(fmt::format("found {}, expected more than {}, the x before it", x[k], x[k - 1]));
   }
   return std::make_shared<const Spline>(name, std::move(x), y);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <utility>
 
@@ -50,17 +51,15 @@ Trial Beside::begin(const std::vector<int>& without) const {
 
 double Beside::extent(std::span<const double> dq) const {
   double largest = 0;
-  for (std::size_t b = 0; b < sizes_.size(); ++b)
-    for (std::size_t k = 0; k < 6; ++k)
-      largest = std::max(largest, std::abs(dq[6 * b + k]) / (k < 3 ? sizes_[b] : 1.0));
+  const std::size_t per_body = dq.size() / sizes_.size();
+  for (std::size_t k = 0; k < dq.size(); ++k)
+    largest = std::max(largest, std::abs(dq[k]) / (k % per_body < 3 ? sizes_[k / per_body] : 1.0));
   return largest;
 }
 double Beside::distance(std::span<const double> q, std::span<const double> from) const {
-  double largest = 0;
-  const std::size_t per_body = q.size() / sizes_.size();
-  for (std::size_t k = 0; k < q.size(); ++k)
-    largest = std::max(largest, std::abs(q[k] - from[k]) / (k % per_body < 3 ? sizes_[k / per_body] : 1.0));
-  return largest;
+  std::vector<double> difference(q.size());
+  std::ranges::transform(q, from, difference.begin(), std::minus());
+  return extent(difference);
 }
 
 std::optional<Place> Beside::along_velocities(Trial& trial) {

@@ -143,8 +143,7 @@ class Examination {
       for (int k = 0; k < columns.cols(); ++k) loaded[index(row(k).group)] = 1;
     } else {
       for (const SparseEntries& z : null.vectors) {
-        double largest = 0;
-        for (const auto& [column, value] : z) largest = std::max(largest, std::abs(value));
+        const double size = largest(z);
         for (auto first = z.begin(); first != z.end();) {
           const int group = row(first->first).group;
           const Row& of = row(first->first);
@@ -153,7 +152,7 @@ class Examination {
           for (; first != z.end() && row(first->first).group == group; ++first)
             for (Sparse::InnerIterator it(columns, first->first); it; ++it)
               if (it.row() / 6 == body) load[it.row() % 6] += first->second * it.value();
-          if (load.norm() > kNoLoad * largest) loaded[index(group)] = 1;
+          if (load.norm() > kNoLoad * size) loaded[index(group)] = 1;
         }
       }
     }
