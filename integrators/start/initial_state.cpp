@@ -15,7 +15,6 @@
 #include "formulations/registry.h"
 #include "integrators/start/closure.h"
 #include "integrators/start/far_bodies.h"
-#include "integrators/start/far_joints.h"
 #include "integrators/start/rank.h"
 #include "integrators/start/rough_pose.h"
 #include "integrators/stepping/consistent.h"
