@@ -135,15 +135,8 @@ std::string value_text(const SettingEntry& entry, const Settings& settings) {
   if (std::holds_alternative<std::optional<double> Settings::*>(entry.member) && !settings.atol) return "rtol/100";
   if (const std::optional<double> number = number_of(entry, settings)) return fmt::format("{}", *number);
   if (entry.names) return entry.names()[static_cast<std::size_t>(settings.analysis)];
-  switch (settings.assembly) {
-    case Assembly::always:
-      return "true";
-    case Assembly::never:
-      return "false";
-    case Assembly::small:
-      break;
-  }
-  return "where the violation is small";
+  if (settings.assembly == Assembly::small) return "where the violation is small";
+  return settings.assembly == Assembly::always ? "true" : "false";
 }
 
 }  // namespace poinsot

@@ -267,11 +267,7 @@ class Assembler {
 }  // namespace
 
 InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings) {
-  if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) {
-    InitialState none;
-    none.status = no_value(0, fault);
-    return none;
-  }
+  if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) return {no_value(0, fault), {}, {}, {}};
   return Assembler(model, settings).run();
 }
 

@@ -211,15 +211,9 @@ std::vector<int> RankAnalysis::dependent_rows() const {
 }
 
 std::string describe(const Conflict& conflict) {
-  switch (conflict.level) {
-    case Conflict::Level::position:
-      return fmt::format("{:.3g} m (position)", conflict.by);
-    case Conflict::Level::velocity:
-      return fmt::format("{:.3g} m/s (velocity)", conflict.by);
-    case Conflict::Level::later:
-      return fmt::format("{:.3g} m (position, at t = {:.3g} s)", conflict.by, conflict.time);
-  }
-  return {};
+  if (conflict.level == Conflict::Level::velocity) return fmt::format("{:.3g} m/s (velocity)", conflict.by);
+  if (conflict.level == Conflict::Level::position) return fmt::format("{:.3g} m (position)", conflict.by);
+  return fmt::format("{:.3g} m (position, at t = {:.3g} s)", conflict.by, conflict.time);
 }
 
 RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states,

@@ -102,22 +102,13 @@ double RowSpace::rounding_of(const Row& row, std::span<const BodyState> states) 
   const auto place = [&](int body, const Vector3& s) {
     return s.norm() + (body == kGround ? 0.0 : states[index(body)].r.norm());
   };
-  switch (row.type) {
-    case RowType::DP1:
-    case RowType::angle: {
-      double size = 0;
-      for (const int body : {row.i, row.j})
-        if (body != kGround) size = std::max(size, 1 / sizes_[index(body)]);
-      return kDependent * row.a_i.norm() * row.a_j.norm() * size;
-    }
-    case RowType::D:
-      return kDependent * 2 * (place(row.i, row.s_i) + place(row.j, row.s_j));
-    case RowType::DP2:
-    case RowType::CD:
-    case RowType::pfaffian:
-      return 0;
+  if (row.type == RowType::DP1 || row.type == RowType::angle) {
+    double size = 0;
+    for (const int body : {row.i, row.j})
+      if (body != kGround) size = std::max(size, 1 / sizes_[index(body)]);
+    return kDependent * row.a_i.norm() * row.a_j.norm() * size;
   }
-  return 0;
+  return row.type == RowType::D ? kDependent * 2 * (place(row.i, row.s_i) + place(row.j, row.s_j)) : 0;
 }
 
 void RowSpace::distances(std::span<double> out) const {
