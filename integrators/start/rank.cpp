@@ -108,8 +108,7 @@ class Examination {
     space_->rates(start.v, rate, nu);
     const double speed = beside_->extent(start.v);
     for (const int row : without) {
-      const std::size_t k =
-          index(static_cast<int>(std::ranges::lower_bound(space_->rows(), row) - space_->rows().begin()));
+      const std::size_t k = index(std::ranges::lower_bound(space_->rows(), row) - space_->rows().begin());
       const double size = space_->size_of_row(k), length = space_->lengths()[k];
       const double rate_off = std::abs(rate[k]) / length;
       if (off[k] > kContradicts * size)

@@ -86,7 +86,7 @@ void RowSpace::stand(double t, std::span<const BodyState> states) {
   for (int k = 0; k < Gt_.outerSize(); ++k) {
     double sum = 0;
     for (Eigen::SparseMatrix<double>::InnerIterator it(Gt_, k); it; ++it) {
-      if (it.row() % 6 >= 3) it.valueRef() /= sizes_[index(static_cast<int>(it.row()) / 6)];
+      if (it.row() % 6 >= 3) it.valueRef() /= sizes_[index(it.row() / 6)];
       sum += it.value() * it.value();
     }
     const double rounding = rounding_of(model_->rows[index(rows_[index(k)])], states);
