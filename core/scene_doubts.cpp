@@ -84,10 +84,6 @@ void tell_lengths(const Model& model, std::vector<std::string>& sentences) {
                     model.bodies[lengths.most.second].name, lengths.most.first));
 }
 
-std::string frame_of(const Model& model, int body) {
-  return body == kGround ? "the ground" : fmt::format("'{}'", model.bodies[static_cast<std::size_t>(body)].name);
-}
-
 // Angle drivers and torsion springs on a hinge that turn about another line than the hinge: a direction in body i's
 // frame was given as a global one. To the digits that axes are given with.
 void tell_axes(const Model& model, std::vector<std::string>& sentences) {
@@ -104,16 +100,17 @@ void tell_axes(const Model& model, std::vector<std::string>& sentences) {
     const std::pair bodies(i, j);
     const Hinge* nearest = nullptr;
     double least = HUGE_VAL;  // rad
-    for (auto at = std::ranges::lower_bound(hinges, bodies, {}, &Hinge::bodies);
-         at != hinges.end() && at->bodies == bodies; ++at)
-      if (const double apart = std::atan2(at->axis.cross(axis).norm(), std::abs(at->axis.dot(axis))); apart < least)
-        nearest = &*at, least = apart;
+    for (const Hinge& hinge : std::ranges::equal_range(hinges, bodies, {}, &Hinge::bodies))
+      if (const double apart = std::atan2(hinge.axis.cross(axis).norm(), std::abs(hinge.axis.dot(axis))); apart < least)
+        nearest = &hinge, least = apart;
     if (!nearest || least <= kDigits) return;
-    if (doubts++ == 0)
-      first = fmt::format(
-          "{} '{}' turns about an axis {:.3g} rad from that of joint '{}' on the same bodies: it is taken in the frame "
-          "of {}, where a joint's \"axis\" is global",
-          kind, name, least, nearest->joint->name, frame_of(model, i));
+    if (doubts++ > 0) return;
+    const std::string frame_of =
+        i == kGround ? "the ground" : fmt::format("'{}'", model.bodies[static_cast<std::size_t>(i)].name);
+    first = fmt::format(
+        "{} '{}' turns about an axis {:.3g} rad from that of joint '{}' on the same bodies: it is taken in the frame "
+        "of {}, where a joint's \"axis\" is global",
+        kind, name, least, nearest->joint->name, frame_of);
   };
   for_each_joint(model, [&](const Group& joint, const JointFrames& frames) {
     if (joint.type != "revolute" && joint.type != "cylindrical") return;

@@ -82,11 +82,6 @@ bool load_tables(JsonDocument& document, const std::filesystem::path& folder) {
   return any;
 }
 
-void require_keys(const JsonDocument& document) {
-  document.root().keys("a scene", {"$schema", "scene", "name", "about", "parameters", "tables", "gravity", "bodies",
-                                   "constraints", "joints", "drivers", "forces"});
-}
-
 // The items of a section. Those of all sections but "bodies" are read with the names of bodies.
 template <class Item, class Read, class... Names>
 void read_items(const JsonValue& root, std::string_view section, std::vector<Item>& items,
@@ -164,7 +159,8 @@ Scene parse_scene(std::string_view text, std::string_view file, const ParameterV
   Scene scene;
   with_lines_of_errors(text, [&] {
     JsonDocument document(text, file);
-    require_keys(document);
+    document.root().keys("a scene", {"$schema", "scene", "name", "about", "parameters", "tables", "gravity", "bodies",
+                                     "constraints", "joints", "drivers", "forces"});
     const bool with_values = set_parameters(document, set);
     const bool with_files = load_tables(document, std::filesystem::path(file).parent_path());
     CallingItems none;  // are of interest

@@ -10,13 +10,6 @@
 #include "formulations/registry.h"
 
 namespace poinsot {
-namespace {
-
-bool has_points(RowType type) {
-  return type == RowType::DP2 || type == RowType::D || type == RowType::CD || type == RowType::pfaffian;
-}
-
-}  // namespace
 
 std::vector<int> all_but(std::size_t count, const std::vector<int>& some) {
   std::vector<int> others;
@@ -34,7 +27,7 @@ std::vector<double> body_sizes(const Model& model) {
     return model.bodies[index(body)].position + model.bodies[index(body)].orientation * s;
   };
   for (const Row& row : model.rows) {
-    if (!has_points(row.type)) continue;
+    if (row.type == RowType::DP1 || row.type == RowType::angle) continue;  // without points
     widen(row.i, row.s_i.norm());
     widen(row.j, row.s_j.norm());
     if (row.type == RowType::DP2) widen(row.i, (place(row.j, row.s_j) - place(row.i, row.s_i)).norm());
