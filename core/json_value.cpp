@@ -26,17 +26,7 @@ std::string describe(const nlohmann::json& value) {
 }
 
 std::string pointer_token(std::string_view key) {
-  std::string token;
-  for (const char c : printable(key)) {
-    if (c == '~') {
-      token += "~0";
-    } else if (c == '/') {
-      token += "~1";
-    } else {
-      token += c;
-    }
-  }
-  return token;
+  return (nlohmann::json::json_pointer() / printable(key)).to_string().substr(1);  // behind its '/'
 }
 
 std::string JsonValue::path() const {

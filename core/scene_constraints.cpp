@@ -21,47 +21,6 @@ Constraint::Alternate read_alternate(const JsonValue& value) {
   return {read_vector(value.required("a_i")), read_vector(value.required("a_j")), read_function(value.required("f"))};
 }
 
-}  // namespace
-
-Constraint read_constraint(const JsonValue& item, const BodyNames& bodies) {
-  const ConstraintType type = read_entry(item.required("type"), kConstraintTypes).type;
-  Constraint c;
-  c.type = type;
-  switch (type) {
-    case ConstraintType::DP1:
-      item.keys("a DP1", {"type", "name", "bodies", "a_i", "a_j", "f", "alternate"});
-      c.a_i = read_vector(item.required("a_i"));
-      c.a_j = read_vector(item.required("a_j"));
-      if (const auto alternate = item.optional("alternate")) c.alternate = read_alternate(*alternate);
-      break;
-    case ConstraintType::DP2:
-      item.keys("a DP2", {"type", "name", "bodies", "a_i", "s_i", "s_j", "f"});
-      c.a_i = read_vector(item.required("a_i"));
-      read_points(item, c.s_i, c.s_j);
-      break;
-    case ConstraintType::D:
-      item.keys("a D", {"type", "name", "bodies", "s_i", "s_j", "f"});
-      read_points(item, c.s_i, c.s_j);
-      break;
-    case ConstraintType::CD:
-      item.keys("a CD", {"type", "name", "bodies", "c", "s_i", "s_j", "f"});
-      c.c = read_vector(item.required("c"));
-      read_points(item, c.s_i, c.s_j);
-      break;
-    case ConstraintType::pfaffian:
-      item.keys("a pfaffian constraint", {"type", "name", "bodies", "a_j", "s_i", "s_j", "f"});
-      c.a_j = read_vector(item.required("a_j"));
-      read_points(item, c.s_i, c.s_j);
-      break;
-  }
-  std::tie(c.i, c.j) = bodies.read_pair(item.required("bodies"));
-  c.f = optional_or(item, "f", read_function, Expression());
-  c.name = optional_or(item, "name", read_name, std::string());
-  return c;
-}
-
-namespace {
-
 bool has_any(const JsonValue& item, std::initializer_list<std::string_view> keys) {
   return std::ranges::any_of(keys, [&](std::string_view key) { return item.optional(key).has_value(); });
 }
@@ -83,6 +42,40 @@ JointFrames read_frames(const JsonValue& item, std::string_view owner, JointType
 }
 
 }  // namespace
+
+Constraint read_constraint(const JsonValue& item, const BodyNames& bodies) {
+  const ConstraintType type = read_entry(item.required("type"), kConstraintTypes).type;
+  Constraint c;
+  c.type = type;
+  switch (type) {
+    case ConstraintType::DP1:
+      item.keys("a DP1", {"type", "name", "bodies", "a_i", "a_j", "f", "alternate"});
+      c.a_i = read_vector(item.required("a_i"));
+      c.a_j = read_vector(item.required("a_j"));
+      if (const auto alternate = item.optional("alternate")) c.alternate = read_alternate(*alternate);
+      break;
+    case ConstraintType::DP2:
+      item.keys("a DP2", {"type", "name", "bodies", "a_i", "s_i", "s_j", "f"});
+      c.a_i = read_vector(item.required("a_i"));
+      break;
+    case ConstraintType::D:
+      item.keys("a D", {"type", "name", "bodies", "s_i", "s_j", "f"});
+      break;
+    case ConstraintType::CD:
+      item.keys("a CD", {"type", "name", "bodies", "c", "s_i", "s_j", "f"});
+      c.c = read_vector(item.required("c"));
+      break;
+    case ConstraintType::pfaffian:
+      item.keys("a pfaffian constraint", {"type", "name", "bodies", "a_j", "s_i", "s_j", "f"});
+      c.a_j = read_vector(item.required("a_j"));
+      break;
+  }
+  if (type != ConstraintType::DP1) read_points(item, c.s_i, c.s_j);
+  std::tie(c.i, c.j) = bodies.read_pair(item.required("bodies"));
+  c.f = optional_or(item, "f", read_function, Expression());
+  c.name = optional_or(item, "name", read_name, std::string());
+  return c;
+}
 
 Joint read_joint(const JsonValue& item, const BodyNames& bodies) {
   const auto& [type_name, type] = read_entry(item.required("type"), kJointTypes);
