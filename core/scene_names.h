@@ -43,6 +43,15 @@ inline const std::string& given_name(const Force& force) {
   return std::visit([](const auto& f) -> const std::string& { return f.name; }, force);
 }
 
+// Of these, as a scene file writes it.
+template <class Item>
+const char* type_of(const Item& item) {
+  return type_name(item.type);
+}
+inline const char* type_of(const Force& force) {
+  return type_name(force);
+}
+
 // What has no name is called by its type and number: the third revolute joint is "revolute3".
 class ItemNames {
  public:

@@ -58,12 +58,7 @@ template <class Type>
 constexpr const char* type_name(Type type) {
   return type_names(type)[static_cast<std::size_t>(type)].name;
 }
-// Of a constraint, a joint, a driver or a force.
-template <class Item>
-constexpr const char* type_of(const Item& item) {
-  return type_name(item.type);
-}
-inline const char* type_of(const Force& force) {
+inline const char* type_name(const Force& force) {
   return std::holds_alternative<CallbackForce>(force) ? "callback" : kForceTypes[force.index()].name;
 }
 
