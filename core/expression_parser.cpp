@@ -29,7 +29,7 @@ constexpr Named<TapeOp> kFunctions[] = {
 constexpr Named<double> kConstants[] = {{"pi", std::numbers::pi}, {"e", std::numbers::e}};
 
 template <class Value>
-const Value* look_up(std::span<const Named<Value>> table, std::string_view name) {
+const Value* value_of(std::span<const Named<Value>> table, std::string_view name) {
   const auto found = std::ranges::find(table, name, &Named<Value>::name);
   return found == table.end() ? nullptr : &found->value;
 }
@@ -126,9 +126,9 @@ class Parser {
                         start + 1, *variable == TapeOp::rate ? "the rate" : "the elongation or angle"));
       }
       push({*variable, 0});
-    } else if (const double* constant = look_up<double>(kConstants, found)) {
+    } else if (const double* constant = value_of<double>(kConstants, found)) {
       push({TapeOp::constant, *constant});
-    } else if (const TapeOp* function = look_up<TapeOp>(kFunctions, found)) {
+    } else if (const TapeOp* function = value_of<TapeOp>(kFunctions, found)) {
       expect('(');
       sum();
       if (arity(*function) == 2) {
@@ -273,8 +273,8 @@ std::string_view Expression::why_no_name(std::string_view name) {
   if (!begins || !std::ranges::all_of(name, [](char c) { return is_letter(c) || is_digit(c); }))
     return "no name that expressions can hold (letters, digits and _, a letter first)";
   if (name == "t") return "the time in expressions";
-  if (look_up<double>(kConstants, name)) return "a constant of expressions";
-  if (look_up<TapeOp>(kFunctions, name)) return "a function of expressions";
+  if (value_of<double>(kConstants, name)) return "a constant of expressions";
+  if (value_of<TapeOp>(kFunctions, name)) return "a function of expressions";
   return {};
 }
 
