@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <unordered_map>
 
+#include "core/counted.h"
 #include "core/nearest_rotation.h"
 #include "core/scene_validation.h"
 #include "core/validation_rules.h"
@@ -61,8 +62,8 @@ void shape(const Place& at, const Shape& s) {
       break;
     case ShapeType::polyline:
       if (s.points.size() < 2)
-        at.fail("shape/points", fmt::format("found {}, expected an array of at least 2 points",
-                                            s.points.empty() ? "an array of 0 values" : "an array of 1 value"));
+        at.fail("shape/points", fmt::format("found an array of {}, expected an array of at least 2 points",
+                                            counted(s.points.size(), "value")));
       for (std::size_t k = 0; k < s.points.size(); ++k) finite(at, fmt::format("shape/points/{}", k), s.points[k]);
       break;
   }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <ranges>
 #include <span>
 #include <utility>
 
@@ -21,21 +22,19 @@ std::shared_ptr<const Spline> read_table(const std::string& name, const JsonValu
   for (std::size_t k = 0; k < size; ++k) {
     const JsonValue point = points.at(k);
     if (point.size("a point [x, y]") != 2) point.expected("a point [x, y]");
-    const JsonValue first = point.at(0), second = point.at(1);
-    x.push_back(first.number());
-    y.push_back(second.number());
+    x.push_back(point.at(0).number());
+    y.push_back(point.at(1).number());
     if (k > 0 && !(x[k] > x[k - 1]))
-      first.fail(fmt::format("found {}, expected more than {}, the x before it", x[k], x[k - 1]));
+      point.at(0).fail(fmt::format("found {}, expected more than {}, the x before it", x[k], x[k - 1]));
   }
   return std::make_shared<const Spline>(name, std::move(x), y);
 }
 
+// ", the parameters l, w"; empty where there are none.
 template <class Entries>
-std::string names_of(const Entries& entries, std::string_view one, std::string_view many) {
+std::string names_of(const Entries& entries, std::string_view what) {
   if (entries.empty()) return "";
-  std::vector<std::string_view> names;
-  for (const auto& [name, entry] : entries) names.push_back(name);
-  return fmt::format("the {} {}", names.size() == 1 ? one : many, fmt::join(names, ", "));
+  return fmt::format(", the {}{} {}", what, entries.size() == 1 ? "" : "s", fmt::join(std::views::keys(entries), ", "));
 }
 
 }  // namespace
@@ -105,9 +104,7 @@ std::shared_ptr<const Spline> Definitions::table(std::string_view name) {
 }
 
 std::string Definitions::listed() const {
-  const std::string parameters = names_of(parameters_, "parameter", "parameters"),
-                    tables = names_of(tables_, "table", "tables");
-  return (parameters.empty() ? "" : ", " + parameters) + (tables.empty() ? "" : ", " + tables);
+  return names_of(parameters_, "parameter") + names_of(tables_, "table");
 }
 
 std::map<std::string, double> Definitions::values() const {

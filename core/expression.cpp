@@ -10,8 +10,6 @@
 
 namespace poinsot {
 
-Expression::Expression(double constant) : value_(constant) {}
-
 std::string Expression::text() const {
   return parsed_ ? parsed_->text : fmt::format("{}", value_);
 }

@@ -47,7 +47,7 @@ struct LawValue {
 class Expression {
  public:
   Expression() = default;  // the constant 0
-  explicit Expression(double constant);
+  explicit Expression(double constant) : value_(constant) {}
   Expression(const Expression&) = default;  // and no moves: what was moved from would be no function
   Expression& operator=(const Expression&) = default;
 

@@ -6,17 +6,19 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "core/expression.h"
 
 namespace poinsot {
 namespace {
 
-struct Function {
+template <class Value>
+struct Named {
   std::string_view name;
-  TapeOp op;
+  Value value;
 };
-constexpr Function kFunctions[] = {
+constexpr Named<TapeOp> kFunctions[] = {
     {"sin", TapeOp::sin},   {"cos", TapeOp::cos},   {"tan", TapeOp::tan},     {"asin", TapeOp::asin},
     {"acos", TapeOp::acos}, {"atan", TapeOp::atan}, {"atan2", TapeOp::atan2}, {"sinh", TapeOp::sinh},
     {"cosh", TapeOp::cosh}, {"tanh", TapeOp::tanh}, {"exp", TapeOp::exp},     {"log", TapeOp::log},
@@ -24,15 +26,18 @@ constexpr Function kFunctions[] = {
     {"max", TapeOp::max},   {"sign", TapeOp::sign}, {"step", TapeOp::step},
 };
 
-struct Constant {
-  std::string_view name;
-  double value;
-};
-constexpr Constant kConstants[] = {{"pi", std::numbers::pi}, {"e", std::numbers::e}};
+constexpr Named<double> kConstants[] = {{"pi", std::numbers::pi}, {"e", std::numbers::e}};
+
+template <class Value>
+const Value* value_of(std::span<const Named<Value>> table, std::string_view name) {
+  const auto found = std::ranges::find(table, name, &Named<Value>::name);
+  return found == table.end() ? nullptr : &found->value;
+}
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
+
 // Recursive descent; every rule appends its value's instructions to the tape.
 class Parser {
  public:
@@ -50,31 +55,17 @@ class Parser {
 
   void sum() {
     product();
-    for (;;) {
-      if (accept('+')) {
-        product();
-        emit({TapeOp::add, 0});
-      } else if (accept('-')) {
-        product();
-        emit({TapeOp::subtract, 0});
-      } else {
-        return;
-      }
+    while (const char sign = accept_one_of("+-")) {
+      product();
+      emit({sign == '+' ? TapeOp::add : TapeOp::subtract, 0});
     }
   }
 
   void product() {
     factor();
-    for (;;) {
-      if (accept('*')) {
-        factor();
-        emit({TapeOp::multiply, 0});
-      } else if (accept('/')) {
-        factor();
-        emit({TapeOp::divide, 0});
-      } else {
-        return;
-      }
+    while (const char sign = accept_one_of("*/")) {
+      factor();
+      emit({sign == '*' ? TapeOp::multiply : TapeOp::divide, 0});
     }
   }
 
@@ -135,18 +126,17 @@ class Parser {
                         start + 1, *variable == TapeOp::rate ? "the rate" : "the elongation or angle"));
       }
       push({*variable, 0});
-    } else if (const auto* constant = std::ranges::find(kConstants, found, &Constant::name);
-               constant != std::end(kConstants)) {
-      push({TapeOp::constant, constant->value});
-    } else if (const auto* f = std::ranges::find(kFunctions, found, &Function::name); f != std::end(kFunctions)) {
+    } else if (const double* constant = value_of<double>(kConstants, found)) {
+      push({TapeOp::constant, *constant});
+    } else if (const TapeOp* function = value_of<TapeOp>(kFunctions, found)) {
       expect('(');
       sum();
-      if (arity(f->op) == 2) {
+      if (arity(*function) == 2) {
         expect(',');
         sum();
       }
       expect(')');
-      emit({f->op, 0});
+      emit({*function, 0});
     } else if (!of_the_scene(found)) {
       throw ExpressionError(fmt::format("unknown name '{}' at character {}; known are {}pi, e{} and the functions {}",
                                         found, start + 1, listed(variables_), names_ ? names_->listed() : "",
@@ -214,12 +204,15 @@ class Parser {
     parsed_.tape.push_back(instruction);
   }
 
-  bool accept(char c) {
+  bool accept(char c) { return accept_one_of({&c, 1}) != 0; }
+
+  // The character that was taken; 0 where none of them comes next.
+  char accept_one_of(std::string_view characters) {
     skip_blanks();
-    if (position_ >= text_.size() || text_[position_] != c) return false;
-    ++position_;
+    if (position_ >= text_.size() || characters.find(text_[position_]) == characters.npos) return 0;
+    const char found = text_[position_++];
     skip_blanks();
-    return true;
+    return found;
   }
 
   void expect(char c) {
@@ -236,14 +229,13 @@ class Parser {
   }
 
   [[noreturn]] void fail(std::string_view expected) const {
-    std::string found = "found the end";
+    std::string found = "the end";
     if (position_ < text_.size()) {
       const char c = text_[position_];
       const bool printable = c >= ' ' && c <= '~';
-      found =
-          printable ? fmt::format("found '{}'", c) : fmt::format("found byte 0x{:02X}", static_cast<unsigned char>(c));
+      found = printable ? fmt::format("'{}'", c) : fmt::format("byte 0x{:02X}", static_cast<unsigned char>(c));
     }
-    throw ExpressionError(fmt::format("{} at character {}, {}", expected, position_ + 1, found));
+    throw ExpressionError(fmt::format("{} at character {}, found {}", expected, position_ + 1, found));
   }
 
   [[noreturn]] void too_deep() const {
@@ -272,7 +264,7 @@ std::string describe(const Uncovered& found) {
 
 std::vector<std::string_view> Expression::function_names() {
   std::vector<std::string_view> names;
-  for (const Function& function : kFunctions) names.push_back(function.name);
+  for (const auto& function : kFunctions) names.push_back(function.name);
   return names;
 }
 
@@ -281,8 +273,8 @@ std::string_view Expression::why_no_name(std::string_view name) {
   if (!begins || !std::ranges::all_of(name, [](char c) { return is_letter(c) || is_digit(c); }))
     return "no name that expressions can hold (letters, digits and _, a letter first)";
   if (name == "t") return "the time in expressions";
-  if (std::ranges::find(kConstants, name, &Constant::name) != std::end(kConstants)) return "a constant of expressions";
-  if (std::ranges::find(kFunctions, name, &Function::name) != std::end(kFunctions)) return "a function of expressions";
+  if (value_of<double>(kConstants, name)) return "a constant of expressions";
+  if (value_of<TapeOp>(kFunctions, name)) return "a function of expressions";
   return {};
 }
 

@@ -130,8 +130,7 @@ Jet operation(TapeOp op, const Jet& x, const Jet& y) {
     }
     case TapeOp::power: {  // exp(y log x)
       if (!(x.f.least > 0)) return {Bounds::all(), Bounds::all(), Bounds::all()};
-      const Bounds first = reciprocal(x.f);
-      const Jet g = y * after(x, {rising(x.f, [](double a) { return std::log(a); }), first, -square(first)});
+      const Jet g = y * after(x, function({TapeOp::log, 0}, x.f));
       const Bounds f = power(x.f, y.f);
       return after(g, {f, f, f});
     }

@@ -13,7 +13,7 @@
 #include <system_error>
 #include <vector>
 
-#include "core/element_error.h"
+#include "core/input_error.h"
 
 namespace poinsot {
 namespace {

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/element_error.h"
+#include "core/counted.h"
 #include "core/expression.h"
+#include "core/input_error.h"
 #include "core/printable.h"
 
 namespace poinsot {
@@ -14,8 +15,7 @@ namespace poinsot {
 std::string describe(const nlohmann::json& value) {
   constexpr std::size_t kLongest = 60;
   if (value.is_object()) return "an object";
-  if (value.is_array())
-    return value.size() == 1 ? "an array of 1 value" : fmt::format("an array of {} values", value.size());
+  if (value.is_array()) return "an array of " + counted(value.size(), "value");
   std::string text = value.dump();
   if (text.size() > kLongest) {
     std::size_t end = kLongest;
@@ -26,17 +26,7 @@ std::string describe(const nlohmann::json& value) {
 }
 
 std::string pointer_token(std::string_view key) {
-  std::string token;
-  for (const char c : printable(key)) {
-    if (c == '~') {
-      token += "~0";
-    } else if (c == '/') {
-      token += "~1";
-    } else {
-      token += c;
-    }
-  }
-  return token;
+  return (nlohmann::json::json_pointer() / printable(key)).to_string().substr(1);  // behind its '/'
 }
 
 std::string JsonValue::path() const {

@@ -32,7 +32,7 @@ class Compiler {
     for (const Joint& j : scene_.joints) joint(j);
     for (const Driver& d : scene_.drivers) driver(d);
     for (const Force& f : scene_.forces) {
-      std::visit([&](auto force) { force.name = force_names_.next(force.name, type_name(f)), add(force); }, f);
+      std::visit([&](auto force) { force.name = force_names_.next(f), add(force); }, f);
     }
     return std::move(model_);
   }
@@ -40,9 +40,8 @@ class Compiler {
  private:
   template <class Item>
   void begin(GroupKind kind, const Item& item, const Vector3& point_j) {
-    const char* type = type_name(item.type);
-    model_.groups.push_back({kind, row_names_.next(item.name, type), type, item.i, item.j,
-                             static_cast<int>(model_.rows.size()), 0, point_j});
+    model_.groups.push_back(
+        {kind, row_names_.next(item), type_of(item), item.i, item.j, static_cast<int>(model_.rows.size()), 0, point_j});
   }
 
   // A row of the group begun last.
@@ -73,33 +72,13 @@ class Compiler {
     const JointFrames& f = model_.joints.emplace_back(complete_frames(j, model_.bodies));
     begin(GroupKind::joint, j, f.s_j);
     model_.groups.back().body_fixed = j.frames.has_value();
-    switch (j.type) {
-      case JointType::revolute:
-        coincident(f);
-        parallel(f);
-        break;
-      case JointType::spherical:
-        coincident(f);
-        break;
-      case JointType::universal:
-        coincident(f);
-        perpendicular(f.axis_i, f.axis_j);
-        break;
-      case JointType::cylindrical:
-        parallel(f);
-        on_axis(f);
-        break;
-      case JointType::translational:
-        parallel(f);
-        on_axis(f);
-        perpendicular(f.a_i, f.axis_j.cross(f.a_j));
-        break;
-      case JointType::fixed:
-        coincident(f);
-        parallel(f);
-        perpendicular(f.a_i, f.axis_j.cross(f.a_j));
-        break;
-    }
+    const auto is = [&](JointType type) { return j.type == type; };
+    const bool slides = is(JointType::cylindrical) || is(JointType::translational);
+    if (!slides) coincident(f);
+    if (is(JointType::universal)) perpendicular(f.axis_i, f.axis_j);
+    if (!is(JointType::universal) && !is(JointType::spherical)) parallel(f);
+    if (slides) on_axis(f);
+    if (is(JointType::fixed) || is(JointType::translational)) perpendicular(f.a_i, f.axis_j.cross(f.a_j));
   }
 
   // 3 CD: the joint's point is the same on both bodies.

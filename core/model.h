@@ -73,6 +73,14 @@ struct Model {
   std::vector<FollowedAngle> followed;  // none, unless signals are asked for (integrators/signals.h)
 };
 
+// visit(group, frames) for every joint.
+template <class Visit>
+void for_each_joint(const Model& model, Visit&& visit) {
+  auto frames = model.joints.begin();
+  for (const Group& group : model.groups)
+    if (group.kind == GroupKind::joint) visit(group, *frames++);
+}
+
 // Throws InputError where the scene breaks a rule of core/scene_validation.h. Names are given to what has none,
 // axes are normalized, inertias and orientations given to a few digits made symmetric and orthogonal.
 Model compile(const Scene& scene);

@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/element_error.h"
+#include "core/input_error.h"
 #include "core/line_search.h"
 #include "core/printable.h"
 #include "core/scene_names.h"
-#include "core/scene_types.h"
 
 namespace poinsot {
 namespace {
@@ -40,18 +39,12 @@ std::pair<std::string, std::string_view> element_of(const std::string& path) {
 class Elements {
  public:
   explicit Elements(const Scene& scene) {
-    for (std::size_t k = 0; k < scene.bodies.size(); ++k) add(0, scene.bodies[k].name, k);
     ItemNames rows, forces;
-    for (std::size_t k = 0; k < scene.constraints.size(); ++k)
-      add(1, rows.next(scene.constraints[k].name, type_name(scene.constraints[k].type)), k);
-    for (std::size_t k = 0; k < scene.joints.size(); ++k)
-      add(2, rows.next(scene.joints[k].name, type_name(scene.joints[k].type)), k);
-    for (std::size_t k = 0; k < scene.drivers.size(); ++k)
-      add(3, rows.next(scene.drivers[k].name, type_name(scene.drivers[k].type)), k);
-    for (std::size_t k = 0; k < scene.forces.size(); ++k)
-      add(4,
-          std::visit([&](const auto& f) { return forces.next(f.name, type_name(scene.forces[k])); }, scene.forces[k]),
-          k);
+    add(0, scene.bodies, [](const Body& body) { return body.name; });
+    add(1, scene.constraints, [&](const Constraint& constraint) { return rows.next(constraint); });
+    add(2, scene.joints, [&](const Joint& joint) { return rows.next(joint); });
+    add(3, scene.drivers, [&](const Driver& driver) { return rows.next(driver); });
+    add(4, scene.forces, [&](const Force& force) { return forces.next(force); });
   }
 
   // The key path, and the end of the name that begins at `begin` and is closed by a quote; names may hold quotes.
@@ -64,7 +57,10 @@ class Elements {
   }
 
  private:
-  void add(std::size_t kind, std::string name, std::size_t place) { places_[kind].emplace(std::move(name), place); }
+  template <class Item, class Name>
+  void add(std::size_t kind, const std::vector<Item>& items, Name name) {
+    for (std::size_t k = 0; k < items.size(); ++k) places_[kind].emplace(name(items[k]), k);
+  }
 
   std::map<std::string, std::size_t, std::less<>> places_[std::size(kKinds)];
 };
@@ -75,7 +71,7 @@ std::string name_of(const Scene& scene, std::string_view section, std::size_t k)
   if (section == "constraints") return scene.constraints.at(k).name;
   if (section == "joints") return scene.joints.at(k).name;
   if (section == "drivers") return scene.drivers.at(k).name;
-  return std::visit([](const auto& force) { return force.name; }, scene.forces.at(k));
+  return given_name(scene.forces.at(k));
 }
 
 // `inside`, in the parentheses that follow at `at`, or in ones of its own.

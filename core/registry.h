@@ -38,7 +38,7 @@ class Registry {
 
   // nullptr where no entry has the name.
   const Entry* find(std::string_view name) const {
-    const auto at = std::find_if(begin(), end(), [&](const Entry& entry) { return entry.name == name; });
+    const auto at = std::ranges::find(entries_, name, &Entry::name);
     return at == end() ? nullptr : &*at;
   }
   // Throws InputError where no entry has the name, and says which there are.

@@ -31,6 +31,12 @@ void set_state(Ordered& body, const BodyState& state) {
   body["angular_velocity"] = array(state.w);
 }
 
+void set_references(Ordered& item, const Vector3& a_i, const Vector3& a_j) {
+  if (item.contains("a_i")) return;
+  item["a_i"] = array(a_i);
+  item["a_j"] = array(a_j);
+}
+
 void set_frames(Ordered& joint, JointType type, const JointFrames& f) {
   const bool given = joint.contains("s_i");  // these stay as they are, and get what they left to the pose
   if (!given) {
@@ -43,15 +49,7 @@ void set_frames(Ordered& joint, JointType type, const JointFrames& f) {
     joint["axis_i"] = array(f.axis_i);
     joint["axis_j"] = array(f.axis_j);
   }
-  if (joint.contains("a_i")) return;
-  joint["a_i"] = array(f.a_i);
-  joint["a_j"] = array(f.a_j);
-}
-
-void set_references(Ordered& item, const Vector3& a_i, const Vector3& a_j) {
-  if (item.contains("a_i")) return;
-  item["a_i"] = array(a_i);
-  item["a_j"] = array(a_j);
+  set_references(joint, f.a_i, f.a_j);
 }
 
 void shift(Ordered& value, double by) {

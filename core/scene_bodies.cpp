@@ -1,8 +1,6 @@
 // One body of a scene file, and its shape. For each type of shape: the keys it has, then what they hold.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/scene_parts.h"
 #include "core/scene_types.h"
 #include "core/scene_values.h"
@@ -15,19 +13,17 @@ double read_positive(const JsonValue& value) {
 }
 
 Shape read_shape(const JsonValue& item) {
-  const JsonValue type = item.required("type");
-  const auto* entry = std::ranges::find(kShapeTypes, type.string(one_of(kShapeTypes)), &TypeName<ShapeType>::name);
-  if (entry == std::end(kShapeTypes)) type.expected(one_of(kShapeTypes));
+  const auto& [name, type] = read_entry(item.required("type"), kShapeTypes, one_of(kShapeTypes));
   Shape shape;
-  shape.type = entry->type;
-  switch (shape.type) {
+  shape.type = type;
+  switch (type) {
     case ShapeType::box:
       item.keys("a box", {"type", "at", "size"});
       shape.size = read_vector(item.required("size"));
       break;
     case ShapeType::cylinder:
     case ShapeType::capsule:
-      item.keys(fmt::format("a {}", entry->name), {"type", "at", "radius", "length", "axis"});
+      item.keys(fmt::format("a {}", name), {"type", "at", "radius", "length", "axis"});
       shape.radius = read_positive(item.required("radius"));
       shape.length = read_positive(item.required("length"));
       shape.axis = optional_or(item, "axis", read_vector, shape.axis);
@@ -40,10 +36,7 @@ Shape read_shape(const JsonValue& item) {
       item.keys("a polyline", {"type", "points"});
       const JsonValue points = item.required("points");
       const std::size_t size = points.size("an array of at least 2 points");
-      for (std::size_t k = 0; k < size; ++k) {
-        const JsonValue point = points.at(k);
-        shape.points.push_back(read_vector(point));
-      }
+      for (std::size_t k = 0; k < size; ++k) shape.points.push_back(read_vector(points.at(k)));
       break;
     }
   }

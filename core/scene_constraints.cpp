@@ -11,20 +11,6 @@
 namespace poinsot {
 namespace {
 
-template <class Type, std::size_t N>
-const TypeName<Type>& read_type(const JsonValue& item, const TypeName<Type> (&table)[N]) {
-  const JsonValue value = item.required("type");
-  const auto* entry = std::ranges::find(table, value.string(), &TypeName<Type>::name);
-  if (entry == std::end(table)) value.expected(one_of(table));
-  return *entry;
-}
-
-template <class Item>
-void read_bodies(const JsonValue& item, const BodyNames& bodies, Item& out) {
-  const JsonValue pair = item.required("bodies");
-  std::tie(out.i, out.j) = bodies.read_pair(pair);
-}
-
 void read_points(const JsonValue& item, Vector3& s_i, Vector3& s_j) {
   s_i = read_vector(item.required("s_i"));
   s_j = read_vector(item.required("s_j"));
@@ -34,47 +20,6 @@ Constraint::Alternate read_alternate(const JsonValue& value) {
   value.keys("an alternate", {"a_i", "a_j", "f"});
   return {read_vector(value.required("a_i")), read_vector(value.required("a_j")), read_function(value.required("f"))};
 }
-
-}  // namespace
-
-Constraint read_constraint(const JsonValue& item, const BodyNames& bodies) {
-  const ConstraintType type = read_type(item, kConstraintTypes).type;
-  Constraint c;
-  c.type = type;
-  switch (type) {
-    case ConstraintType::DP1:
-      item.keys("a DP1", {"type", "name", "bodies", "a_i", "a_j", "f", "alternate"});
-      c.a_i = read_vector(item.required("a_i"));
-      c.a_j = read_vector(item.required("a_j"));
-      if (const auto alternate = item.optional("alternate")) c.alternate = read_alternate(*alternate);
-      break;
-    case ConstraintType::DP2:
-      item.keys("a DP2", {"type", "name", "bodies", "a_i", "s_i", "s_j", "f"});
-      c.a_i = read_vector(item.required("a_i"));
-      read_points(item, c.s_i, c.s_j);
-      break;
-    case ConstraintType::D:
-      item.keys("a D", {"type", "name", "bodies", "s_i", "s_j", "f"});
-      read_points(item, c.s_i, c.s_j);
-      break;
-    case ConstraintType::CD:
-      item.keys("a CD", {"type", "name", "bodies", "c", "s_i", "s_j", "f"});
-      c.c = read_vector(item.required("c"));
-      read_points(item, c.s_i, c.s_j);
-      break;
-    case ConstraintType::pfaffian:
-      item.keys("a pfaffian constraint", {"type", "name", "bodies", "a_j", "s_i", "s_j", "f"});
-      c.a_j = read_vector(item.required("a_j"));
-      read_points(item, c.s_i, c.s_j);
-      break;
-  }
-  read_bodies(item, bodies, c);
-  c.f = optional_or(item, "f", read_function, Expression());
-  c.name = optional_or(item, "name", read_name, std::string());
-  return c;
-}
-
-namespace {
 
 bool has_any(const JsonValue& item, std::initializer_list<std::string_view> keys) {
   return std::ranges::any_of(keys, [&](std::string_view key) { return item.optional(key).has_value(); });
@@ -98,8 +43,42 @@ JointFrames read_frames(const JsonValue& item, std::string_view owner, JointType
 
 }  // namespace
 
+Constraint read_constraint(const JsonValue& item, const BodyNames& bodies) {
+  const ConstraintType type = read_entry(item.required("type"), kConstraintTypes).type;
+  Constraint c;
+  c.type = type;
+  switch (type) {
+    case ConstraintType::DP1:
+      item.keys("a DP1", {"type", "name", "bodies", "a_i", "a_j", "f", "alternate"});
+      c.a_i = read_vector(item.required("a_i"));
+      c.a_j = read_vector(item.required("a_j"));
+      if (const auto alternate = item.optional("alternate")) c.alternate = read_alternate(*alternate);
+      break;
+    case ConstraintType::DP2:
+      item.keys("a DP2", {"type", "name", "bodies", "a_i", "s_i", "s_j", "f"});
+      c.a_i = read_vector(item.required("a_i"));
+      break;
+    case ConstraintType::D:
+      item.keys("a D", {"type", "name", "bodies", "s_i", "s_j", "f"});
+      break;
+    case ConstraintType::CD:
+      item.keys("a CD", {"type", "name", "bodies", "c", "s_i", "s_j", "f"});
+      c.c = read_vector(item.required("c"));
+      break;
+    case ConstraintType::pfaffian:
+      item.keys("a pfaffian constraint", {"type", "name", "bodies", "a_j", "s_i", "s_j", "f"});
+      c.a_j = read_vector(item.required("a_j"));
+      break;
+  }
+  if (type != ConstraintType::DP1) read_points(item, c.s_i, c.s_j);
+  std::tie(c.i, c.j) = bodies.read_pair(item.required("bodies"));
+  c.f = optional_or(item, "f", read_function, Expression());
+  c.name = optional_or(item, "name", read_name, std::string());
+  return c;
+}
+
 Joint read_joint(const JsonValue& item, const BodyNames& bodies) {
-  const auto& [type_name, type] = read_type(item, kJointTypes);
+  const auto& [type_name, type] = read_entry(item.required("type"), kJointTypes);
   Joint j;
   j.type = type;
   if (has_any(item, {"s_i", "s_j"})) {
@@ -107,35 +86,27 @@ Joint read_joint(const JsonValue& item, const BodyNames& bodies) {
       item.fail("found a joint in the bodies' frames (s_i, s_j) and globally (point, axis), expected one of the two");
     }
     j.frames = read_frames(item, fmt::format("a {} joint in the bodies' frames", type_name), type);
-    read_bodies(item, bodies, j);
-    j.name = optional_or(item, "name", read_name, std::string());
-    return j;
-  }
-  switch (type) {
-    case JointType::spherical:
-    case JointType::fixed:
-      item.keys(fmt::format("a {} joint", type_name), {"type", "name", "bodies", "point"});
-      break;
-    case JointType::universal:
-      item.keys("a universal joint", {"type", "name", "bodies", "point", "axis_i", "axis_j"});
+  } else {
+    const std::string owner = fmt::format("a {} joint", type_name);
+    if (type == JointType::spherical || type == JointType::fixed) {
+      item.keys(owner, {"type", "name", "bodies", "point"});
+    } else if (type == JointType::universal) {
+      item.keys(owner, {"type", "name", "bodies", "point", "axis_i", "axis_j"});
       j.axis_i = read_vector(item.required("axis_i"));
       j.axis_j = read_vector(item.required("axis_j"));
-      break;
-    case JointType::revolute:
-    case JointType::cylindrical:
-    case JointType::translational:
-      item.keys(fmt::format("a {} joint", type_name), {"type", "name", "bodies", "point", "axis"});
+    } else {
+      item.keys(owner, {"type", "name", "bodies", "point", "axis"});
       j.axis = read_vector(item.required("axis"));
-      break;
+    }
+    j.point = read_vector(item.required("point"));
   }
-  j.point = read_vector(item.required("point"));
-  read_bodies(item, bodies, j);
+  std::tie(j.i, j.j) = bodies.read_pair(item.required("bodies"));
   j.name = optional_or(item, "name", read_name, std::string());
   return j;
 }
 
 Driver read_driver(const JsonValue& item, const BodyNames& bodies) {
-  const DriverType type = read_type(item, kDriverTypes).type;
+  const DriverType type = read_entry(item.required("type"), kDriverTypes).type;
   Driver d;
   d.type = type;
   if (type == DriverType::angle) {
@@ -148,7 +119,7 @@ Driver read_driver(const JsonValue& item, const BodyNames& bodies) {
     read_points(item, d.s_i, d.s_j);
     d.value = read_function(item.required("length"));
   }
-  read_bodies(item, bodies, d);
+  std::tie(d.i, d.j) = bodies.read_pair(item.required("bodies"));
   d.name = optional_or(item, "name", read_name, std::string());
   return d;
 }

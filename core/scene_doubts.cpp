@@ -84,10 +84,6 @@ void tell_lengths(const Model& model, std::vector<std::string>& sentences) {
                     model.bodies[lengths.most.second].name, lengths.most.first));
 }
 
-std::string frame_of(const Model& model, int body) {
-  return body == kGround ? "the ground" : fmt::format("'{}'", model.bodies[static_cast<std::size_t>(body)].name);
-}
-
 // Angle drivers and torsion springs on a hinge that turn about another line than the hinge: a direction in body i's
 // frame was given as a global one. To the digits that axes are given with.
 void tell_axes(const Model& model, std::vector<std::string>& sentences) {
@@ -95,7 +91,7 @@ void tell_axes(const Model& model, std::vector<std::string>& sentences) {
   struct Hinge {
     std::pair<int, int> bodies;
     Vector3 axis;  // in the frame of the first
-    std::size_t group;
+    const Group* joint;
   };
   std::vector<Hinge> hinges;  // from either body
   std::size_t doubts = 0;
@@ -104,26 +100,23 @@ void tell_axes(const Model& model, std::vector<std::string>& sentences) {
     const std::pair bodies(i, j);
     const Hinge* nearest = nullptr;
     double least = HUGE_VAL;  // rad
-    for (auto at = std::ranges::lower_bound(hinges, bodies, {}, &Hinge::bodies);
-         at != hinges.end() && at->bodies == bodies; ++at)
-      if (const double apart = std::atan2(at->axis.cross(axis).norm(), std::abs(at->axis.dot(axis))); apart < least)
-        nearest = &*at, least = apart;
+    for (const Hinge& hinge : std::ranges::equal_range(hinges, bodies, {}, &Hinge::bodies))
+      if (const double apart = std::atan2(hinge.axis.cross(axis).norm(), std::abs(hinge.axis.dot(axis))); apart < least)
+        nearest = &hinge, least = apart;
     if (!nearest || least <= kDigits) return;
-    if (doubts++ == 0)
-      first = fmt::format(
-          "{} '{}' turns about an axis {:.3g} rad from that of joint '{}' on the same bodies: it is taken in the frame "
-          "of {}, where a joint's \"axis\" is global",
-          kind, name, least, model.groups[nearest->group].name, frame_of(model, i));
+    if (doubts++ > 0) return;
+    const std::string frame_of =
+        i == kGround ? "the ground" : fmt::format("'{}'", model.bodies[static_cast<std::size_t>(i)].name);
+    first = fmt::format(
+        "{} '{}' turns about an axis {:.3g} rad from that of joint '{}' on the same bodies: it is taken in the frame "
+        "of {}, where a joint's \"axis\" is global",
+        kind, name, least, nearest->joint->name, frame_of);
   };
-  std::size_t joint = 0;
-  for (std::size_t k = 0; k < model.groups.size(); ++k) {
-    const Group& group = model.groups[k];
-    if (group.kind != GroupKind::joint) continue;
-    const JointFrames& frames = model.joints[joint++];
-    if (group.type != "revolute" && group.type != "cylindrical") continue;
-    hinges.push_back({{group.i, group.j}, frames.axis_i, k});
-    hinges.push_back({{group.j, group.i}, frames.axis_j, k});
-  }
+  for_each_joint(model, [&](const Group& joint, const JointFrames& frames) {
+    if (joint.type != "revolute" && joint.type != "cylindrical") return;
+    hinges.push_back({{joint.i, joint.j}, frames.axis_i, &joint});
+    hinges.push_back({{joint.j, joint.i}, frames.axis_j, &joint});
+  });
   std::ranges::stable_sort(hinges, {}, &Hinge::bodies);
   for (const Group& group : model.groups) {
     const Row& row = model.rows[static_cast<std::size_t>(group.first_row)];

@@ -1,5 +1,4 @@
 // Applied forces of a scene file. For each type: the keys it has, then what they hold.
-#include <algorithm>
 #include <tuple>
 
 #include "core/scene_parts.h"
@@ -9,43 +8,36 @@
 namespace poinsot {
 namespace {
 
-Frame read_frame(const JsonValue& item, Frame otherwise) {
-  const std::optional<JsonValue> value = item.optional("frame");
-  if (!value) return otherwise;
-  const auto* entry = std::ranges::find(kFrames, value->string(one_of(kFrames)), &TypeName<Frame>::name);
-  if (entry == std::end(kFrames)) value->expected(one_of(kFrames));
-  return entry->type;
+Frame read_frame(const JsonValue& value) {
+  return read_entry(value, kFrames, one_of(kFrames)).type;
 }
 
 void read_functions(const JsonValue& value, Expression (&out)[3]) {
   constexpr std::string_view kAllowed = "an array of 3 numbers or strings holding expressions in t";
   if (value.size(kAllowed) != 3) value.expected(kAllowed);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const JsonValue component = value.at(k);
-    out[k] = read_function(component);
-  }
+  for (std::size_t k = 0; k < 3; ++k) out[k] = read_function(value.at(k));
 }
 
 double read_number(const JsonValue& value) {
   return value.number();
 }
 
-PointForce read_point_force(const JsonValue& item, const BodyNames& bodies) {
+Force read_point_force(const JsonValue& item, const BodyNames& bodies) {
   item.keys("a force", {"type", "name", "body", "point", "force", "frame"});
   PointForce force;
   force.body = bodies.read_moving(item.required("body"));
   force.point = read_vector(item.required("point"));
   read_functions(item.required("force"), force.force);
-  force.frame = read_frame(item, Frame::global);
+  force.frame = optional_or(item, "frame", read_frame, Frame::global);
   return force;
 }
 
-Torque read_torque(const JsonValue& item, const BodyNames& bodies) {
+Force read_torque(const JsonValue& item, const BodyNames& bodies) {
   item.keys("a torque", {"type", "name", "body", "torque", "frame"});
   Torque torque;
   torque.body = bodies.read_moving(item.required("body"));
   read_functions(item.required("torque"), torque.torque);
-  torque.frame = read_frame(item, Frame::body);
+  torque.frame = optional_or(item, "frame", read_frame, Frame::body);
   return torque;
 }
 
@@ -63,7 +55,7 @@ void read_law(const JsonValue& item, Spring& spring) {
   }
 }
 
-Spring read_spring(const JsonValue& item, const BodyNames& bodies) {
+Force read_spring(const JsonValue& item, const BodyNames& bodies) {
   item.keys("a spring", {"type", "name", "bodies", "s_i", "s_j", "stiffness", "damping", "length", "law"});
   Spring spring;
   std::tie(spring.i, spring.j) = bodies.read_pair(item.required("bodies"));
@@ -74,7 +66,7 @@ Spring read_spring(const JsonValue& item, const BodyNames& bodies) {
   return spring;
 }
 
-TorsionSpring read_torsion_spring(const JsonValue& item, const BodyNames& bodies) {
+Force read_torsion_spring(const JsonValue& item, const BodyNames& bodies) {
   item.keys("a torsion spring",
             {"type", "name", "bodies", "axis", "a_i", "a_j", "stiffness", "damping", "angle", "law"});
   TorsionSpring spring;
@@ -86,7 +78,7 @@ TorsionSpring read_torsion_spring(const JsonValue& item, const BodyNames& bodies
   return spring;
 }
 
-LinearDrag read_linear_drag(const JsonValue& item, const BodyNames& bodies) {
+Force read_linear_drag(const JsonValue& item, const BodyNames& bodies) {
   item.keys("a linear drag", {"type", "name", "body", "translational", "rotational"});
   LinearDrag drag;
   drag.body = bodies.read_moving(item.required("body"));
@@ -95,24 +87,15 @@ LinearDrag read_linear_drag(const JsonValue& item, const BodyNames& bodies) {
   return drag;
 }
 
-template <auto read>
-Force as_force(const JsonValue& item, const BodyNames& bodies) {
-  return read(item, bodies);
-}
-
 // In the order of kForceTypes.
 constexpr Force (*kRead[])(const JsonValue& item, const BodyNames& bodies) = {
-    as_force<read_point_force>, as_force<read_torque>, as_force<read_spring>, as_force<read_torsion_spring>,
-    as_force<read_linear_drag>};
+    read_point_force, read_torque, read_spring, read_torsion_spring, read_linear_drag};
 static_assert(std::size(kRead) == std::size(kForceTypes));
 
 }  // namespace
 
 Force read_force(const JsonValue& item, const BodyNames& bodies) {
-  const JsonValue type = item.required("type");
-  const auto* entry = std::ranges::find(kForceTypes, type.string(), &TypeName<std::size_t>::name);
-  if (entry == std::end(kForceTypes)) type.expected(one_of(kForceTypes));
-  Force force = kRead[entry->type](item, bodies);
+  Force force = kRead[read_entry(item.required("type"), kForceTypes).type](item, bodies);
   std::visit([&](auto& concrete) { concrete.name = optional_or(item, "name", read_name, std::string()); }, force);
   return force;
 }

@@ -128,8 +128,7 @@ std::span<const SceneGenerator> scene_generators() {
 }
 
 const SceneGenerator* find_scene_generator(std::string_view name) {
-  const auto at = std::find_if(std::begin(kGenerators), std::end(kGenerators),
-                               [&](const SceneGenerator& entry) { return entry.name == name; });
+  const auto* at = std::ranges::find(kGenerators, name, &SceneGenerator::name);
   return at == std::end(kGenerators) ? nullptr : at;
 }
 

@@ -9,27 +9,26 @@ BodyNames::BodyNames(const std::vector<Body>& bodies) : bodies_(bodies) {
   for (std::size_t k = 0; k < bodies.size(); ++k) numbers_.emplace(bodies[k].name, static_cast<int>(k));
 }
 
-int BodyNames::read(const JsonValue& value) const {
+int BodyNames::number(const JsonValue& value, std::string_view allowed, std::string_view first) const {
   const std::string& name = value.string("the name of a body");
   if (name == "ground") return kGround;
   const auto found = numbers_.find(name);
-  if (found == numbers_.end()) value.expected("the name of a body" + after_colon("ground", bodies_));
+  if (found == numbers_.end()) value.expected(fmt::format("{}{}", allowed, after_colon(first, bodies_)));
   return found->second;
 }
 
+int BodyNames::read(const JsonValue& value) const {
+  return number(value, "the name of a body", "ground");
+}
+
 int BodyNames::read_moving(const JsonValue& value) const {
-  const std::string& name = value.string("the name of a body");
-  if (name == "ground") return kGround;
-  const auto found = numbers_.find(name);
-  if (found == numbers_.end()) value.expected("the name of a body that can move" + after_colon("", bodies_));
-  return found->second;
+  return number(value, "the name of a body that can move", "");
 }
 
 std::pair<int, int> BodyNames::read_pair(const JsonValue& value) const {
   constexpr std::string_view kAllowed = "an array of 2 names of bodies, i and j";
   if (value.size(kAllowed) != 2) value.expected(kAllowed);
-  const JsonValue first = value.at(0), second = value.at(1);
-  return {read(first), read(second)};
+  return {read(value.at(0)), read(value.at(1))};
 }
 
 std::string after_colon(std::string_view first, const std::vector<Body>& bodies) {
@@ -38,11 +37,6 @@ std::string after_colon(std::string_view first, const std::vector<Body>& bodies)
   std::string text(first);
   for (const Body& body : bodies) text += (text.empty() ? "" : ", ") + body.name;
   return text.empty() ? "" : ": " + text;
-}
-
-std::string ItemNames::next(const std::string& given, std::string_view type) {
-  const int number = ++counts_[type];
-  return given.empty() ? fmt::format("{}{}", type, number) : given;
 }
 
 }  // namespace poinsot

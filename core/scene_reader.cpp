@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/definitions.h"
-#include "core/element_error.h"
+#include "core/input_error.h"
 #include "core/json_document.h"
 #include "core/places.h"
 #include "core/printable.h"
@@ -82,40 +82,26 @@ bool load_tables(JsonDocument& document, const std::filesystem::path& folder) {
   return any;
 }
 
-void require_keys(const JsonDocument& document) {
-  document.root().keys("a scene", {"$schema", "scene", "name", "about", "parameters", "tables", "gravity", "bodies",
-                                   "constraints", "joints", "drivers", "forces"});
-}
-
-// An item of a section, in the place of what stands there.
-template <class Item, class Read>
-void read_items(const JsonValue& root, std::string_view section, std::string_view allowed, std::vector<Item>& items,
-                const Definitions& definitions, std::vector<std::size_t>& calling, Read read) {
+// The items of a section. Those of all sections but "bodies" are read with the names of bodies.
+template <class Item, class Read, class... Names>
+void read_items(const JsonValue& root, std::string_view section, std::vector<Item>& items,
+                const Definitions& definitions, std::vector<std::size_t>& calling, Read read, const Names&... bodies) {
   const std::optional<JsonValue> list = root.optional(section);
   if (!list) return;
-  const std::size_t size = list->size(allowed);
+  const std::size_t size = list->size(fmt::format("an array of {}", section));
   for (std::size_t k = 0; k < size; ++k) {
-    const JsonValue item = list->at(k);
     const int before = definitions.asked();
-    items.push_back(read(item));
+    items.push_back(read(list->at(k), bodies...));
     if (definitions.asked() > before) calling.push_back(k);
   }
 }
 
-template <class Item, class Read>
+template <class Item, class Read, class... Names>
 void read_items_again(const JsonValue& root, std::string_view section, std::vector<Item>& items,
-                      const std::vector<std::size_t>& calling, Read read) {
+                      const std::vector<std::size_t>& calling, Read read, const Names&... bodies) {
   if (calling.empty()) return;
   const JsonValue list = root.required(section);
-  for (const std::size_t k : calling) {
-    const JsonValue item = list.at(k);
-    items[k] = read(item);
-  }
-}
-
-template <class Read>
-auto with_names(const BodyNames& bodies, Read read) {
-  return [&bodies, read](const JsonValue& item) { return read(item, bodies); };
+  for (const std::size_t k : calling) items[k] = read(list.at(k), bodies...);
 }
 
 void set_values(Scene& scene, const Definitions& definitions, const ParameterValues& set) {
@@ -139,17 +125,13 @@ Scene read_document(const JsonDocument& document, std::string_view file, const P
   scene.gravity = optional_or(root, "gravity", read_vector, scene.gravity);
 
   (void)root.required("bodies");
-  read_items(root, "bodies", "an array of bodies", scene.bodies, definitions, calling.bodies, read_body);
+  read_items(root, "bodies", scene.bodies, definitions, calling.bodies, read_body);
   in_file(file, [&] { validate_bodies(scene.bodies); });
   const BodyNames bodies(scene.bodies);
-  read_items(root, "constraints", "an array of constraints", scene.constraints, definitions, calling.constraints,
-             with_names(bodies, read_constraint));
-  read_items(root, "joints", "an array of joints", scene.joints, definitions, calling.joints,
-             with_names(bodies, read_joint));
-  read_items(root, "drivers", "an array of drivers", scene.drivers, definitions, calling.drivers,
-             with_names(bodies, read_driver));
-  read_items(root, "forces", "an array of forces", scene.forces, definitions, calling.forces,
-             with_names(bodies, read_force));
+  read_items(root, "constraints", scene.constraints, definitions, calling.constraints, read_constraint, bodies);
+  read_items(root, "joints", scene.joints, definitions, calling.joints, read_joint, bodies);
+  read_items(root, "drivers", scene.drivers, definitions, calling.drivers, read_driver, bodies);
+  read_items(root, "forces", scene.forces, definitions, calling.forces, read_force, bodies);
   in_file(file, [&] { validate(scene); });
 
   set_values(scene, definitions, set);
@@ -177,7 +159,8 @@ Scene parse_scene(std::string_view text, std::string_view file, const ParameterV
   Scene scene;
   with_lines_of_errors(text, [&] {
     JsonDocument document(text, file);
-    require_keys(document);
+    document.root().keys("a scene", {"$schema", "scene", "name", "about", "parameters", "tables", "gravity", "bodies",
+                                     "constraints", "joints", "drivers", "forces"});
     const bool with_values = set_parameters(document, set);
     const bool with_files = load_tables(document, std::filesystem::path(file).parent_path());
     CallingItems none;  // are of interest
@@ -223,10 +206,10 @@ void VariedScene::read_again() {
   scene_->gravity = optional_or(root, "gravity", read_vector, scene_->gravity);
   read_items_again(root, "bodies", scene_->bodies, calling_.bodies, read_body);
   const BodyNames bodies(scene_->bodies);
-  read_items_again(root, "constraints", scene_->constraints, calling_.constraints, with_names(bodies, read_constraint));
-  read_items_again(root, "joints", scene_->joints, calling_.joints, with_names(bodies, read_joint));
-  read_items_again(root, "drivers", scene_->drivers, calling_.drivers, with_names(bodies, read_driver));
-  read_items_again(root, "forces", scene_->forces, calling_.forces, with_names(bodies, read_force));
+  read_items_again(root, "constraints", scene_->constraints, calling_.constraints, read_constraint, bodies);
+  read_items_again(root, "joints", scene_->joints, calling_.joints, read_joint, bodies);
+  read_items_again(root, "drivers", scene_->drivers, calling_.drivers, read_driver, bodies);
+  read_items_again(root, "forces", scene_->forces, calling_.forces, read_force, bodies);
   in_file(name_, [&] { validate_bodies(scene_->bodies), validate(*scene_); });
   set_values(*scene_, definitions, set_);
 }

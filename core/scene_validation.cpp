@@ -23,21 +23,6 @@ struct Names {
   std::unordered_map<std::string, Place> taken;
 };
 
-template <class Item>
-const std::string& given_name(const Item& item) {
-  return item.name;
-}
-const std::string& given_name(const Force& force) {
-  return std::visit([](const auto& f) -> const std::string& { return f.name; }, force);
-}
-template <class Item>
-const char* type_of(const Item& item) {
-  return type_name(item.type);
-}
-const char* type_of(const Force& force) {
-  return type_name(force);
-}
-
 class Validation {
  public:
   explicit Validation(const Scene& scene) : scene_(scene) {}
@@ -68,7 +53,7 @@ class Validation {
       check(at, items[k]);
       const std::string& given = given_name(items[k]);
       name(at, given);
-      const std::string called = names.by_type.next(given, type_of(items[k]));
+      const std::string called = names.by_type.next(items[k]);
       if (const auto [entry, is_new] = names.taken.emplace(called, at); !is_new) {
         const bool is_given = !given.empty();
         already(at, is_given ? "name" : "", called, is_given ? "" : " (its name by type and number)", entry->second);
@@ -85,25 +70,12 @@ class Validation {
     finite(at, "s_j", c.s_j);
     finite(at, "c", c.c);
     finite(at, "f", c.f);
-    switch (c.type) {
-      case ConstraintType::DP1:
-        direction(at, "a_i", c.a_i);
-        direction(at, "a_j", c.a_j);
-        break;
-      case ConstraintType::DP2:
-        direction(at, "a_i", c.a_i);
-        break;
-      case ConstraintType::D:
-        break;
-      case ConstraintType::CD:
-        direction(at, "c", c.c);
-        break;
-      case ConstraintType::pfaffian:
-        direction(at, "a_j", c.a_j);
-        break;
-    }
+    const bool is_DP1 = c.type == ConstraintType::DP1;
+    if (is_DP1 || c.type == ConstraintType::DP2) direction(at, "a_i", c.a_i);
+    if (is_DP1 || c.type == ConstraintType::pfaffian) direction(at, "a_j", c.a_j);
+    if (c.type == ConstraintType::CD) direction(at, "c", c.c);
     if (!c.alternate) return;
-    if (c.type != ConstraintType::DP1) {
+    if (!is_DP1) {
       at.fail("alternate", fmt::format("found one of a {}, expected it of a DP1 only", type_name(c.type)));
     }
     direction(at, "alternate/a_i", c.alternate->a_i);
@@ -123,20 +95,12 @@ class Validation {
       return;
     }
     finite(at, "point", j.point);
-    switch (j.type) {
-      case JointType::spherical:
-      case JointType::fixed:
-        break;
-      case JointType::universal:
-        direction(at, "axis_i", j.axis_i);
-        direction(at, "axis_j", j.axis_j);
-        perpendicular(at, "axis_j", "an axis", j.axis_j, "axis_i", j.axis_i);
-        break;
-      case JointType::revolute:
-      case JointType::cylindrical:
-      case JointType::translational:
-        direction(at, "axis", j.axis);
-        break;
+    if (j.type == JointType::universal) {
+      direction(at, "axis_i", j.axis_i);
+      direction(at, "axis_j", j.axis_j);
+      perpendicular(at, "axis_j", "an axis", j.axis_j, "axis_i", j.axis_i);
+    } else if (j.type != JointType::spherical && j.type != JointType::fixed) {
+      direction(at, "axis", j.axis);
     }
   }
 

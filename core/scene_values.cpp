@@ -15,10 +15,7 @@ namespace {
 Matrix3 read_matrix(const JsonValue& value, std::string_view allowed) {
   if (value.size(allowed) != 3) value.expected(allowed);
   Matrix3 matrix;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const JsonValue row = value.at(k);
-    matrix.row(static_cast<Eigen::Index>(k)) = read_vector(row).transpose();
-  }
+  for (std::size_t k = 0; k < 3; ++k) matrix.row(static_cast<Eigen::Index>(k)) = read_vector(value.at(k)).transpose();
   return matrix;
 }
 
@@ -26,10 +23,7 @@ Matrix3 read_euler_parameters(const JsonValue& value) {
   constexpr std::string_view kAllowed = "4 numbers, e0 to e3";
   if (value.size(kAllowed) != 4) value.expected(kAllowed);
   Eigen::Vector4d p;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const JsonValue number = value.at(k);
-    p[static_cast<Eigen::Index>(k)] = number.number();
-  }
+  for (std::size_t k = 0; k < 4; ++k) p[static_cast<Eigen::Index>(k)] = value.at(k).number();
   const double norm = p.norm();
   if (!(std::abs(norm - 1) <= kOrientationTolerance)) {
     value.fail(
@@ -66,10 +60,7 @@ Vector3 read_vector(const JsonValue& value) {
   constexpr std::string_view kAllowed = "an array of 3 numbers";
   if (value.size(kAllowed) != 3) value.expected(kAllowed);
   Vector3 vector;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const JsonValue component = value.at(k);
-    vector[static_cast<Eigen::Index>(k)] = component.number();
-  }
+  for (std::size_t k = 0; k < 3; ++k) vector[static_cast<Eigen::Index>(k)] = value.at(k).number();
   return vector;
 }
 
@@ -93,8 +84,7 @@ Expression read_law(const JsonValue& value) {
 Matrix3 read_inertia(const JsonValue& value) {
   constexpr std::string_view kAllowed = "3 principal moments or a symmetric 3x3 matrix";
   if (value.size(kAllowed) != 3) value.expected(kAllowed);
-  const JsonValue first = value.at(0);
-  return first.is_array() ? read_matrix(value, kAllowed) : Matrix3(read_vector(value).asDiagonal());
+  return value.at(0).is_array() ? read_matrix(value, kAllowed) : Matrix3(read_vector(value).asDiagonal());
 }
 
 Matrix3 read_orientation(const JsonValue& value) {

@@ -9,16 +9,6 @@
 namespace poinsot::rules {
 namespace {
 
-template <class Matrix>
-void finite_entries(const Place& at, std::string_view key, const Matrix& x) {
-  if (x.allFinite()) return;
-  for (Eigen::Index r = 0; r < x.rows(); ++r) {
-    for (Eigen::Index c = 0; c < x.cols(); ++c) {
-      finite(at, x.cols() == 1 ? fmt::format("{}/{}", key, r) : fmt::format("{}/{}/{}", key, r, c), x(r, c));
-    }
-  }
-}
-
 bool is_utf8(const std::string& text) {
   if (std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; })) return true;
   try {
@@ -34,11 +24,13 @@ bool is_utf8(const std::string& text) {
 void finite(const Place& at, std::string_view key, double x) {
   if (!std::isfinite(x)) at.fail(key, fmt::format("found {}, expected a finite number", x));
 }
-void finite(const Place& at, std::string_view key, const Vector3& x) {
-  finite_entries(at, key, x);
-}
-void finite(const Place& at, std::string_view key, const Matrix3& x) {
-  finite_entries(at, key, x);
+void finite(const Place& at, std::string_view key, const Eigen::Ref<const Eigen::MatrixXd>& x) {
+  if (x.allFinite()) return;
+  for (Eigen::Index r = 0; r < x.rows(); ++r) {
+    for (Eigen::Index c = 0; c < x.cols(); ++c) {
+      finite(at, x.cols() == 1 ? fmt::format("{}/{}", key, r) : fmt::format("{}/{}/{}", key, r, c), x(r, c));
+    }
+  }
 }
 void finite(const Place& at, std::string_view key, const Expression& f) {
   if (f.is_constant()) finite(at, key, f.at(0.0).f);

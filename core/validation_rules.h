@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/element_error.h"
+#include "core/input_error.h"
 #include "core/scene.h"
 #include "core/scene_types.h"
 
@@ -28,8 +28,7 @@ struct Place {
 namespace rules {
 
 void finite(const Place& at, std::string_view key, double x);
-void finite(const Place& at, std::string_view key, const Vector3& x);
-void finite(const Place& at, std::string_view key, const Matrix3& x);
+void finite(const Place& at, std::string_view key, const Eigen::Ref<const Eigen::MatrixXd>& x);  // a vector, too
 // Of functions of time, those that are constant: others may have poles, and a run that comes to one says so.
 void finite(const Place& at, std::string_view key, const Expression& f);
 void positive(const Place& at, std::string_view key, double x);

@@ -97,19 +97,9 @@ void refuse_parameters_of_others(const Settings& settings) {
 void check_numbers(const Settings& settings) {
   refuse_parameters_of_others(settings);
   for (const SettingEntry& entry : setting_entries()) {
-    double value = 0;
-    if (const auto* number = std::get_if<double Settings::*>(&entry.member))
-      value = settings.*(*number);
-    else if (std::holds_alternative<std::optional<double> Settings::*>(entry.member))
-      value = settings.absolute_tolerance();
-    else if (const auto* count = std::get_if<int Settings::*>(&entry.member))
-      value = settings.*(*count);
-    else if (const auto* parameter = std::get_if<const MethodParameter*>(&entry.member))
-      value = (*parameter)->of(settings);
-    else
-      continue;
-    if (!in_range(entry, value))
-      throw InputError(fmt::format("{}: found {}, expected {}", entry.key, value, allowed_number(entry)));
+    const std::optional<double> value = number_of(entry, settings);
+    if (value && !in_range(entry, *value))
+      throw InputError(fmt::format("{}: found {}, expected {}", entry.key, *value, allowed_number(entry)));
   }
   check_counts(settings);
 }
@@ -176,18 +166,17 @@ void read_setting(const SettingEntry& entry, const JsonValue& value, Settings& s
 std::string to_json(const Settings& settings) {
   nlohmann::ordered_json json;
   for (const SettingEntry& entry : setting_entries()) {
-    if (const auto* number = std::get_if<double Settings::*>(&entry.member))
-      json[entry.key] = settings.*(*number);
-    else if (std::holds_alternative<std::optional<double> Settings::*>(entry.member))
-      json[entry.key] = settings.absolute_tolerance();
-    else if (const auto* count = std::get_if<int Settings::*>(&entry.member))
+    const bool of_others =
+        std::holds_alternative<const MethodParameter*>(entry.member) && !is_parameter(entry.key, settings);
+    if (of_others) continue;
+    if (const auto* count = std::get_if<int Settings::*>(&entry.member))
       json[entry.key] = settings.*(*count);
-    else if (const auto* parameter = std::get_if<const MethodParameter*>(&entry.member)) {
-      if (is_parameter(entry.key, settings)) json[entry.key] = (*parameter)->of(settings);
-    } else if (const auto* flag = std::get_if<bool Settings::*>(&entry.member))
+    else if (const auto* flag = std::get_if<bool Settings::*>(&entry.member))
       json[entry.key] = settings.*(*flag);
     else if (entry.names)
       json[entry.key] = value_text(entry, settings);
+    else if (const std::optional<double> number = number_of(entry, settings))
+      json[entry.key] = *number;
     else if (settings.assembly != Assembly::small)  // the default is what is done where the key is left out
       json[entry.key] = settings.assembly == Assembly::always;
   }

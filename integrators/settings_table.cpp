@@ -121,26 +121,22 @@ std::string option_name(const SettingEntry& entry) {
   return name;
 }
 
+std::optional<double> number_of(const SettingEntry& entry, const Settings& settings) {
+  if (const auto* number = std::get_if<double Settings::*>(&entry.member)) return settings.*(*number);
+  if (const auto* count = std::get_if<int Settings::*>(&entry.member)) return settings.*(*count);
+  if (const auto* parameter = std::get_if<const MethodParameter*>(&entry.member)) return (*parameter)->of(settings);
+  if (std::holds_alternative<std::optional<double> Settings::*>(entry.member)) return settings.absolute_tolerance();
+  return {};
+}
+
 std::string value_text(const SettingEntry& entry, const Settings& settings) {
   if (const auto* text = std::get_if<std::string Settings::*>(&entry.member)) return settings.*(*text);
-  if (const auto* number = std::get_if<double Settings::*>(&entry.member))
-    return fmt::format("{}", settings.*(*number));
-  if (std::holds_alternative<std::optional<double> Settings::*>(entry.member))
-    return settings.atol ? fmt::format("{}", *settings.atol) : "rtol/100";
-  if (const auto* count = std::get_if<int Settings::*>(&entry.member)) return fmt::format("{}", settings.*(*count));
   if (const auto* flag = std::get_if<bool Settings::*>(&entry.member)) return fmt::format("{}", settings.*(*flag));
-  if (const auto* parameter = std::get_if<const MethodParameter*>(&entry.member))
-    return fmt::format("{}", (*parameter)->of(settings));
+  if (std::holds_alternative<std::optional<double> Settings::*>(entry.member) && !settings.atol) return "rtol/100";
+  if (const std::optional<double> number = number_of(entry, settings)) return fmt::format("{}", *number);
   if (entry.names) return entry.names()[static_cast<std::size_t>(settings.analysis)];
-  switch (settings.assembly) {
-    case Assembly::always:
-      return "true";
-    case Assembly::never:
-      return "false";
-    case Assembly::small:
-      break;
-  }
-  return "where the violation is small";
+  if (settings.assembly == Assembly::small) return "where the violation is small";
+  return settings.assembly == Assembly::always ? "true" : "false";
 }
 
 }  // namespace poinsot

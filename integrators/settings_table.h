@@ -34,6 +34,8 @@ std::span<const SettingEntry> setting_entries();
 bool is_switch(const SettingEntry& entry);
 const SettingEntry* find_setting(std::string_view key);  // nullptr where no entry has the key
 std::string option_name(const SettingEntry& entry);      // "--linear-solver"
+// The value of what is a number; nothing for names and switches.
+std::optional<double> number_of(const SettingEntry& entry, const Settings& settings);
 // "rA", "0.001": a setting as it would be written in the file, without quotes.
 std::string value_text(const SettingEntry& entry, const Settings& settings);
 

@@ -67,13 +67,11 @@ double spring_effort(const AnySpring& spring, double x, double rate, double t) {
 
 std::vector<std::string> Signals::names(const Model& model) {
   std::vector<std::string> names{"kinetic", "potential", "energy", "px", "py", "pz", "Lx", "Ly", "Lz"};
-  const auto add = [&](const std::string& name, std::initializer_list<std::string_view> columns) {
+  const auto add = [&](const std::string& name, const std::vector<std::string_view>& columns) {
     for (const std::string_view column : columns) names.push_back(fmt::format("{}.{}", name, column));
   };
   for (const Group& group : model.groups)
-    if (group.kind == GroupKind::joint)
-      for (const std::string_view column : columns_of(group.type))
-        names.push_back(fmt::format("{}.{}", group.name, column));
+    if (group.kind == GroupKind::joint) add(group.name, columns_of(group.type));
   for (const Group& group : model.groups) {
     if (group.kind == GroupKind::driver) add(group.name, {"value", "effort", "power"});
     if (has_tension(model.rows[index(group.first_row)])) add(group.name, {"tension"});
@@ -91,17 +89,14 @@ std::vector<std::string> Signals::names(const Model& model) {
 
 std::vector<FollowedAngle> joint_angles(const Model& model) {
   std::vector<FollowedAngle> angles;
-  std::size_t k = 0;
-  for (const Group& group : model.groups) {
-    if (group.kind != GroupKind::joint) continue;
-    const JointFrames& f = model.joints[k++];
+  for_each_joint(model, [&](const Group& group, const JointFrames& f) {
     const bool universal = group.type == type_name(JointType::universal);
     const bool turns = group.type == type_name(JointType::revolute) || group.type == type_name(JointType::cylindrical);
     if (turns) angles.push_back({group.i, group.j, f.a_i, f.axis_i.cross(f.a_i), f.a_j});
-    if (!universal) continue;
+    if (!universal) return;
     angles.push_back({group.i, group.j, f.a_i, f.axis_i.cross(f.a_i), f.axis_j});
     angles.push_back({group.j, group.i, f.a_j, f.axis_j.cross(f.a_j), f.axis_i});  // of i relative to j
-  }
+  });
   return angles;
 }
 
@@ -145,10 +140,9 @@ void Signals::add_totals() {
 }
 
 void Signals::add_joints() {
-  const Model& model = sample_->problem.model();
-  std::size_t joint = 0, followed = 0;
-  for (const Group& group : model.groups)
-    if (group.kind == GroupKind::joint) add_joint(group, model.joints[joint++], followed);
+  std::size_t followed = 0;
+  for_each_joint(sample_->problem.model(),
+                 [&](const Group& group, const JointFrames& f) { add_joint(group, f, followed); });
 }
 
 void Signals::add_joint(const Group& group, const JointFrames& f, std::size_t& followed) {
@@ -176,11 +170,7 @@ void Signals::add_joint(const Group& group, const JointFrames& f, std::size_t& f
   if (group.type == type_name(JointType::translational)) add_pairs({slide()});
   if (group.type == type_name(JointType::universal)) add_pairs({take_angle(1), take_angle(-1)});
   if (group.type != type_name(JointType::spherical)) return;
-  const auto state = [&](int body) {
-    BodyState ground;
-    ground.A.setIdentity(), ground.w.setZero();
-    return body == kGround ? ground : bodies_[index(body)];
-  };
+  const auto state = [&](int body) { return body == kGround ? BodyState() : bodies_[index(body)]; };
   const BodyState i = state(group.i), j = state(group.j);
   const Matrix3 relative = i.A.transpose() * j.A;
   const Vec4<double> e = parameters_from_rotation<double>(relative);

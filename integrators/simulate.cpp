@@ -48,13 +48,10 @@ const IntegratorEntry& integrator_of(const Settings& settings) {
 }
 
 void refuse_free_motion(const Problem& problem) {
-  for (const Row& row : problem.model().rows) {
-    if (row.type == RowType::pfaffian) {
-      throw InputError(
-          fmt::format("{} is a velocity constraint, which leaves positions free; use analysis dynamics",
-                      "constraint '" + problem.model().groups[static_cast<std::size_t>(row.group)].name + "'"));
-    }
-  }
+  for (const Row& row : problem.model().rows)
+    if (row.type == RowType::pfaffian)
+      throw InputError(fmt::format("{} is a velocity constraint, which leaves positions free; use analysis dynamics",
+                                   describe_group(problem.model(), row.group)));
   const int free = problem.nv() - problem.nc();
   if (free > 0) {
     throw InputError(

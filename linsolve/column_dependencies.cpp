@@ -72,9 +72,7 @@ std::map<int, SparseEntries> echelon(std::vector<SparseEntries> vectors) {
     const int last = node.key();
     std::vector<SparseEntries>& same = node.mapped();
     const auto share = [](const SparseEntries& z) { return std::abs(z.back().second) / largest(z); };
-    const auto best = std::max_element(
-        same.begin(), same.end(), [&](const SparseEntries& x, const SparseEntries& y) { return share(x) < share(y); });
-    std::iter_swap(same.begin(), best);
+    std::iter_swap(same.begin(), std::ranges::max_element(same, {}, share));
     for (std::size_t k = 1; k < same.size(); ++k)
       sort_in(subtract(same[k], same[k].back().second / same[0].back().second, same[0], last));
     ends.emplace(last, std::move(same[0]));

@@ -25,7 +25,7 @@ FrontQr::FrontQr(const Sparse& A, const std::vector<char>& left_out, double tole
     : tolerance_(tolerance),
       choice_(choice),
       most_(most),
-      column_(index(static_cast<int>(A.cols()))),
+      column_(index(A.cols())),
       place_(column_.size()),
       known_(column_.size()),
       local_(2 * column_.size()) {
@@ -33,7 +33,7 @@ FrontQr::FrontQr(const Sparse& A, const std::vector<char>& left_out, double tole
   for (double& b : known_) b = random() % 2 == 0 ? 1 : -1;
   const int n = static_cast<int>(A.cols());
   Sparse kept = A;
-  kept.prune([&](Eigen::Index row, Eigen::Index, double value) { return value != 0 && !left_out[index(int(row))]; });
+  kept.prune([&](Eigen::Index row, Eigen::Index, double value) { return value != 0 && !left_out[index(row)]; });
   kept.makeCompressed();
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> P(n);
   Eigen::COLAMDOrdering<int>()(kept, P);
@@ -56,7 +56,7 @@ FrontQr::FrontQr(const Sparse& A, const std::vector<char>& left_out, double tole
   for (int place = 0; place < n; ++place) {
     Front front = assemble(place, by_row, begin[place], std::move(parts[index(place)]));
     reduce(front);
-    if (front.left().size() > 0) parts[index(front.places[index(int(front.first))])].push_back(std::move(front));
+    if (front.left().size() > 0) parts[index(front.places[index(front.first)])].push_back(std::move(front));
   }
   column_ = std::move(order_);
   for (int k = 0; k < n; ++k) place_[index(column_[index(k)])] = k;
@@ -82,13 +82,13 @@ FrontQr::Front FrontQr::assemble(int place, const RowMajor& A, std::span<const i
   front.rows.setZero(rows, static_cast<Eigen::Index>(front.places.size()));
   Eigen::Index next = 0;
   for (const int row : begins) {
-    for (RowMajor::InnerIterator it(A, row); it; ++it) front.rows(next, local_[index(int(it.col()))]) = it.value();
+    for (RowMajor::InnerIterator it(A, row); it; ++it) front.rows(next, local_[index(it.col())]) = it.value();
     ++next;
   }
   for (Front& part : parts) {
     const auto left = part.left();
     for (Eigen::Index k = 0; k < left.cols(); ++k)
-      front.rows.col(local_[index(part.places[index(int(part.first + k))])]).segment(next, left.rows()) = left.col(k);
+      front.rows.col(local_[index(part.places[index(part.first + k)])]).segment(next, left.rows()) = left.col(k);
     next += left.rows();
   }
   return front;
@@ -114,7 +114,7 @@ void FrontQr::reduce(Front& front) {
 }
 
 void FrontQr::wait(Front& front) {
-  front.places.push_back(static_cast<int>(column_.size()) + column_[index(front.places[index(int(front.first))])]);
+  front.places.push_back(static_cast<int>(column_.size()) + column_[index(front.places[index(front.first)])]);
   front.rows.conservativeResize(Eigen::NoChange, front.rows.cols() + 1);
   front.rows.rightCols(1) = front.rows.col(front.first);
   ++front.first;
@@ -143,7 +143,7 @@ void FrontQr::settle_waiting(Front& front) {
 // Column k of what is left, whose norm that is.
 void FrontQr::take(Front& front, Eigen::Index k, double norm) {
   const auto column_at = [&](Eigen::Index j) {
-    const int place = front.places[index(int(front.first + j))];
+    const int place = front.places[index(front.first + j)];
     return waits(place) ? place - static_cast<int>(column_.size()) : column_[index(place)];
   };
   const int row = static_cast<int>(order_.size());
@@ -170,11 +170,11 @@ void FrontQr::take(Front& front, Eigen::Index k, double norm) {
     dependent_.push_back(column_at(k));
     if (dependent_.size() > most_) std::vector<Entry>().swap(R_), has_R_ = false;
   }
-  if (!waits(front.places[index(int(front.first + k))])) {
+  if (!waits(front.places[index(front.first + k)])) {
     ++front.first;
     return;
   }
-  front.places[index(int(front.first + k))] = front.places.back();
+  front.places[index(front.first + k)] = front.places.back();
   front.places.pop_back();
   front.rows.col(front.first + k) = front.rows.rightCols(1);
   front.rows.conservativeResize(Eigen::NoChange, front.rows.cols() - 1);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <utility>
 
@@ -18,16 +19,6 @@ constexpr double kMove = 1e-3;        // of a body's size
 constexpr double kShortWhile = 1e-3;  // s, where nothing moves yet
 constexpr double kPulledBack = 0.3;   // of the move that has to be left after the projection
 
-// Bodies of unit mass that turn as hard as they move: projections are the shortest ways.
-std::shared_ptr<const Model> with_unit_masses(const Model& model, std::span<const double> sizes) {
-  auto unit = std::make_shared<Model>(model);
-  for (std::size_t b = 0; b < sizes.size(); ++b) {
-    unit->bodies[b].mass = 1;
-    unit->bodies[b].inertia = sizes[b] * sizes[b] * Matrix3::Identity();
-  }
-  return unit;
-}
-
 }  // namespace
 
 Beside::Beside(const std::shared_ptr<const Model>& model, std::span<const BodyState> states, RowSpace& space,
@@ -37,13 +28,16 @@ Beside::Beside(const std::shared_ptr<const Model>& model, std::span<const BodySt
       space_(space),
       suspects_(suspects),
       sizes_(body_sizes(*model)) {
-  unit_ = with_unit_masses(*model_, sizes_);
+  auto unit = std::make_shared<Model>(*model_);
+  for (std::size_t b = 0; b < sizes_.size(); ++b) {
+    unit->bodies[b].mass = 1;
+    unit->bodies[b].inertia = sizes_[b] * sizes_[b] * Matrix3::Identity();
+  }
+  unit_ = std::move(unit);
 }
 
 Trial Beside::begin(const std::vector<int>& without) const {
-  Trial trial;
-  trial.problem = intrinsic_formulation().make(unit_, without);
-  trial.consistent = std::make_unique<Consistent>(*trial.problem, LinearChoice{});
+  Trial trial(intrinsic_formulation().make(unit_, without));
   Place& start = trial.start;
   start.q.resize(index(trial.problem->nq())), start.v.resize(index(trial.problem->nv()));
   check(trial.problem->from_bodies(states_, start.q, start.v).ok(), "every orientation has coordinates");
@@ -57,17 +51,15 @@ Trial Beside::begin(const std::vector<int>& without) const {
 
 double Beside::extent(std::span<const double> dq) const {
   double largest = 0;
-  for (std::size_t b = 0; b < sizes_.size(); ++b)
-    for (std::size_t k = 0; k < 6; ++k)
-      largest = std::max(largest, std::abs(dq[6 * b + k]) / (k < 3 ? sizes_[b] : 1.0));
+  const std::size_t per_body = dq.size() / sizes_.size();
+  for (std::size_t k = 0; k < dq.size(); ++k)
+    largest = std::max(largest, std::abs(dq[k]) / (k % per_body < 3 ? sizes_[k / per_body] : 1.0));
   return largest;
 }
 double Beside::distance(std::span<const double> q, std::span<const double> from) const {
-  double largest = 0;
-  const std::size_t per_body = q.size() / sizes_.size();
-  for (std::size_t k = 0; k < q.size(); ++k)
-    largest = std::max(largest, std::abs(q[k] - from[k]) / (k % per_body < 3 ? sizes_[k / per_body] : 1.0));
-  return largest;
+  std::vector<double> difference(q.size());
+  std::ranges::transform(q, from, difference.begin(), std::minus());
+  return extent(difference);
 }
 
 std::optional<Place> Beside::along_velocities(Trial& trial) {
@@ -151,9 +143,7 @@ bool Beside::leads_on(const Place& start, const Place& along, const std::vector<
   if (extent(start.v) == 0) return false;
   Place place = along;
   if (!along.holds) {
-    Trial trial;
-    trial.problem = intrinsic_formulation().make(unit_, without);
-    trial.consistent = std::make_unique<Consistent>(*trial.problem, LinearChoice{});
+    Trial trial(intrinsic_formulation().make(unit_, without));
     if (!trial.put_back(place)) return false;
     if (distance(place.q, start.q) < kPulledBack * kMove) return false;
     look(*trial.problem, place);

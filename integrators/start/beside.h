@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/body_state.h"
@@ -42,6 +43,8 @@ struct Trial {
   Place start;
   bool regular = false;  // it could be put there
 
+  explicit Trial(std::unique_ptr<Problem> of)
+      : problem(std::move(of)), consistent(std::make_unique<Consistent>(*problem, LinearChoice{})) {}
   bool put_back(Place& place) { return consistent->project_position(place.t, place.q).ok(); }
 };
 
@@ -69,7 +72,7 @@ class Beside {
   void look(Problem& problem, Place& place);
   double distance(std::span<const double> q, std::span<const double> from) const;
 
-  std::shared_ptr<const Model> model_, unit_;
+  std::shared_ptr<const Model> model_, unit_;  // unit_: of bodies of unit mass
   std::vector<BodyState> states_;
   RowSpace& space_;
   std::size_t suspects_;

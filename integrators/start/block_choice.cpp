@@ -43,13 +43,6 @@ double estimate(const BlockRows& rows, SparseCoefficients& kept, const std::vect
   return sums.allFinite() ? std::sqrt(sums.rowwise().squaredNorm().maxCoeff() / kVectors) / 2 : HUGE_VAL;
 }
 
-std::vector<int> others(std::size_t all, const std::vector<int>& left_out) {
-  std::vector<int> kept;
-  for (int k = 0; k < static_cast<int>(all); ++k)
-    if (!std::ranges::binary_search(left_out, k)) kept.push_back(k);
-  return kept;
-}
-
 }  // namespace
 
 BlockChoice::BlockChoice(const Model& model, const RowSpace& space, std::vector<int> rows,
@@ -80,7 +73,7 @@ bool BlockChoice::has_coefficients() const {
 
 void BlockChoice::keep_others(const std::vector<int>& left_out) {
   left_out_ = left_out;
-  kept_ = others(rows_.size(), left_out);
+  kept_ = all_but(rows_.size(), left_out);
   if (watched_ && !small()) sparse_ = std::make_unique<SparseCoefficients>(rows_, kept_);
 }
 
@@ -170,7 +163,7 @@ bool BlockChoice::exchange(double most) {
 
 bool BlockChoice::choose_clearest(const RowSpace& space) {
   const std::vector<int> chosen =
-      clearest_dependent_columns(rows_.columns(space, others(rows_.size(), {})), kIndependent);
+      clearest_dependent_columns(rows_.columns(space, all_but(rows_.size(), {})), kIndependent);
   return chosen.size() == left_out_.size() && take(chosen, worst_ / kGain);
 }
 

@@ -10,6 +10,7 @@
 //   else         DP1 and DP2 of unit directions
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ std::vector<OpenPart> open_parts(const Model& model, std::span<const BodyState> 
 
 struct Gap {
   double metres = 0, radians = 0;
+
+  double largest() const { return std::max(metres, radians); }
 };
 // "0.242 m", "0.242 m and 0.1 rad"; "moved by 0.242 m and turned by 0.1 rad" with the words for it.
 std::string describe(const Gap& gap, std::string_view moved = "", std::string_view turned = "");

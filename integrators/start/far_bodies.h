@@ -1,7 +1,8 @@
-// Mechanisms so far from the origin that the rounding of positions is of account beside their size.
+// Bodies and joints that lie too far away: mechanisms so far from the origin that the rounding of positions is of
+// account beside their size, and joints given by a global point far from the bodies they join, as where "7.0" was
+// written for "0.70".
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,13 +10,13 @@
 
 namespace poinsot {
 
-// How long a rod of a body's mass and inertia would be, m.
-inline double rod_length(const Body& body) {
-  return std::sqrt(6 * body.inertia.trace() / body.mass);
-}
-
 // A sentence where rounding of its position moves a constrained body by more than 1e-8 of its size: the longer one of
 // its longest arm and of a rod of its mass and inertia. Of the body it moves most.
 void tell_far_bodies(const Model& model, std::vector<std::string>& notices);
+
+// A sentence for every joint whose point is further from its bodies' centres of mass than twice the extent of the
+// mechanism without it: of the bodies' centres, and of the arms of other joints. Where there is nothing else, of the
+// body itself: of its distance from the origin, and of a rod of its inertia.
+void tell_far_joints(const Model& model, std::vector<std::string>& notices);
 
 }  // namespace poinsot

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
+#include <numeric>
 
 #include "core/check.h"
 #include "core/index.h"
@@ -15,7 +15,6 @@
 #include "formulations/registry.h"
 #include "integrators/start/closure.h"
 #include "integrators/start/far_bodies.h"
-#include "integrators/start/far_joints.h"
 #include "integrators/start/rank.h"
 #include "integrators/start/rough_pose.h"
 #include "integrators/stepping/consistent.h"
@@ -70,7 +69,6 @@ class Assembler {
   }
 
  private:
-  const std::vector<int>& kept_out() const { return result_.rank.aside_here; }
   bool off_position() const { return before_.position > kSatisfied; }
   bool off_velocity() const { return before_.velocity > kSatisfied; }
 
@@ -78,19 +76,17 @@ class Assembler {
   void refuse_any() const {
     if (settings_.assembly != Assembly::never || !(off_position() || off_velocity())) return;
     const bool position = off_position();
+    const int row = position ? before_.position_row : before_.velocity_row;
+    const double by = position ? before_.position : before_.velocity;
     throw InputError(fmt::format("the initial {} violates {} by {}; allowed with --no-assemble: {:.0e}",
-                                 position ? "pose" : "velocity",
-                                 describe_row(*model_, position ? before_.position_row : before_.velocity_row),
-                                 position ? describe_residual(*model_, before_.position_row, before_.position, 0)
-                                          : describe_residual(*model_, before_.velocity_row, before_.velocity, 1),
-                                 kSatisfied));
+                                 position ? "pose" : "velocity", describe_row(*model_, row),
+                                 describe_residual(*model_, row, by, position ? 0 : 1), kSatisfied));
   }
 
   // A pose far from the constraints is closed first where the scene or the settings ask for it, or refused.
   void close_from_afar() {
     const std::vector<Gap> open = gaps(*model_, given_);
-    const auto size = [](const Gap& g) { return std::max(g.metres, g.radians); };
-    const auto most = std::ranges::max_element(open, {}, size);
+    const auto most = std::ranges::max_element(open, {}, &Gap::largest);
     const double limit = kNearlyRight * size_of(given_);
     if (open.empty() || (most->metres <= limit && most->radians <= std::min(limit, kQuarter))) return;
     const int group = static_cast<int>(most - open.begin());
@@ -131,39 +127,33 @@ class Assembler {
 
   // The way each body was moved.
   void tell_closed(const ClosedPose& pose, int group, const Gap& gap) {
-    double turn = 0;
-    std::size_t turned = 0;
+    std::vector<Gap> ways(given_.size());
+    for (std::size_t b = 0; b < given_.size(); ++b)
+      ways[b] = {(pose.states[b].r - given_[b].r).norm(), turn_between(given_[b].A, pose.states[b].A)};
     std::vector<std::size_t> order(given_.size());
-    std::vector<double> moved(given_.size()), angle(given_.size());
-    for (std::size_t b = 0; b < given_.size(); ++b) {
-      order[b] = b;
-      moved[b] = (pose.states[b].r - given_[b].r).norm();
-      angle[b] = turn_between(given_[b].A, pose.states[b].A);
-      if (angle[b] > turn) turn = angle[b], turned = b;
-    }
-    std::ranges::stable_sort(order, std::greater(), [&](std::size_t b) { return std::max(moved[b], angle[b]); });
-    result_.notices.push_back(
-        fmt::format("initial pose assembled: {} was open by {}; {}", describe_group(*model_, group), describe(gap),
-                    listed(order, [&](std::size_t b) {
-                      return fmt::format("'{}' {}", model_->bodies[b].name,
-                                         describe({moved[b], angle[b]}, "moved by ", "turned by "));
-                    })));
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::greater(), [&](std::size_t b) { return ways[b].largest(); });
+    result_.notices.push_back(fmt::format(
+        "initial pose assembled: {} was open by {}; {}", describe_group(*model_, group), describe(gap),
+        listed(order, [&](std::size_t b) {
+          return fmt::format("'{}' {}", model_->bodies[b].name, describe(ways[b], "moved by ", "turned by "));
+        })));
     if (pose.from_beside)
       result_.notices.push_back(
           "the given pose is a singular one, from which the constraints can be closed in several ways, and one was "
           "taken; start nearer to the one that is meant");
-    else if (turn > kBranch)
+    else if (const auto most = std::ranges::max_element(ways, {}, &Gap::radians); most->radians > kBranch)
       result_.notices.push_back(fmt::format(
           "body '{}' had to turn by {:.3g} rad: on so long a way there can be other positions that close the "
           "mechanism; if another is meant, start nearer to it",
-          model_->bodies[turned].name, turn));
+          model_->bodies[index(most - ways.begin())].name, most->radians));
   }
 
   // Position and velocity where they are off.
   Status project() {
     if (!off_position() && !off_velocity()) return {};
-    const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, kept_out());
-    std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
+    const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, result_.rank.aside_here);
+    std::vector<double> q(index(problem->nq())), v(index(problem->nv()));
     check(problem->from_bodies(given_, q, v).ok(), "rA represents every orientation");
     Consistent consistent(*problem, settings_.linear());
     if (off_position()) {
@@ -229,8 +219,7 @@ class Assembler {
   // Redundant rows must hold where the others do.
   void refuse_conflicts() const {
     if (result_.rank.conflicts.empty()) return;
-    const auto size = [](const Conflict& c) { return c.by; };
-    const Conflict& worst = *std::ranges::max_element(result_.rank.conflicts, {}, size);
+    const Conflict& worst = *std::ranges::max_element(result_.rank.conflicts, {}, &Conflict::by);
     throw InputError(
         fmt::format("the constraints conflict: with the others satisfied, {} is still violated by {}; `poinsot check` "
                     "names what it depends on",
@@ -278,11 +267,7 @@ class Assembler {
 }  // namespace
 
 InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings) {
-  if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) {
-    InitialState none;
-    none.status = no_value(0, fault);
-    return none;
-  }
+  if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) return {no_value(0, fault), {}, {}, {}};
   return Assembler(model, settings).run();
 }
 

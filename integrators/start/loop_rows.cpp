@@ -1,8 +1,7 @@
 #include "integrators/start/loop_rows.h"
 
 #include <Eigen/QR>
-#include <algorithm>
-#include <numeric>
+#include <cmath>
 
 #include "core/index.h"
 #include "linsolve/lists.h"
@@ -15,9 +14,7 @@ constexpr double kClearly = 1e-2;  // what of a unit row has to be left beside t
 }  // namespace
 
 RowSpace all_rows(const std::shared_ptr<const Model>& model, double t, std::span<const BodyState> states) {
-  std::vector<int> rows(model->rows.size());
-  std::iota(rows.begin(), rows.end(), 0);
-  RowSpace space(model, std::move(rows));
+  RowSpace space(model, all_but(model->rows.size(), {}));
   space.stand(t, states);
   return space;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -23,13 +24,6 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr double kContradicts = 1e-6;  // of a body's size: by what the scene says
 constexpr double kNoLoad = 1e-7;       // of a null vector on unit rows
 constexpr int kManyRows = 20'000;      // of loops: one random direction is looked at in the place of two
-
-std::vector<int> united(std::vector<int> a, const std::vector<int>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  std::ranges::sort(a);
-  a.erase(std::unique(a.begin(), a.end()), a.end());
-  return a;
-}
 
 class Examination {
  public:
@@ -114,8 +108,7 @@ class Examination {
     space_->rates(start.v, rate, nu);
     const double speed = beside_->extent(start.v);
     for (const int row : without) {
-      const std::size_t k =
-          index(static_cast<int>(std::ranges::lower_bound(space_->rows(), row) - space_->rows().begin()));
+      const std::size_t k = index(std::ranges::lower_bound(space_->rows(), row) - space_->rows().begin());
       const double size = space_->size_of_row(k), length = space_->lengths()[k];
       const double rate_off = std::abs(rate[k]) / length;
       if (off[k] > kContradicts * size)
@@ -149,8 +142,7 @@ class Examination {
       for (int k = 0; k < columns.cols(); ++k) loaded[index(row(k).group)] = 1;
     } else {
       for (const SparseEntries& z : null.vectors) {
-        double largest = 0;
-        for (const auto& [column, value] : z) largest = std::max(largest, std::abs(value));
+        const double size = largest(z);
         for (auto first = z.begin(); first != z.end();) {
           const int group = row(first->first).group;
           const Row& of = row(first->first);
@@ -159,7 +151,7 @@ class Examination {
           for (; first != z.end() && row(first->first).group == group; ++first)
             for (Sparse::InnerIterator it(columns, first->first); it; ++it)
               if (it.row() / 6 == body) load[it.row() % 6] += first->second * it.value();
-          if (load.norm() > kNoLoad * largest) loaded[index(group)] = 1;
+          if (load.norm() > kNoLoad * size) loaded[index(group)] = 1;
         }
       }
     }
@@ -185,7 +177,9 @@ class Examination {
     };
     for (ColumnDependency& d : column_dependencies(part, kIndependent).columns)
       result_.singular.push_back({space_->rows()[index(kept[index(d.column)])], whole(std::move(d.others))});
-    result_.aside_here = united(result_.aside, whole(choose(few_null_vectors(part, kIndependent))));
+    result_.aside_here.clear();
+    std::ranges::set_union(result_.aside, whole(choose(few_null_vectors(part, kIndependent))),
+                           std::back_inserter(result_.aside_here));
     result_.rank_here = result_.rank - static_cast<int>(result_.singular.size());
   }
 
@@ -216,15 +210,9 @@ std::vector<int> RankAnalysis::dependent_rows() const {
 }
 
 std::string describe(const Conflict& conflict) {
-  switch (conflict.level) {
-    case Conflict::Level::position:
-      return fmt::format("{:.3g} m (position)", conflict.by);
-    case Conflict::Level::velocity:
-      return fmt::format("{:.3g} m/s (velocity)", conflict.by);
-    case Conflict::Level::later:
-      return fmt::format("{:.3g} m (position, at t = {:.3g} s)", conflict.by, conflict.time);
-  }
-  return {};
+  if (conflict.level == Conflict::Level::velocity) return fmt::format("{:.3g} m/s (velocity)", conflict.by);
+  if (conflict.level == Conflict::Level::position) return fmt::format("{:.3g} m (position)", conflict.by);
+  return fmt::format("{:.3g} m (position, at t = {:.3g} s)", conflict.by, conflict.time);
 }
 
 RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states,

@@ -3,25 +3,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <iterator>
-#include <numeric>
-#include <utility>
 
 #include "core/index.h"
 #include "formulations/registry.h"
 #include "integrators/start/loop_rows.h"
 
 namespace poinsot {
-namespace {
-
-std::vector<int> rows_left_out(const Problem& problem) {
-  std::vector<int> all(problem.model().rows.size()), out;
-  std::iota(all.begin(), all.end(), 0);
-  std::ranges::set_difference(all, problem.model_rows(), std::back_inserter(out));
-  return out;
-}
-
-}  // namespace
 
 Reactions::Reactions(const Problem& problem) : lambda_(problem.model().rows.size()) {
   if (problem.model_rows().size() == lambda_.size()) return;
@@ -44,7 +31,7 @@ void Reactions::update(const Sample& sample) {
   if (!choice_ || revision_ != problem_->revision()) {
     revision_ = problem_->revision();
     const auto model = std::make_shared<const Model>(problem_->model());
-    choice_.emplace(model, loop_rows(model, sample.t, states_), rows_left_out(*problem_));
+    choice_.emplace(model, loop_rows(model, sample.t, states_), all_but(lambda_.size(), problem_->model_rows()));
   }
   std::ranges::fill(lambda_, 0.0);
   const std::vector<int>& rows = problem_->model_rows();

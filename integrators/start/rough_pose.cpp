@@ -147,25 +147,14 @@ class Closing {
 }  // namespace
 
 ClosedPose close_mechanism(const Model& model, std::span<const BodyState> given) {
-  ClosedPose result;
   Closing closing(model, given);
-  result.closed = closing.run();
-  if (!result.closed) {
-    Closing beside(model, given);
-    beside.step_aside();
-    if (beside.run()) {
-      result.closed = result.from_beside = true;
-      result.states = std::move(beside.states());
-      return result;
-    }
-  }
-  result.states = std::move(closing.states());
-  if (result.closed) return result;
-  const std::vector<Gap> open = gaps(model, result.states);
-  const auto most = std::ranges::max_element(open, {}, [](const Gap& g) { return std::max(g.metres, g.radians); });
-  result.worst = static_cast<int>(most - open.begin());
-  result.gap = *most;
-  return result;
+  if (closing.run()) return {.closed = true, .states = std::move(closing.states())};
+  Closing beside(model, given);
+  beside.step_aside();
+  if (beside.run()) return {.closed = true, .from_beside = true, .states = std::move(beside.states())};
+  const std::vector<Gap> open = gaps(model, closing.states());
+  const auto most = std::ranges::max_element(open, {}, &Gap::largest);
+  return {.states = std::move(closing.states()), .worst = static_cast<int>(most - open.begin()), .gap = *most};
 }
 
 }  // namespace poinsot

@@ -29,7 +29,7 @@ struct ClosedPose {
   bool from_beside = false;       // it took a second try: what is found is one of several ways to close the mechanism
   std::vector<BodyState> states;  // where it is not closed: as near as it comes
   int worst = -1;                 // the group that stays open most, and by how much
-  Gap gap;
+  Gap gap = {};
 };
 
 ClosedPose close_mechanism(const Model& model, std::span<const BodyState> given);

@@ -56,7 +56,7 @@ void RowChoice::carry_over(std::span<double> lambda) {
 }
 
 double RowChoice::size_of(int row) const {
-  const auto k = static_cast<std::size_t>(std::ranges::lower_bound(space_.rows(), row) - space_.rows().begin());
+  const std::size_t k = index(std::ranges::lower_bound(space_.rows(), row) - space_.rows().begin());
   return space_.size_of_row(k) * space_.lengths()[k];
 }
 

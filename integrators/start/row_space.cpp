@@ -2,32 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
+#include <ranges>
 
 #include "core/check.h"
 #include "core/index.h"
 #include "formulations/registry.h"
 
 namespace poinsot {
-namespace {
 
-std::vector<int> all_but(std::size_t count, const std::vector<int>& rows) {
+std::vector<int> all_but(std::size_t count, const std::vector<int>& some) {
   std::vector<int> others;
-  auto next = rows.begin();
-  for (int k = 0; k < static_cast<int>(count); ++k) {
-    if (next != rows.end() && *next == k)
-      ++next;
-    else
-      others.push_back(k);
-  }
+  std::ranges::set_difference(std::views::iota(0, static_cast<int>(count)), some, std::back_inserter(others));
   return others;
 }
-
-bool has_points(RowType type) {
-  return type == RowType::DP2 || type == RowType::D || type == RowType::CD || type == RowType::pfaffian;
-}
-
-}  // namespace
 
 std::vector<double> body_sizes(const Model& model) {
   std::vector<double> sizes(model.bodies.size(), 0.0);
@@ -39,7 +27,7 @@ std::vector<double> body_sizes(const Model& model) {
     return model.bodies[index(body)].position + model.bodies[index(body)].orientation * s;
   };
   for (const Row& row : model.rows) {
-    if (!has_points(row.type)) continue;
+    if (row.type == RowType::DP1 || row.type == RowType::angle) continue;  // without points
     widen(row.i, row.s_i.norm());
     widen(row.j, row.s_j.norm());
     if (row.type == RowType::DP2) widen(row.i, (place(row.j, row.s_j) - place(row.i, row.s_i)).norm());
@@ -91,7 +79,7 @@ void RowSpace::stand(double t, std::span<const BodyState> states) {
   for (int k = 0; k < Gt_.outerSize(); ++k) {
     double sum = 0;
     for (Eigen::SparseMatrix<double>::InnerIterator it(Gt_, k); it; ++it) {
-      if (it.row() % 6 >= 3) it.valueRef() /= sizes_[index(static_cast<int>(it.row()) / 6)];
+      if (it.row() % 6 >= 3) it.valueRef() /= sizes_[index(it.row() / 6)];
       sum += it.value() * it.value();
     }
     const double rounding = rounding_of(model_->rows[index(rows_[index(k)])], states);
@@ -107,22 +95,13 @@ double RowSpace::rounding_of(const Row& row, std::span<const BodyState> states) 
   const auto place = [&](int body, const Vector3& s) {
     return s.norm() + (body == kGround ? 0.0 : states[index(body)].r.norm());
   };
-  switch (row.type) {
-    case RowType::DP1:
-    case RowType::angle: {
-      double size = 0;
-      for (const int body : {row.i, row.j})
-        if (body != kGround) size = std::max(size, 1 / sizes_[index(body)]);
-      return kDependent * row.a_i.norm() * row.a_j.norm() * size;
-    }
-    case RowType::D:
-      return kDependent * 2 * (place(row.i, row.s_i) + place(row.j, row.s_j));
-    case RowType::DP2:
-    case RowType::CD:
-    case RowType::pfaffian:
-      return 0;
+  if (row.type == RowType::DP1 || row.type == RowType::angle) {
+    double size = 0;
+    for (const int body : {row.i, row.j})
+      if (body != kGround) size = std::max(size, 1 / sizes_[index(body)]);
+    return kDependent * row.a_i.norm() * row.a_j.norm() * size;
   }
-  return 0;
+  return row.type == RowType::D ? kDependent * 2 * (place(row.i, row.s_i) + place(row.j, row.s_j)) : 0;
 }
 
 void RowSpace::distances(std::span<double> out) const {

@@ -21,6 +21,9 @@ namespace poinsot {
 
 inline constexpr double kDependent = 1e-9, kIndependent = 1e-5;
 
+// The numbers below `count` that are not among `some`; both ascending.
+std::vector<int> all_but(std::size_t count, const std::vector<int>& some);
+
 // m, by body: the longest arm of a row on it; bodies without one take that of the bodies they share rows with.
 std::vector<double> body_sizes(const Model& model);
 
@@ -33,7 +36,6 @@ class RowSpace {
   void stand(double t, std::span<const BodyState> states);
 
   const std::vector<int>& rows() const { return rows_; }
-  int variables() const { return problem_->nv(); }
   // Gᵀ, a column of unit length for each row; 0 where the gradient is nothing but rounding.
   const Eigen::SparseMatrix<double>& columns() const { return Gt_; }
   // ‖g‖ by row; of a row that vanishes, that of its terms.

@@ -27,8 +27,7 @@ RowsAside::RowsAside(const Model& model, std::vector<int> rows) : rows_(std::mov
   }
   problem_ = intrinsic_formulation().make(std::move(alone), {});
   states_.resize(body_.size());
-  q_.resize(index(problem_->nq())), v_.resize(index(problem_->nv())), residual_.resize(rows_.size()),
-      nu_.resize(rows_.size());
+  q_.resize(index(problem_->nq())), v_.resize(index(problem_->nv())), residual_.resize(rows_.size());
 }
 
 std::span<const double> RowsAside::position_residual(double t, std::span<const BodyState> states) {
@@ -43,11 +42,6 @@ std::span<const double> RowsAside::velocity_residual() {
   problem_->set_velocity(v_);
   problem_->velocity_residual(residual_);
   return residual_;
-}
-
-std::span<const double> RowsAside::nu() {
-  problem_->nu(nu_);
-  return nu_;
 }
 
 }  // namespace poinsot

@@ -17,16 +17,15 @@ class RowsAside {
   RowsAside(const Model& model, std::vector<int> rows);
 
   const std::vector<int>& rows() const { return rows_; }
-  // By row, of the model's bodies at time t; the rates where Φ was asked for last.
+  // By row, of the model's bodies at time t; the rate where Φ was asked for last.
   std::span<const double> position_residual(double t, std::span<const BodyState> states);
   std::span<const double> velocity_residual();
-  std::span<const double> nu();
 
  private:
   std::vector<int> rows_, body_;  // of the model
   std::unique_ptr<Problem> problem_;
   std::vector<BodyState> states_;
-  std::vector<double> q_, v_, residual_, nu_;
+  std::vector<double> q_, v_, residual_;
 };
 
 }  // namespace poinsot

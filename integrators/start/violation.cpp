@@ -20,38 +20,27 @@ std::string describe_residual(const Model& model, int row, double value, int ord
 std::vector<BodyState> given_state(const Model& model) {
   std::vector<BodyState> states;
   for (const Body& body : model.bodies) {
-    BodyState state;
-    state.r = body.position;
-    state.A = body.orientation;
-    state.rd = body.velocity;
-    state.w = body.angular_velocity;
-    states.push_back(state);
+    states.push_back({.r = body.position, .A = body.orientation, .rd = body.velocity, .w = body.angular_velocity});
   }
   return states;
 }
 
 Violation violation(const std::shared_ptr<const Model>& model, const std::vector<BodyState>& states) {
   const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model, {});
-  std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
+  std::vector<double> q(index(problem->nq())), v(index(problem->nv()));
   check(problem->from_bodies(states, q, v).ok(), "rA represents every orientation");
   problem->set_position(0, q);
   problem->set_velocity(v);
-  std::vector<double> r(static_cast<std::size_t>(problem->nc()));
+  std::vector<double> r(index(problem->nc()));
   Violation largest;
+  const auto find_largest = [&](double& most, int& row) {
+    for (std::size_t k = 0; k < r.size(); ++k)
+      if (!(std::abs(r[k]) <= most)) most = std::abs(r[k]), row = static_cast<int>(k);
+  };
   problem->position_residual(r);
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    if (!(std::abs(r[k]) <= largest.position)) {
-      largest.position = std::abs(r[k]);
-      largest.position_row = static_cast<int>(k);
-    }
-  }
+  find_largest(largest.position, largest.position_row);
   problem->velocity_residual(r);
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    if (!(std::abs(r[k]) <= largest.velocity)) {
-      largest.velocity = std::abs(r[k]);
-      largest.velocity_row = static_cast<int>(k);
-    }
-  }
+  find_largest(largest.velocity, largest.velocity_row);
   return largest;
 }
 
