@@ -26,12 +26,15 @@ struct Axis {
   std::string_view name;                // of the parameter
   std::vector<double> values = {};      // of accuracy: numbers of steps
   std::vector<double> quick = {};       // some of them
+  double benign = 0;                    // far from the edge: one of the values that `quick` has, too
   std::vector<double> tolerances = {};  // of accuracy, and
   std::vector<double> quick_tolerances = {};
-  double benign = 0;  // far from the edge: one of the values that `quick` has, too
 
-  const std::vector<double>& of(bool is_quick) const { return is_quick ? quick : values; }
-  const std::vector<double>& tolerances_of(bool is_quick) const { return is_quick ? quick_tolerances : tolerances; }
+  bool of_settings() const { return along != parameter && along != variant; }
+  const std::vector<double>& of(bool is_quick, bool controls_error = false) const {
+    if (along == accuracy && controls_error) return is_quick ? quick_tolerances : tolerances;
+    return is_quick ? quick : values;
+  }
 };
 
 // A place of the map. `nudge`: by how much, relatively, the initial velocity (of a motion from rest the load) is
@@ -68,6 +71,8 @@ const Family& require_family(std::string_view name);
 std::vector<const Family*> require_families(const std::vector<std::string>& names);
 
 // The axis of accuracy that most families have: 40 to 2560 steps, rtol 1e-4 to 1e-10.
-Axis accuracy();
+Axis accuracy(std::vector<double> steps = {40, 160, 640, 2560}, std::vector<double> quick = {40, 640},
+              std::vector<double> tolerances = {1e-4, 1e-6, 1e-8, 1e-10},
+              std::vector<double> quick_tolerances = {1e-4, 1e-8});
 
 }  // namespace poinsot::stability

@@ -1,11 +1,11 @@
-#include "bench/stability/judge.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 
+#include "bench/stability/family.h"
+#include "bench/stability/verdict.h"
 #include "integrators/integrator.h"
 
 namespace poinsot::stability {
@@ -24,11 +24,8 @@ constexpr double kHuge = 1e300;                   // an error without a number
 constexpr double kLinear = 0.1, kApart = 2;       // of the motion: a promise above the one says the other at most
 constexpr std::size_t kBetween = 8;               // times the sensitivity is asked for to each that is compared
 
-bool fixed(const Axis& axis) {
-  return axis.along == Axis::parameter || axis.along == Axis::variant;
-}
 bool benign(const Family& family, const Cell& cell) {
-  return (!fixed(family.x) || cell.x == family.x.benign) && (!fixed(family.y) || cell.y == family.y.benign);
+  return (family.x.of_settings() || cell.x == family.x.benign) && (family.y.of_settings() || cell.y == family.y.benign);
 }
 
 Place place_of(const Family& family, const Cell& cell) {
