@@ -11,7 +11,7 @@
 #include "app/signals.h"
 #include "app/terminal.h"
 #include "bench/stability/amplification.h"
-#include "bench/stability/mapping.h"
+#include "bench/stability/maps.h"
 #include "bench/study/report.h"
 #include "core/input_error.h"
 #include "core/interruption.h"
