@@ -3,7 +3,6 @@
 
 #include <limits>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "bench/cases/kept.h"
