@@ -6,7 +6,6 @@
 #include <ranges>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "bench/cases/random_mechanism.h"
 #include "bench/study/cache.h"
