@@ -67,10 +67,11 @@ Command command(const CLI::App& app) {
 
 }  // namespace
 
-std::vector<Command> command_tree(const CLI::App& app) {
-  std::vector<Command> all{command(app)};
-  for (const CLI::App* one : app.get_subcommands([](const CLI::App*) { return true; })) all.push_back(command(*one));
-  return all;
+CommandTree command_tree(const CLI::App& app) {
+  CommandTree tree{command(app), {}};
+  for (const CLI::App* one : app.get_subcommands([](const CLI::App*) { return true; }))
+    tree.commands.push_back(command(*one));
+  return tree;
 }
 
 }  // namespace poinsot::app
