@@ -28,7 +28,6 @@ Family euler_angles() {
          {0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 0.5},
          {0, 1e-12, 1e-6, 0.5},
          0.5};
-  f.y = accuracy();
   f.columns = {"body.x", "body.y", "body.z", "body.e0", "body.e1", "body.e2", "body.e3"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     const double a = -1 + 2 * (1 + at.nudge) * t, b = at.x, ca = std::cos(a / 2), sa = std::sin(a / 2),
@@ -52,7 +51,6 @@ Family spin() {
       "velocity": [0, "-0.6*w*cos(1)", "-0.6*w*sin(1)"], "angular_velocity": ["0.6*w", 0, "0.8*w"]}],
     "joints": [{"type": "spherical", "bodies": ["ground", "body"], "point": [0, 0, 0]}]})json"};
   f.x = {Axis::parameter, "spin w, rad/s", "w", {1, 3, 10, 30, 100, 300, 1000}, {1, 10, 100}, 1};
-  f.y = accuracy();
   f.columns = {"body.x", "body.y", "body.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     const double J = 1.2, J3 = 0.3, w = at.x * (1 + at.nudge);
@@ -81,7 +79,6 @@ Family top() {
       "orientation": {"axis": [1, 0, 0], "angle": 1}, "angular_velocity": [0, 0, "w"]}],
     "joints": [{"type": "spherical", "bodies": ["ground", "top"], "point": [0, 0, 0]}]})json"};
   f.x = {Axis::parameter, "spin w, rad/s", "w", {1, 10, 30, 100, 300, 1000}, {10, 100}, 10};
-  f.y = accuracy();
   f.columns = {"top.x", "top.y", "top.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     constexpr double J = kTopJ;

@@ -39,7 +39,6 @@ Family inconsistent() {
          {0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1},
          {0, 1e-9, 1e-3, 1e-1},
          0};
-  f.y = accuracy();
   f.columns = {"rod.y", "rod.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     return {swung_rod(std::numbers::pi / 2, 1 + at.nudge, t)};
@@ -68,7 +67,6 @@ Family pulse() {
   f.scenes = {pushed("/x*(step(t - 0.3) - step(t - 0.3 - x))")};
   f.x = {
       Axis::parameter, "duration of the force, s", "x", {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8}, {1e-1, 1e-3, 1e-6}, 1e-1};
-  f.y = accuracy();
   f.columns = {"mass.x", "mass.y", "mass.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     const double into = std::clamp(t - 0.3, 0.0, at.x);
@@ -124,7 +122,6 @@ Family kinks() {
          {0, 1, 2, 3, 4, 5},
          {0, 1, 2, 3, 4, 5},
          0};
-  f.y = accuracy();
   f.columns = {"mass.x"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     constexpr double k = 0.305;

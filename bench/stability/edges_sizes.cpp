@@ -139,7 +139,6 @@ Family mass_ratio() {
          {1e-8, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6, 1e8},
          {1e-8, 1e-4, 1, 1e4, 1e8},
          1};
-  f.y = accuracy();
   f.columns = {"inner.y", "inner.z", "outer.y", "outer.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     return {double_pendulum(at.x, kGravity * (1 + at.nudge), t)};
@@ -187,7 +186,6 @@ Family stiffness() {
       {"type": "force", "body": "mass", "point": [0, 0, 0],
        "force": ["0.048*k*cos(t)", "0.06*k*cos(t)", "0.064*k*cos(t)"]}]})json"};
   f.x = {Axis::parameter, "stiffness, N/m", "k", {1e2, 1e3, 1e4, 1e5, 1e6, 1e8, 1e10}, {1e2, 1e4, 1e6, 1e8}, 1e2};
-  f.y = accuracy();
   f.columns = {"mass.x", "mass.y", "mass.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     const double slow = 0.1 * at.x / (at.x - 1) * (1 + at.nudge) * std::cos(t), s = 1 + slow;

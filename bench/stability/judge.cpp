@@ -46,7 +46,6 @@ class Truths {
     if (fresh) found->second = compute(place, times);
     return found->second;
   }
-  double size(const Place& place) const { return family_.size ? family_.size(place) : 1; }
 
  private:
   std::vector<std::vector<double>> motions(const Place& place, std::size_t times) const {
@@ -63,7 +62,7 @@ class Truths {
   }
   Motion compute(Place place, std::size_t times) const {
     Motion motion{motions(place, times), 0};
-    const double scale = size(place);
+    const double scale = family_.size(place);
     const std::vector<double> along = motions(place, kBetween * times).front();
     place.nudge = kNudge;
     const std::vector<double> nudged = motions(place, kBetween * times).front();
@@ -117,12 +116,12 @@ void judge(const Family& family, std::vector<Cell>& cells) {
   };
   // S r T (h r)^p
   const auto order_bound = [&](const Cell& cell) {
-    const double rate = family.rate ? family.rate(place_of(family, cell)) : 1;
+    const double rate = family.rate(place_of(family, cell));
     return std::max(truth_of(cell).sensitivity, kLeastSensitivity) * rate * cell.end *
            std::pow(cell.step * rate, integrators().require(cell.integrator).order);
   };
   for (Cell& cell : cells)
-    cell.error = cell.ended() ? error(cell.values, truth_of(cell), truths.size(place_of(family, cell))) : kNone;
+    cell.error = cell.ended() ? error(cell.values, truth_of(cell), family.size(place_of(family, cell))) : kNone;
 
   std::map<std::string, Method> methods;
   for (const Cell& cell : cells) {
@@ -145,15 +144,14 @@ void judge(const Family& family, std::vector<Cell>& cells) {
     const Method& method = methods[cell.method()];
     const double sensitivity = std::max(truth_of(cell).sensitivity, 1.0);
     const Place place = place_of(family, cell);
-    const double reach = family.reach ? std::max(1.0, family.reach(place)) : 1;
-    const double tolerance = cell.rtol * (reach + kAtol / truths.size(place));
+    const double reach = std::max(1.0, family.reach(place));
+    const double tolerance = cell.rtol * (reach + kAtol / family.size(place));
     cell.promised = integrator.controls_error
                         ? std::sqrt(kPerBody * static_cast<double>(cell.bodies)) * cell.steps * tolerance * sensitivity
                     : method.constant == 0 && !method.finest
                         ? kCoarse
                         : kSlack * (method.constant * order_bound(cell) + sensitivity * kNewton);
-    const double open = family.floor ? family.floor(place) : 0;
-    cell.promised += kSlack * sensitivity * (std::numeric_limits<double>::epsilon() * reach + open);
+    cell.promised += kSlack * sensitivity * (std::numeric_limits<double>::epsilon() * reach + family.floor(place));
     if (cell.promised > kLinear) cell.promised = std::max(cell.promised, kApart);
     const bool warned = !family.warning.empty() && cell.message.find(family.warning) != std::string::npos;
     const bool said = !cell.message.empty() && !method.said.contains(without_numbers(cell.message));
