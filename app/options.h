@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/scene_reader.h"
@@ -14,13 +15,8 @@ namespace poinsot::app {
 
 // A subcommand that is done by `run`, whose result is the exit status, and what its options are to fill in.
 template <class Options>
-struct Subcommand {
-  CLI::App& command;
-  Options& options;
-};
-template <class Options>
-Subcommand<Options> add_command(CLI::App& app, int& status, const std::string& name, const std::string& about,
-                                int (*run)(const Options& options)) {
+std::pair<CLI::App&, Options&> add_command(CLI::App& app, int& status, const std::string& name,
+                                           const std::string& about, int (*run)(const Options& options)) {
   CLI::App* const command = app.add_subcommand(name, about);
   const auto options = std::make_shared<Options>();
   command->callback([options, run, &status] { status = run(*options); });
