@@ -62,10 +62,12 @@ struct Family {
   // What the columns should be at t. Several motions where the data do not decide between them (a constraint violated
   // by less than is told apart): the nearest counts.
   std::vector<std::vector<double>> (*truth)(const Place& at, double t) = nullptr;
-  double (*size)(const Place& at) = [](const Place&) { return 1.0; };   // of the motion, which errors are relative to
-  double (*rate)(const Place& at) = [](const Place&) { return 1.0; };   // 1/s: by which a step is short or long
-  double (*reach)(const Place& at) = [](const Place&) { return 1.0; };  // of positions from the origin, in sizes
-  double (*floor)(const Place& at) = [](const Place&) { return 0.0; };  // of the error: what the data leave open
+  // Of the motion: its size, which errors are relative to; its rate, 1/s, by which a step is short or long; how far its
+  // positions are from the origin, in its sizes; and of its error what the data leave open.
+  double (*size)(const Place& at) = [](const Place&) { return 1.0; };
+  double (*rate)(const Place& at) = [](const Place&) { return 1.0; };
+  double (*reach)(const Place& at) = [](const Place&) { return 1.0; };
+  double (*floor)(const Place& at) = [](const Place&) { return 0.0; };
   std::string_view warning = {};  // of a notice that speaks of this edge, wherever it is
 };
 
