@@ -23,7 +23,7 @@ std::pair<CLI::App&, Options&> add_command(CLI::App& app, int& status, const std
   return {*command, *options};
 }
 
-void add_scene(CLI::App& command, std::string& file, std::vector<std::string>& set);
+void add_scene(CLI::App& command, std::string& file, std::vector<std::string>& set);  // with --set
 // --set NAME=VALUE, for every command that takes scenes; what it gave, for read_scene(). Throws InputError.
 void add_set(CLI::App& command, std::vector<std::string>& given);
 ParameterValues values_set(const std::vector<std::string>& given);
