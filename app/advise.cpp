@@ -6,9 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_output.h"
 #include "app/options.h"
-#include "app/scene_lines.h"
 #include "app/terminal.h"
 #include "bench/study/advice.h"
 #include "bench/study/measure.h"
@@ -202,8 +200,7 @@ int run_advise(const AdviseOptions& options) {
 void add_advise(CLI::App& app, int& status) {
   const auto [command, options] =
       add_command(app, status, "advise", "find the cheapest way to an accuracy on a scene, by trying", run_advise);
-  add_scene(command, options.scene);
-  add_set(command, options.set);
+  add_scene(command, options.scene, options.set);
   command
       .add_option("--accuracy", options.accuracy,
                   fmt::format("largest error, relative to the motion (default {})", options.accuracy))

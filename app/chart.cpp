@@ -7,10 +7,8 @@
 #include <set>
 
 #include "app/commands.h"
-#include "app/models_directory.h"
 #include "app/options.h"
 #include "app/progress_line.h"
-#include "app/scene_lines.h"
 #include "app/terminal.h"
 #include "bench/study/fronts.h"
 #include "bench/study/measure.h"

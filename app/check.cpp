@@ -3,12 +3,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_output.h"
 #include "app/options.h"
-#include "app/scene_lines.h"
 #include "app/terminal.h"
 #include "bench/study/scene_check_text.h"
 #include "core/json_document.h"
+#include "core/places.h"
 #include "core/scene_reader.h"
 
 namespace poinsot::app {
@@ -48,8 +47,7 @@ void add_check(CLI::App& app, int& status) {
   const auto [command, options] =
       add_command(app, status, "check",
                   "degrees of freedom, redundant and conflicting constraints, initial state, derivatives", run_check);
-  add_scene(command, options.scene);
-  add_set(command, options.set);
+  add_scene(command, options.scene, options.set);
   add_json(command, options.json);
   add_quiet(command, options.quiet);
 }

@@ -43,16 +43,15 @@ Argument argument(const std::string& command, const CLI::Option& option) {
   Argument result;
   result.about = option.get_description();
   result.value = option.get_items_expected_max() == 0 ? "" : option.get_type_name();
+  result.takes = takes(option, result.value);
   if (option.get_positional()) {
     std::string name = option.get_name();
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::toupper(c); });
     result.names = {result.value.empty() ? name : result.value};
-    result.takes = takes(option, result.value);
     result.words = words_of(command, name);
   } else {
     for (const std::string& name : option.get_snames()) result.names.push_back("-" + name);
     for (const std::string& name : option.get_lnames()) result.names.push_back("--" + name);
-    result.takes = takes(option, result.value);
     result.words = words_of(command, result.names.back());
   }
   return result;
@@ -67,10 +66,11 @@ Command command(const CLI::App& app) {
 
 }  // namespace
 
-std::vector<Command> command_tree(const CLI::App& app) {
-  std::vector<Command> all{command(app)};
-  for (const CLI::App* one : app.get_subcommands([](const CLI::App*) { return true; })) all.push_back(command(*one));
-  return all;
+CommandTree command_tree(const CLI::App& app) {
+  CommandTree tree{command(app), {}};
+  for (const CLI::App* one : app.get_subcommands([](const CLI::App*) { return true; }))
+    tree.commands.push_back(command(*one));
+  return tree;
 }
 
 }  // namespace poinsot::app

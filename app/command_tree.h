@@ -23,6 +23,10 @@ struct Command {
   std::vector<Argument> positionals, options;
 };
 
-std::vector<Command> command_tree(const CLI::App& app);
+struct CommandTree {
+  Command program;
+  std::vector<Command> commands;
+};
+CommandTree command_tree(const CLI::App& app);
 
 }  // namespace poinsot::app

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_output.h"
 #include "app/options.h"
 #include "app/terminal.h"
 #include "core/printable.h"

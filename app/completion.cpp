@@ -2,7 +2,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <memory>
+#include <algorithm>
+#include <ranges>
 
 #include "app/command_tree.h"
 #include "app/commands.h"
@@ -14,6 +15,7 @@ namespace poinsot::app {
 namespace {
 
 struct CompletionOptions {
+  const CLI::App* app = nullptr;
   std::string shell;
   bool quiet = false;
 };
@@ -32,13 +34,7 @@ std::vector<std::string> option_names(const Command& command) {
   return names;
 }
 
-std::vector<std::string> command_names(const std::vector<Command>& tree) {
-  std::vector<std::string> names;
-  for (std::size_t k = 1; k < tree.size(); ++k) names.push_back(tree[k].name);
-  return names;
-}
-
-std::string bash(const std::vector<Command>& tree) {
+std::string bash(const CommandTree& tree) {
   const auto generate = [](const Argument& a) -> std::string {
     if (a.takes == Takes::file) return "compgen -f -- \"$word\"";
     if (a.takes == Takes::folder) return "compgen -d -- \"$word\"";
@@ -53,9 +49,8 @@ std::string bash(const std::vector<Command>& tree) {
   text += fmt::format(
       "  if [ \"$COMP_CWORD\" -eq 1 ]; then COMPREPLY=($(IFS=' '; compgen -W '{} {}' -- \"$word\")); return; fi\n"
       "  case ${{COMP_WORDS[1]}} in\n",
-      fmt::join(command_names(tree), " "), fmt::join(option_names(tree.front()), " "));
-  for (std::size_t k = 1; k < tree.size(); ++k) {
-    const Command& command = tree[k];
+      fmt::join(std::views::transform(tree.commands, &Command::name), " "), fmt::join(option_names(tree.program), " "));
+  for (const Command& command : tree.commands) {
     text += fmt::format("    {})\n      case $before in\n", command.name);
     for (const Argument& option : command.options)
       if (option.takes != Takes::nothing)
@@ -72,7 +67,7 @@ std::string bash(const std::vector<Command>& tree) {
   return text + "  esac\n}\ncomplete -o filenames -F _poinsot poinsot\n";
 }
 
-std::string zsh(const std::vector<Command>& tree) {
+std::string zsh(const CommandTree& tree) {
   const auto action = [](const Argument& a) -> std::string {
     if (a.takes == Takes::file) return "_files";
     if (a.takes == Takes::folder) return "_files -/";
@@ -84,53 +79,53 @@ std::string zsh(const std::vector<Command>& tree) {
       "_poinsot() {\n"
       "  local -a commands\n"
       "  commands=(\n";
-  for (std::size_t k = 1; k < tree.size(); ++k)
-    text += fmt::format("    '{}:{}'\n", tree[k].name, summary(tree[k].about));
+  for (const Command& command : tree.commands)
+    text += fmt::format("    '{}:{}'\n", command.name, summary(command.about));
   text +=
       "  )\n"
       "  if (( CURRENT == 2 )); then _describe command commands; return; fi\n"
       "  case $words[2] in\n";
-  for (std::size_t k = 1; k < tree.size(); ++k) {
-    text += fmt::format("    {}) shift words; (( CURRENT-- )); _arguments", tree[k].name);
-    for (const Argument& option : tree[k].options)
+  for (const Command& command : tree.commands) {
+    text += fmt::format("    {}) shift words; (( CURRENT-- )); _arguments", command.name);
+    for (const Argument& option : command.options)
       for (const std::string& name : option.names)
         text += fmt::format(
             " \\\n      '{}[{}]{}'", name, summary(option.about),
             option.takes == Takes::nothing ? "" : fmt::format(":{}:{}", summary(option.value), action(option)));
-    for (const Argument& positional : tree[k].positionals)
+    for (const Argument& positional : command.positionals)
       text += fmt::format(" \\\n      '*:{}:{}'", summary(positional.names.front()), action(positional));
     text += " ;;\n";
   }
   return text + "  esac\n}\nif [ \"$funcstack[1]\" = _poinsot ]; then _poinsot; else compdef _poinsot poinsot; fi\n";
 }
 
-std::string fish(const std::vector<Command>& tree) {
+std::string fish(const CommandTree& tree) {
   std::string text =
       "# fish completion of poinsot; made by `poinsot completion fish`\n"
       "complete -c poinsot -f\n";
-  for (std::size_t k = 1; k < tree.size(); ++k)
-    text += fmt::format("complete -c poinsot -n __fish_use_subcommand -a {} -d '{}'\n", tree[k].name,
-                        summary(tree[k].about));
-  for (std::size_t k = 1; k < tree.size(); ++k) {
-    const std::string seen = fmt::format("complete -c poinsot -n '__fish_seen_subcommand_from {}'", tree[k].name);
+  for (const Command& command : tree.commands)
+    text += fmt::format("complete -c poinsot -n __fish_use_subcommand -a {} -d '{}'\n", command.name,
+                        summary(command.about));
+  for (const Command& command : tree.commands) {
+    const std::string seen = fmt::format("complete -c poinsot -n '__fish_seen_subcommand_from {}'", command.name);
     const auto values = [](const Argument& a) -> std::string {
       if (a.takes == Takes::file) return " -F";
       if (a.takes == Takes::folder) return " -a '(__fish_complete_directories)'";
       return a.words.empty() ? "" : fmt::format(" -a '{}'", fmt::join(a.words, " "));
     };
-    for (const Argument& option : tree[k].options)
+    for (const Argument& option : command.options)
       for (const std::string& name : option.names)
         text += fmt::format("{} {} {}{} -d '{}'\n", seen, name.starts_with("--") ? "-l" : "-s",
                             name.substr(name.find_first_not_of('-')),
                             option.takes == Takes::nothing ? "" : " -x" + values(option), summary(option.about));
-    for (const Argument& positional : tree[k].positionals)
+    for (const Argument& positional : command.positionals)
       if (const std::string of = values(positional); !of.empty()) text += seen + of + "\n";
   }
   return text;
 }
 
-int complete(const CLI::App& app, const CompletionOptions& options) {
-  const std::vector<Command> tree = command_tree(app);
+int complete(const CompletionOptions& options) {
+  const CommandTree tree = command_tree(*options.app);
   if (options.shell == "bash")
     fmt::print("{}", bash(tree));
   else if (options.shell == "zsh")
@@ -145,12 +140,12 @@ int complete(const CLI::App& app, const CompletionOptions& options) {
 }  // namespace
 
 void add_completion(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("completion", "a script that completes commands, for bash, zsh or fish");
-  const auto options = std::make_shared<CompletionOptions>();
-  command->add_option("SHELL", options->shell, "bash, zsh or fish")->required()->type_name("");
-  add_quiet(*command, options->quiet);
-  command->footer("For a shell that runs: source <(poinsot completion bash). Installed with the program.");
-  command->callback([&app, options, &status] { status = complete(app, *options); });
+  const auto [command, options] =
+      add_command(app, status, "completion", "a script that completes commands, for bash, zsh or fish", complete);
+  options.app = &app;
+  command.add_option("SHELL", options.shell, "bash, zsh or fish")->required()->type_name("");
+  add_quiet(command, options.quiet);
+  command.footer("For a shell that runs: source <(poinsot completion bash). Installed with the program.");
 }
 
 }  // namespace poinsot::app

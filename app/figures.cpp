@@ -2,10 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
+#include <ranges>
 
 #include "app/commands.h"
-#include "app/models_directory.h"
 #include "app/options.h"
 #include "app/progress_line.h"
 #include "app/terminal.h"
@@ -26,16 +25,13 @@ struct FiguresOptions {
 };
 
 std::vector<const FigureEntry*> chosen(const std::vector<std::string>& names) {
-  const std::span<const FigureEntry> all = paper::figures();
+  const auto known = std::views::transform(paper::figures(), &FigureEntry::name);
+  for (const std::string& name : names)
+    if (std::ranges::find(known, name) == known.end())
+      throw InputError(fmt::format("NAME: found \"{}\", expected one of {}", name, fmt::join(known, ", ")));
   std::vector<const FigureEntry*> entries;
   for (const FigureEntry& entry : paper::figures())
-    if (names.empty() || std::find(names.begin(), names.end(), entry.name) != names.end()) entries.push_back(&entry);
-  for (const std::string& name : names) {
-    if (std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.name == name; })) continue;
-    std::vector<std::string_view> known;
-    for (const FigureEntry& entry : paper::figures()) known.push_back(entry.name);
-    throw InputError(fmt::format("NAME: found \"{}\", expected one of {}", name, fmt::join(known, ", ")));
-  }
+    if (names.empty() || std::ranges::find(names, entry.name) != names.end()) entries.push_back(&entry);
   return entries;
 }
 

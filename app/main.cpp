@@ -147,23 +147,10 @@ int main(int argc, char** argv) {
       "up to there is kept, marked incomplete; 128 + n ended by signal n (Ctrl-C 130), likewise.");
   app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
-  add_run(app, status);
-  add_check(app, status);
-  add_view(app, status);
-  add_report(app, status);
-  add_compare(app, status);
-  add_list(app, status);
-  add_tables(app, status);
-  add_make(app, status);
-  add_scale(app, status);
-  add_reference(app, status);
-  add_chart(app, status);
-  add_advise(app, status);
-  add_study(app, status);
-  add_stability(app, status);
-  add_figures(app, status);
-  add_completion(app, status);
-  add_manual(app, status);
+  for (const auto add :
+       {add_run, add_check, add_view, add_report, add_compare, add_list, add_tables, add_make, add_scale, add_reference,
+        add_chart, add_advise, add_study, add_stability, add_figures, add_completion, add_manual})
+    add(app, status);
   for (CLI::App* command : app.get_subcommands({}))
     for (CLI::Option* option : command->get_options())
       if (option->get_items_expected_max() == 0) option->disable_flag_override();

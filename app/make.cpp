@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <ranges>
 #include <string>
 
 #include "app/commands.h"
@@ -21,11 +23,7 @@ struct MakeOptions {
 };
 
 std::string structures() {
-  std::string names;
-  for (const SceneGenerator& generator : scene_generators()) {
-    names += (names.empty() ? "" : ", ") + std::string(generator.name);
-  }
-  return names;
+  return fmt::format("{}", fmt::join(std::views::transform(scene_generators(), &SceneGenerator::name), ", "));
 }
 
 int make(const MakeOptions& options) {

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <memory>
+#include <ranges>
 
 #include "app/command_tree.h"
 #include "app/commands.h"
@@ -42,14 +43,13 @@ std::string synopsis(const Command& command) {
   return text + "[options]\n";
 }
 
-std::string page(const std::vector<Command>& tree) {
-  const Command& program = tree.front();
+std::string page(const CommandTree& tree) {
+  const auto& [program, commands] = tree;
   std::string text = fmt::format(".TH POINSOT 1 \"\" \"poinsot {}\"\n.SH NAME\npoinsot \\- {}\n.SH SYNOPSIS\n",
                                  provenance().version, plain(program.about.substr(program.about.find(": ") + 2)));
-  for (std::size_t k = 1; k < tree.size(); ++k) text += (k > 1 ? ".br\n" : "") + synopsis(tree[k]);
+  text += fmt::format("{}", fmt::join(std::views::transform(commands, synopsis), ".br\n"));
   text += ".SH OPTIONS\n" + arguments(program.options) + ".SH COMMANDS\n";
-  for (std::size_t k = 1; k < tree.size(); ++k) {
-    const Command& one = tree[k];
+  for (const Command& one : commands) {
     text += fmt::format(".SS {}\n{}\n{}{}", synopsis(one).substr(3, synopsis(one).find('\n') - 3), plain(one.about),
                         arguments(one.positionals), arguments(one.options));
     if (!one.footer.empty()) text += fmt::format(".PP\n.nf\n{}\n.fi\n", plain(one.footer));

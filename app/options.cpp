@@ -3,22 +3,31 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "bench/paper/mechanisms.h"
 #include "bench/study/name_list.h"
 #include "bench/study/natural_end.h"
+#include "bench/study/program_data.h"
 #include "core/input_error.h"
 #include "integrators/settings_reader.h"
 
 namespace poinsot::app {
+namespace fs = std::filesystem;
 namespace {
 
 std::string option_of(std::string_view setting) {
   return option_name(*find_setting(setting)) + "s";
 }
 
+bool holds_models(const fs::path& directory) {
+  std::error_code none;  // one that may not be looked into holds none
+  return fs::exists(directory / fmt::format("{}.json", paper::kMechanisms.front().file), none);
+}
+
 }  // namespace
 
-void add_scene(CLI::App& command, std::string& file) {
+void add_scene(CLI::App& command, std::string& file, std::vector<std::string>& set) {
   command.add_option("scene", file, "scene file; -: the standard input")->required()->type_name("SCENE");
+  add_set(command, set);
 }
 
 void add_set(CLI::App& command, std::vector<std::string>& given) {
@@ -62,8 +71,25 @@ void add_models(CLI::App& command, std::string& folder) {
       ->type_name("DIR");
 }
 
+fs::path models_directory(const std::string& given) {
+  if (!given.empty()) {
+    if (holds_models(given)) return given;
+    throw InputError(fmt::format("--models: found no {}.json in {}, expected a folder with the paper's mechanisms",
+                                 paper::kMechanisms.front().file, given));
+  }
+  const auto places = study::program_data("models", "models");
+  for (const fs::path& place : places)
+    if (holds_models(place)) return place;
+  throw InputError(fmt::format("the models are neither in {} nor in {}; give their folder with --models DIR",
+                               places[0].string(), places[1].string()));
+}
+
 void add_out_folder(CLI::App& command, std::string& folder, std::string_view what) {
   command.add_option("--out", folder, fmt::format("folder for {} (default {})", what, folder))->type_name("DIR");
+}
+
+void add_json(CLI::App& command, bool& json) {
+  command.add_flag("--json", json, "say it as JSON");
 }
 
 void add_quiet(CLI::App& command, bool& quiet) {

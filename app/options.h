@@ -2,9 +2,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/scene_reader.h"
@@ -13,29 +15,28 @@ namespace poinsot::app {
 
 // A subcommand that is done by `run`, whose result is the exit status, and what its options are to fill in.
 template <class Options>
-struct Subcommand {
-  CLI::App& command;
-  Options& options;
-};
-template <class Options>
-Subcommand<Options> add_command(CLI::App& app, int& status, const std::string& name, const std::string& about,
-                                int (*run)(const Options& options)) {
+std::pair<CLI::App&, Options&> add_command(CLI::App& app, int& status, const std::string& name,
+                                           const std::string& about, int (*run)(const Options& options)) {
   CLI::App* const command = app.add_subcommand(name, about);
   const auto options = std::make_shared<Options>();
   command->callback([options, run, &status] { status = run(*options); });
   return {*command, *options};
 }
 
-void add_scene(CLI::App& command, std::string& file);
+void add_scene(CLI::App& command, std::string& file, std::vector<std::string>& set);  // with --set
 // --set NAME=VALUE, for every command that takes scenes; what it gave, for read_scene(). Throws InputError.
 void add_set(CLI::App& command, std::vector<std::string>& given);
 ParameterValues values_set(const std::vector<std::string>& given);
 void add_end(CLI::App& command, std::string& end);
 // The value of --end: natural_end() of bench/study where it is not given. Throws InputError.
 double end_time(const std::string& given, const Scene& scene);
-void add_cache(CLI::App& command, std::string& folder);   // of references
-void add_models(CLI::App& command, std::string& folder);  // its value: models_directory()
+void add_cache(CLI::App& command, std::string& folder);  // of references
+void add_models(CLI::App& command, std::string& folder);
+// The value of --models: where it is not given, the folder of the paper's mechanisms beside an installed program, or in
+// the source tree of one that is not. Throws InputError where the place holds no models.
+std::filesystem::path models_directory(const std::string& given);
 void add_out_folder(CLI::App& command, std::string& folder, std::string_view what);
+void add_json(CLI::App& command, bool& json);
 void add_quiet(CLI::App& command, bool& quiet);
 
 // "timed runs of `what`"; require_positive() is due.

@@ -3,10 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
-#include "app/json_output.h"
 #include "app/named_files.h"
 #include "app/options.h"
-#include "app/scene_lines.h"
 #include "app/terminal.h"
 #include "bench/records/run_record.h"
 #include "bench/records/trajectory_writer.h"
@@ -143,8 +141,7 @@ int find_motion(const ReferenceOptions& options) {
 void add_reference(CLI::App& app, int& status) {
   const auto [command, options] =
       add_command(app, status, "reference", "compute a motion as exactly as can be, and how exact it is", find_motion);
-  add_scene(command, options.scene);
-  add_set(command, options.set);
+  add_scene(command, options.scene, options.set);
   add_end(command, options.end);
   command.add_option("--every", options.every, fmt::format("time between output rows, s (default: end/{})", kRows))
       ->type_name("X");

@@ -7,7 +7,6 @@
 #include "app/named_files.h"
 #include "app/options.h"
 #include "app/progress_line.h"
-#include "app/scene_lines.h"
 #include "app/settings_options.h"
 #include "app/signals.h"
 #include "app/terminal.h"
@@ -144,8 +143,7 @@ int run(const RunOptions& options) {
 
 void add_run(CLI::App& app, int& status) {
   const auto [command, options] = add_command(app, status, "run", "compute the motion of a scene", run);
-  add_scene(command, options.scene);
-  add_set(command, options.set);
+  add_scene(command, options.scene, options.set);
   options.settings.add_to(command);
   command
       .add_option(

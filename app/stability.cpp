@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,7 @@
 #include "app/signals.h"
 #include "app/terminal.h"
 #include "bench/stability/amplification.h"
-#include "bench/stability/mapping.h"
+#include "bench/stability/maps.h"
 #include "bench/study/report.h"
 #include "core/input_error.h"
 #include "core/interruption.h"
@@ -78,21 +77,20 @@ std::string families_text() {
 }  // namespace
 
 void add_stability(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("stability", "map where each method fails: verdicts over families of scenes");
-  const auto options = std::make_shared<StabilityOptions>();
-  command->add_option("--family", options->families, "one of those below; may come several times (default: all)")
+  const auto [command, options] =
+      add_command(app, status, "stability", "map where each method fails: verdicts over families of scenes", map);
+  command.add_option("--family", options.families, "one of those below; may come several times (default: all)")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command->add_flag("--quick", options->quick, "fewer places along each axis");
-  command->add_flag("--full", options->full, "all places (default)");
-  add_names(*command, "formulation", options->formulations);
-  add_names(*command, "integrator", options->integrators);
-  command->add_option("--threads", options->threads, "that compute (default: one for each processor)")->type_name("N");
-  add_out_folder(*command, options->out, "cells, maps and stability.md");
-  command->add_flag("--fresh", options->fresh, "compute everything, also what the folder holds already");
-  add_quiet(*command, options->quiet);
-  command->footer(families_text());
-  command->callback([options, &status] { status = map(*options); });
+  command.add_flag("--quick", options.quick, "fewer places along each axis");
+  command.add_flag("--full", options.full, "all places (default)");
+  add_names(command, "formulation", options.formulations);
+  add_names(command, "integrator", options.integrators);
+  command.add_option("--threads", options.threads, "that compute (default: one for each processor)")->type_name("N");
+  add_out_folder(command, options.out, "cells, maps and stability.md");
+  command.add_flag("--fresh", options.fresh, "compute everything, also what the folder holds already");
+  add_quiet(command, options.quiet);
+  command.footer(families_text());
 }
 
 }  // namespace poinsot::app

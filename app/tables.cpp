@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "app/models_directory.h"
 #include "app/options.h"
 #include "app/progress_line.h"
 #include "app/terminal.h"

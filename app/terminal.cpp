@@ -7,9 +7,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
-#include <string>
+#include <nlohmann/json.hpp>
 
 #include "bench/study/output_file.h"
+#include "core/input_error.h"
+#include "core/json_document.h"
+#include "core/places.h"
 #include "core/printable.h"
 
 namespace poinsot::app {
@@ -53,6 +56,19 @@ void print_error(std::string_view sentence) noexcept {
 
 void print_notice(std::string_view sentence) noexcept {
   say(coloured() ? "poinsot: \x1b[1;33mnote:\x1b[0m" : "poinsot: note:", sentence);
+}
+
+std::string with_lines_of(const std::string& scene_file, std::string_view message) {
+  if (message.find(" (/") == message.npos) return std::string(message);
+  try {
+    return with_lines(message, read_text(scene_file));
+  } catch (const InputError&) {  // it is gone
+    return std::string(message);
+  }
+}
+
+void print_json(std::FILE* out, const nlohmann::ordered_json& json) {
+  fmt::print(out, "{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 std::FILE* text_stream(std::initializer_list<std::filesystem::path> outputs) {

@@ -6,7 +6,6 @@
 #include "app/named_files.h"
 #include "app/options.h"
 #include "app/progress_line.h"
-#include "app/scene_lines.h"
 #include "app/settings_options.h"
 #include "app/terminal.h"
 #include "bench/study/output_file.h"
@@ -125,8 +124,7 @@ int write_view(const ViewOptions& options) {
 void add_view(CLI::App& app, int& status) {
   const auto [command, options] =
       add_command(app, status, "view", "write a page that shows the motion in a browser", write_view);
-  add_scene(command, options.scene);
-  add_set(command, options.set);
+  add_scene(command, options.scene, options.set);
   command
       .add_option("--trajectory", options.trajectories,
                   "show this motion, as `poinsot run --out` wrote it, instead of computing one; given twice, both are "

@@ -20,8 +20,6 @@
 
 namespace poinsot::bench {
 
-inline constexpr const char* kMechanisms[] = {"single_pendulum", "double_pendulum", "four_link", "slider_crank"};
-
 // Where a scene comes from; read or generated only when its benchmark runs, since the large ones fill memory.
 struct SceneSource {
   std::string name;
@@ -34,9 +32,7 @@ struct SceneSource {
   }
 };
 inline std::vector<SceneSource> mechanisms() {
-  std::vector<SceneSource> sources;
-  for (const char* name : kMechanisms) sources.push_back({name});
-  return sources;
+  return {{"single_pendulum"}, {"double_pendulum"}, {"four_link"}, {"slider_crank"}};
 }
 inline SceneSource generated(const SceneGenerator& generator, int bodies) {
   return {fmt::format("{}_{}", generator.name, bodies), &generator, bodies};

@@ -18,8 +18,6 @@
 namespace poinsot::cases {
 namespace {
 
-constexpr std::string_view kWrongInput = "input_error";
-
 std::string fields(const Study& study, const Case& one, const Result& result, std::size_t columns) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
@@ -90,33 +88,33 @@ const Scene& CaseRunner::scene_of(const Case& one) {
   return varied_;
 }
 
-Result CaseRunner::computed(const Case& one, const Scene& scene) {
-  const Settings& settings = study_.settings[one.settings].settings;
-  Watch watch(study_.kept, study_.scenes[one.scene].columns);
-  const Outcome outcome = simulate(scene, settings, [&](const Sample& sample) { watch.observe(sample); });
-  if (!outcome.status.ok()) return {std::string(name(outcome.status.failure)), outcome.status.message, {}};
-  Result result;
-  if (study_.kept.notices) result.message = fmt::format("{}", fmt::join(outcome.notices, "; "));
-  std::shared_ptr<const study::Reference> reference;
-  if (study_.kept.errors) {
-    reference = references_.find(scene, {settings.end, settings.every, study_.kept.digits});
-    if (reference->given < 0) {
-      result.message = study::why_none(*reference);
-      reference = nullptr;
+Result CaseRunner::computed(const Case& one) {
+  try {
+    const Scene& scene = scene_of(one);
+    const Settings& settings = study_.settings[one.settings].settings;
+    Watch watch(study_.kept, study_.scenes[one.scene].columns);
+    const Outcome outcome = simulate(scene, settings, [&](const Sample& sample) { watch.observe(sample); });
+    if (!outcome.status.ok()) return {std::string(name(outcome.status.failure)), outcome.status.message, {}};
+    Result result;
+    if (study_.kept.notices) result.message = fmt::format("{}", fmt::join(outcome.notices, "; "));
+    std::shared_ptr<const study::Reference> reference;
+    if (study_.kept.errors) {
+      reference = references_.find(scene, {settings.end, settings.every, study_.kept.digits});
+      if (reference->given < 0) {
+        result.message = study::why_none(*reference);
+        reference = nullptr;
+      }
     }
+    result.values = watch.values(outcome.statistics, reference.get());
+    return result;
+  } catch (const InputError& error) {
+    return {"input_error", error.what(), {}};
   }
-  result.values = watch.values(outcome.statistics, reference.get());
-  return result;
 }
 
 std::optional<CaseRow> CaseRunner::run(std::int64_t number) {
   const Case one = case_of(study_, number);
-  Result result;
-  try {
-    result = computed(one, scene_of(one));
-  } catch (const InputError& error) {
-    result = {std::string(kWrongInput), error.what(), {}};
-  }
+  const Result result = computed(one);
   if (interruption_requested) return {};  // what it was at may have ended early
   return make_row(study_, one, fields(study_, one, result, columns_), !result.ok());
 }
@@ -126,18 +124,15 @@ std::vector<CaseRow> CaseRunner::run_timed(const std::vector<std::int64_t>& numb
   std::vector<Result> results;
   std::vector<study::Cell> cells;
   for (const std::int64_t number : numbers) {
-    all.push_back(case_of(study_, number));
-    const Case& one = all.back();
-    try {
-      const Scene& scene = scene_of(one);
-      results.push_back(computed(one, scene));
-      cells.push_back({study_.scenes[one.scene].name, &scene, study_.settings[one.settings].settings, {}, {}});
-    } catch (const InputError& error) {
-      results.push_back({std::string(kWrongInput), error.what(), {}});
-      cells.emplace_back();
+    const Case& one = all.emplace_back(case_of(study_, number));
+    const Result& result = results.emplace_back(computed(one));
+    study::Cell& cell = cells.emplace_back();
+    if (result.ok()) {
+      cell.scene = &scene_of(one);  // as it was read for that
+      cell.settings = study_.settings[one.settings].settings;
+    } else {
+      cell.failure = result.message.empty() ? result.status : result.message;
     }
-    cells.back().failure = results.back().ok() ? "" : results.back().message;
-    if (!results.back().ok() && cells.back().failure.empty()) cells.back().failure = results.back().status;
   }
   study::measure(cells, {study_.repetitions});
   std::vector<CaseRow> rows;

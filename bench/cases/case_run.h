@@ -51,7 +51,7 @@ class CaseRunner {
 
  private:
   const Scene& scene_of(const Case& one);
-  Result computed(const Case& one, const Scene& scene);  // but for the times
+  Result computed(const Case& one);  // but for the times
 
   const Study& study_;
   References& references_;

@@ -9,8 +9,8 @@
 
 #include <cerrno>
 #include <charconv>
-#include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <map>
 #include <utility>
 
@@ -69,23 +69,15 @@ bool is_row(std::string_view line, std::size_t fields, std::uint64_t& key, std::
 // Lines of a file, with where they begin; a last one without its end is none.
 class Lines {
  public:
-  explicit Lines(const fs::path& file) : file_(std::fopen(file.c_str(), "rb")) {
+  explicit Lines(const fs::path& file) : file_(file, std::ios::binary) {
     if (!file_) throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
   }
-  ~Lines() {
-    std::fclose(file_);
-    std::free(line_);
-  }
-  Lines(const Lines&) = delete;
-  Lines& operator=(const Lines&) = delete;
 
-  bool next(std::string_view& line) {
+  bool next(std::string& line) {
     offset_ = end_;
-    const ssize_t n = getline(&line_, &capacity_, file_);
-    torn_ = n > 0 && line_[n - 1] != '\n';
-    if (n <= 0 || torn_) return false;
-    end_ += static_cast<std::uint64_t>(n);
-    line = {line_, static_cast<std::size_t>(n) - 1};
+    torn_ = std::getline(file_, line) && file_.eof();
+    if (!file_ || torn_) return false;
+    end_ += line.size() + 1;
     return true;
   }
   std::uint64_t offset() const { return offset_; }  // of the line
@@ -93,9 +85,7 @@ class Lines {
   bool torn() const { return torn_; }
 
  private:
-  std::FILE* file_;
-  char* line_ = nullptr;
-  std::size_t capacity_ = 0;
+  std::ifstream file_;
   std::uint64_t offset_ = 0, end_ = 0;
   bool torn_ = false;
 };
@@ -134,7 +124,7 @@ void CaseTable::place(std::int64_t number, std::size_t part, std::uint64_t offse
 
 std::int64_t CaseTable::read(const fs::path& file, bool once) {
   Lines lines(file);
-  std::string_view line;
+  std::string line;
   for (const std::string& note : notes(study_)) {
     if (!lines.next(line) || !line.starts_with(note.substr(0, note.find(':') + 1)))
       throw InputError(fmt::format("{}: is no part of a study; --fresh begins it anew", file.string()));
@@ -197,7 +187,7 @@ void CaseTable::open(const fs::path& file) {
     return;
   }
   Lines lines(file);
-  for (std::string_view line; lines.next(line);) continue;
+  for (std::string line; lines.next(line);) continue;
   end_ = lines.end();  // what was torn is overwritten
   if (ftruncate(descriptor, static_cast<off_t>(end_)) != 0) refuse(nullptr);
 }

@@ -18,7 +18,7 @@ namespace poinsot::cases {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-enum : char { kWants = 'W', kRows = 'R', kError = 'E', kInterrupted = 'I', kBye = 'B' };
+enum : char { kWants = 'W', kRows = 'R', kInterrupted = 'I', kBye = 'B' };
 constexpr std::chrono::microseconds kPoll{1000};
 constexpr std::chrono::milliseconds kChunk{50}, kSend{20};
 constexpr std::size_t kMostInMessage = 4096;  // in a message
@@ -42,9 +42,7 @@ void unpack(std::string_view bytes, const Take& take) {
 }
 
 std::string packed(const std::vector<std::int64_t>& numbers) {
-  std::string bytes(numbers.size() * sizeof(std::int64_t), '\0');
-  if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
-  return bytes;
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(std::int64_t)};
 }
 
 std::vector<std::int64_t> unpack_numbers(std::string_view bytes) {
@@ -121,7 +119,6 @@ void lead(Ranks& ranks, const Study& study, References& references, int threads,
       const char kind = message->bytes.front();
       std::string_view bytes(message->bytes);
       bytes.remove_prefix(1);
-      if (kind == kError) throw InputError(std::string(bytes));
       std::size_t wanted = 0;
       if (kind == kWants) {
         std::memcpy(&wanted, bytes.data(), sizeof wanted);

@@ -5,9 +5,8 @@
 // as take about a twentieth of a second, and send rows at least every fiftieth of a second. A rank that dies takes the
 // job with it, as MPI does; what it had sent is kept.
 //
-// Messages to rank 0: 'W' wants cases, 'R' rows, 'E' a sentence (it cannot go on), 'I' it was interrupted, 'B' it has
-// nothing more to do; of these W, R, I and B bring rows: "NUMBER FAILED LINE" for each. From rank 0: numbers of cases,
-// 8 bytes each; none: there are no more.
+// Messages to rank 0: 'W' wants cases, 'R' rows, 'I' it was interrupted, 'B' it has nothing more to do; all bring rows:
+// "NUMBER FAILED LINE" for each. From rank 0: numbers of cases, 8 bytes each; none: there are no more.
 #pragma once
 
 #include <functional>
@@ -17,7 +16,7 @@
 
 namespace poinsot::cases {
 
-// Of rank 0: as run_threads(), with the others. Throws study::OutputError, and InputError where a rank cannot go on.
+// Of rank 0: as run_threads(), with the others. Throws study::OutputError.
 void lead(Ranks& ranks, const Study& study, References& references, int threads, Undone& undone,
           const std::function<void(CaseRow&&)>& put, const std::function<void()>& meanwhile);
 

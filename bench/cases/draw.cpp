@@ -3,30 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
-#include <set>
 
 #include "bench/study/csv.h"
 #include "bench/study/panels.h"
 #include "bench/study/range.h"
 
 namespace poinsot::cases {
+using study::csv_number;
 using study::Curve;
 using study::PanelPlot;
 using study::Table;
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-double number(const std::string& field) {
-  double x = kNone;
-  const auto end = field.data() + field.size();
-  return std::from_chars(field.data(), end, x).ptr == end && !field.empty() ? x : kNone;
-}
 
 // The table's rows, one after the other.
 class Rows {
@@ -71,7 +64,7 @@ Drawn histogram(const Picture& picture, const Rows& rows) {
   const std::size_t column = rows.column(picture.x);
   std::vector<double> values;
   rows.for_each([&](const std::vector<std::string>& row) {
-    if (const double x = number(row[column]); std::isfinite(x)) values.push_back(x);
+    if (const double x = csv_number(row[column]); std::isfinite(x)) values.push_back(x);
   });
   std::ranges::sort(values);
   drawn.table.header = {"column", "cases", "mean", "deviation", "least", "5 %", "median", "95 %", "greatest"};
@@ -104,7 +97,7 @@ Drawn points(const Picture& picture, const Rows& rows) {
   std::map<std::string, Curve> curves;
   rows.for_each([&](const std::vector<std::string>& row) {
     const std::string name = picture.series.empty() ? picture.y : row[series];
-    const double at = number(row[x]), value = number(row[y]);
+    const double at = csv_number(row[x]), value = csv_number(row[y]);
     if (!std::isfinite(at) || !std::isfinite(value)) return;
     curves.try_emplace(name, Curve{"", name, "", {}}).first->second.points.push_back({at, value});
   });
@@ -130,12 +123,12 @@ Drawn curves(const Picture& picture, const Rows& rows, const Kept& kept, const S
   drawn.table.header = {name, "least x", "greatest x", "least y", "greatest y"};
   std::int64_t count = 0;
   rows.for_each([&](const std::vector<std::string>& row) {
-    const double label = number(row[series]);
+    const double label = csv_number(row[series]);
     Curve curve{
         "", fmt::format("{} {}", name, std::isfinite(label) ? fmt::format("{:.4g}", label) : row[series]), "", {}};
     study::Range across, up;
     for (std::size_t k = 0; k < times.size(); ++k) {
-      const double at = number(row[x + k]), value = number(row[y + k]);
+      const double at = csv_number(row[x + k]), value = csv_number(row[y + k]);
       if (!std::isfinite(at) || !std::isfinite(value)) return;
       curve.points.push_back({at, value});
       across.add(at);
@@ -163,9 +156,9 @@ Drawn ratio(const Picture& picture, const Rows& rows, const Study& study) {
   rows.for_each([&](const std::vector<std::string>& row) {
     std::string key;
     for (const std::size_t column : others) key += row[column] + "\n";
-    const double value = number(row[y]);
+    const double value = csv_number(row[y]);
     if (!(value > 0)) return;
-    all[key].x = number(row[x]);
+    all[key].x = csv_number(row[x]);
     all[key].y[row[by]] = value;
   });
   std::map<std::string, Curve> curves;

@@ -1,7 +1,6 @@
 #include "bench/cases/kept.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -54,20 +53,16 @@ Quantity read_quantity(const JsonValue& item) {
   if (const auto name = item.optional("name")) quantity.name = name->string();
   const auto taken = item.optional("take");
   if (taken && taken->is_array()) {
-    for (std::size_t k = 0; k < taken->size(""); ++k) {
-      const JsonValue one = taken->at(k);
-      take(quantity, one);
-    }
+    for (const JsonValue& one : items(*taken, "")) take(quantity, one);
   } else if (taken) {
     take(quantity, *taken);
   }
   const auto at = item.optional("at");
   if (at && at->is_array()) {
-    if (at->size("") == 0) at->expected("an array of times, at least one");
-    for (std::size_t k = 0; k < at->size(""); ++k) {
-      const JsonValue t = at->at(k);
-      quantity.at.push_back(t.number("a time, s"));
-      if (k > 0 && !(quantity.at[k] > quantity.at[k - 1])) t.expected("a time after the one before it");
+    for (const JsonValue& t : items(*at, "an array of times, at least one", 1)) {
+      const double time = t.number("a time, s");
+      if (!quantity.at.empty() && !(time > quantity.at.back())) t.expected("a time after the one before it");
+      quantity.at.push_back(time);
     }
   } else if (at) {
     at->keys("times", {"from", "to", "count"});
@@ -112,9 +107,7 @@ std::string Kept::text() const {
 Kept read_kept(const JsonValue& study, bool timed) {
   Kept kept;
   const auto list = study.optional("keep");
-  const std::size_t size = list ? list->size("an array of what is kept") : 0;
-  for (std::size_t k = 0; k < size; ++k) {
-    const JsonValue item = list->at(k);
+  for (const JsonValue& item : list ? items(*list, "an array of what is kept") : std::vector<JsonValue>()) {
     if (item.is_string()) {
       const auto entry = std::ranges::find(kWhole, item.string(), &Whole::name);
       if (entry == kWhole.end()) item.expected(fmt::format("one of {}, or an object with \"column\"", listed(kWhole)));
@@ -141,8 +134,6 @@ Column require_column(const JsonValue& study, const Quantity& quantity, const Mo
   } catch (const InputError& error) {
     study.required("keep").fail(error.what());
   }
-  std::vector<std::string> near;  // of what has the name before the point
-  const std::string owner = quantity.column.substr(0, quantity.column.rfind('.'));
   study.required("keep").fail(fmt::format(
       "scene '{}' has no column '{}', expected one of the trajectory, the reactions or the signals of a run",
       printable(model.name), printable(quantity.column)));

@@ -91,12 +91,11 @@ Picture read_picture(const JsonValue& item, const std::vector<std::string>& colu
 std::vector<Picture> read_pictures(const JsonValue& study, const std::vector<std::string>& columns, const Kept& kept) {
   std::vector<Picture> pictures;
   const auto list = study.optional("pictures");
-  const std::size_t size = list ? list->size("an array of pictures") : 0;
-  for (std::size_t k = 0; k < size; ++k) {
-    const JsonValue item = list->at(k);
-    pictures.push_back(read_picture(item, columns, kept));
-    for (std::size_t before = 0; before < k; ++before)
-      if (pictures[before].file == pictures[k].file) item.fail("two pictures of one file name, expected another");
+  for (const JsonValue& item : list ? items(*list, "an array of pictures") : std::vector<JsonValue>()) {
+    Picture picture = read_picture(item, columns, kept);
+    if (std::ranges::find(pictures, picture.file, &Picture::file) != pictures.end())
+      item.fail("two pictures of one file name, expected another");
+    pictures.push_back(std::move(picture));
   }
   return pictures;
 }

@@ -11,7 +11,6 @@
 // confidence interval, exp(m ± t s/√n) of the mean m and the deviation s of the logarithms (Student's t).
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 

@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <set>
 
 #include "bench/cases/study_scenes.h"
@@ -26,19 +26,16 @@ void vary_setting(Study& study, const JsonValue& item) {
   item.keys("a setting that varies", {"setting", "values", "from", "to", "count", "spacing"});
   const JsonValue key = item.required("setting");
   const SettingEntry* entry = find_setting(key.string("the key of a solver configuration"));
-  if (!entry) {
-    std::vector<std::string_view> keys;
-    for (const SettingEntry& one : setting_entries()) keys.push_back(one.key);
-    key.expected(fmt::format("one of {}", fmt::join(keys, ", ")));
-  }
+  if (!entry)
+    key.expected(
+        fmt::format("one of {}", fmt::join(std::views::transform(setting_entries(), &SettingEntry::key), ", ")));
   if (std::ranges::find(study.settings_varied, entry->key) != study.settings_varied.end())
     key.fail(fmt::format("'{}' varies already, expected another setting", entry->key));
-  std::vector<std::function<void(Settings&)>> values;
+  std::vector<JsonValue> values;
   std::vector<double> range;
   const auto list = item.optional("values");
   if (list) {
-    constexpr std::string_view kAllowed = "an array of values, at least one";
-    if (list->size(kAllowed) == 0) list->expected(kAllowed);
+    values = items(*list, "an array of values, at least one", 1);
   } else if (item.optional("from")) {
     range = read_range(item);
   } else {
@@ -46,15 +43,12 @@ void vary_setting(Study& study, const JsonValue& item) {
   }
   std::vector<SettingsChoice> all;
   for (const SettingsChoice& before : study.settings) {
-    for (std::size_t k = 0; k < (list ? list->size("") : range.size()); ++k) {
+    for (std::size_t k = 0; k < values.size() + range.size(); ++k) {
       SettingsChoice choice = before;
-      if (list) {
-        const JsonValue value = list->at(k);
-        read_setting(*entry, value, choice.settings);
-      } else {
-        const nlohmann::json number = range[k];
-        read_setting(*entry, JsonValue(number, fmt::format("{}", item.path())), choice.settings);
-      }
+      if (list)
+        read_setting(*entry, values[k], choice.settings);
+      else
+        read_setting(*entry, JsonValue(nlohmann::json(range[k]), item.path()), choice.settings);
       choice.values.push_back(value_text(*entry, choice.settings));
       all.push_back(std::move(choice));
     }
@@ -65,8 +59,7 @@ void vary_setting(Study& study, const JsonValue& item) {
 
 void require_parameter(const Study& study, const JsonValue& place, const std::string& name) {
   for (const StudyScene& one : study.scenes) {
-    std::vector<std::string_view> known;
-    for (const Parameter& parameter : one.scene.parameters) known.push_back(parameter.name);
+    const auto known = std::views::transform(one.scene.parameters, &Parameter::name);
     if (std::ranges::find(known, name) == known.end())
       place.fail(fmt::format("scene '{}' has no parameter '{}'; it has {}", one.name, name,
                              known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
@@ -83,13 +76,8 @@ void vary_parameter(Study& study, const JsonValue& item) {
   ParameterAxis axis;
   axis.names = {name.string()};
   if (const auto list = item.optional("values")) {
-    constexpr std::string_view kAllowed = "an array of numbers, at least one";
-    const std::size_t size = list->size(kAllowed);
-    if (size == 0) list->expected(kAllowed);
-    for (std::size_t k = 0; k < size; ++k) {
-      const JsonValue value = list->at(k);
+    for (const JsonValue& value : items(*list, "an array of numbers, at least one", 1))
       axis.values.push_back(value.number());
-    }
   } else {
     axis.values = read_range(item);
   }
@@ -100,8 +88,7 @@ void read_variation(Study& study, const JsonValue& root, std::uint64_t seed) {
   const auto list = root.optional("vary");
   if (!list) return;
   std::uint32_t stream = 1;  // 0 is that of random mechanisms
-  for (std::size_t k = 0; k < list->size("an array of what varies"); ++k) {
-    const JsonValue item = list->at(k);
+  for (const JsonValue& item : items(*list, "an array of what varies")) {
     if (item.optional("setting")) {
       vary_setting(study, item);
     } else if (const auto samples = item.optional("samples")) {
@@ -214,10 +201,10 @@ Study parse_document(const JsonDocument& document, const SceneOf& scene_of) {
   settle_settings(study, root);
   for (const SettingsChoice& choice : study.settings) require_output_times(root, study.kept, choice.settings);
   require_distinct_columns(study, root);
-  std::vector<std::string> columns = study.kept.columns();
-  study.columns_hash = study::content_hash(
-      fmt::format("{} {} {}", fmt::join(varied_columns(study), ","), study.kept.text(), fmt::join(columns, ",")));
   const std::vector<std::string> varied = varied_columns(study);
+  std::vector<std::string> columns = study.kept.columns();
+  study.columns_hash =
+      study::content_hash(fmt::format("{} {} {}", fmt::join(varied, ","), study.kept.text(), fmt::join(columns, ",")));
   columns.insert(columns.end(), varied.begin(), varied.end());
   columns.insert(columns.end(), {"case", "scene", "bodies"});
   study.pictures = read_pictures(root, columns, study.kept);

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <ranges>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "bench/cases/random_mechanism.h"
 #include "bench/study/cache.h"
@@ -47,9 +47,8 @@ void add_random_mechanisms(Study& study, const JsonValue& item, std::uint64_t se
 void add_made(Study& study, const JsonValue& item) {
   item.keys("a made scene", {"make", "bodies"});
   const JsonValue structure = item.required("make"), bodies = item.required("bodies");
-  std::vector<std::string_view> names;
-  for (const SceneGenerator& generator : scene_generators()) names.push_back(generator.name);
-  const std::string allowed = fmt::format("one of {}", fmt::join(names, ", "));
+  const std::string allowed =
+      fmt::format("one of {}", fmt::join(std::views::transform(scene_generators(), &SceneGenerator::name), ", "));
   const SceneGenerator* generator = find_scene_generator(structure.string(allowed));
   if (!generator) structure.expected(allowed);
   constexpr std::int64_t kMost = 10'000'000;
@@ -60,12 +59,8 @@ void add_made(Study& study, const JsonValue& item) {
 }  // namespace
 
 void read_scenes(Study& study, const JsonValue& root, std::uint64_t seed, const SceneOf& scene_of) {
-  constexpr std::string_view kAllowed = "an array of scenes, at least one";
   const JsonValue list = root.required("scenes");
-  const std::size_t size = list.size(kAllowed);
-  if (size == 0) list.expected(kAllowed);
-  for (std::size_t k = 0; k < size; ++k) {
-    const JsonValue item = list.at(k);
+  for (const JsonValue& item : items(list, "an array of scenes, at least one", 1)) {
     if (item.is_string()) {
       const std::string& file = item.string();
       try {

@@ -53,6 +53,13 @@ void ParameterAxis::append(std::int64_t k, std::vector<double>& out) const {
   }
 }
 
+std::vector<JsonValue> items(const JsonValue& list, std::string_view allowed, std::size_t least) {
+  std::vector<JsonValue> all;
+  for (std::size_t k = 0; k < list.size(allowed); ++k) all.push_back(list.at(k));
+  if (all.size() < least) list.expected(allowed);
+  return all;
+}
+
 std::int64_t read_count(const JsonValue& value, std::int64_t least, std::int64_t most) {
   const std::string allowed = fmt::format("a whole number from {} to {}", least, most);
   const double number = value.number(allowed);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/cases/random.h"
@@ -37,6 +38,8 @@ std::vector<double> read_range(const JsonValue& axis);
 // {"samples": n, "sampling": "independent" | "latin_hypercube", "parameters": {NAME: {"uniform": [from, to]},
 // NAME: {"normal": {"mean": m, "deviation": s}}}}
 ParameterAxis read_samples(const JsonValue& axis, std::uint64_t seed, std::uint32_t stream);
+// The items of an array of at least so many. As every place, `list` lives on while they are used.
+std::vector<JsonValue> items(const JsonValue& list, std::string_view allowed, std::size_t least = 0);
 // A whole number from `least` to `most`.
 std::int64_t read_count(const JsonValue& value, std::int64_t least, std::int64_t most);
 

@@ -50,13 +50,6 @@ void Watch::observe_energy(const Sample& sample) {
   kinetic_ = std::max(kinetic_, kinetic);
 }
 
-std::vector<double> Watch::errors(const study::Reference& reference) const {
-  study::PerQuantity error =
-      study::difference(motion_, reference.motion, study::sizes(reference.motion, *model_), *model_);
-  if (model_->rows.empty()) error.back() = kMissing;
-  return {error.begin(), error.end()};
-}
-
 std::vector<double> Watch::values(const Statistics& s, const study::Reference* reference) const {
   std::vector<double> values;
   for (std::size_t k = 0; k < seen_.size(); ++k) {
@@ -69,9 +62,12 @@ std::vector<double> Watch::values(const Statistics& s, const study::Reference* r
     for (std::size_t n = 0; n < quantity.at.size(); ++n) values.push_back(n < seen.at.size() ? seen.at[n] : kMissing);
   }
   if (kept_.errors) {
-    const std::vector<double> all =
-        reference ? errors(*reference) : std::vector<double>(study::kQuantities.size(), kMissing);
-    values.insert(values.end(), all.begin(), all.end());
+    study::PerQuantity error;
+    error.fill(kMissing);
+    if (reference)
+      error = study::difference(motion_, reference->motion, study::sizes(reference->motion, *model_), *model_);
+    if (reference && model_->rows.empty()) error.back() = kMissing;
+    values.insert(values.end(), error.begin(), error.end());
   }
   if (kept_.violation) values.insert(values.end(), {s.violation.position, s.violation.velocity});
   if (kept_.energy_drift) values.push_back(conservative_ && kinetic_ > 0 ? drift_ / kinetic_ : kMissing);

@@ -3,7 +3,6 @@
 
 #include <limits>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "bench/cases/kept.h"
@@ -28,7 +27,6 @@ class Watch {
     std::vector<double> at;
   };
   void observe_energy(const Sample& sample);
-  std::vector<double> errors(const study::Reference& reference) const;
 
   const Kept& kept_;
   const std::vector<Column>& columns_;

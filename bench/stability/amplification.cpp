@@ -90,35 +90,28 @@ class Reader {
   std::vector<BodyState> bodies_ = std::vector<BodyState>(1);
 };
 
-// Steppers of error control, by integrator. Empty: the integrator has none.
-template <class Stepper, class Make>
-Sequence marched(const Oscillator& oscillator, bool moving, const Settings& settings, const Make& make) {
+// Empty: a step fails, or the integrator has none of its own.
+Sequence sequence(const Oscillator& oscillator, bool moving, const IntegratorEntry& integrator, const Settings& s) {
   const Scene scene = scene_of(oscillator, moving);
   Reader read(oscillator, moving);
-  EqualSteps<Stepper> equal(scene, settings, make);
+  const auto observe = [&](const Sample& sample) { read(sample); };
+  if (!integrator.controls_error) return simulate(scene, s, observe).status.ok() ? read.y : Sequence{};
+  // Steppers of error control; what they march through begins after the start.
   read.y.push_back(moving ? Vector2d(0, 1) : Vector2d(1, 0));
-  const Status status = equal.march(settings.end, kPropagations, 1, [&](const Sample& sample) { read(sample); });
-  return status.ok() ? read.y : Sequence{};
-}
-
-Sequence sequence(const Oscillator& oscillator, bool moving, const IntegratorEntry& integrator, const Settings& s) {
-  if (!integrator.controls_error) {
-    const Scene scene = scene_of(oscillator, moving);
-    Reader read(oscillator, moving);
-    const Outcome outcome = simulate(scene, s, [&](const Sample& sample) { read(sample); });
-    return outcome.status.ok() ? read.y : Sequence{};
-  }
+  const auto marched = [&](auto&& equal) {
+    return equal.march(s.end, kPropagations, 1, observe).ok() ? read.y : Sequence{};
+  };
   const auto pair = [&](const RungeKuttaPair& of) {
-    return marched<ExplicitStepper>(oscillator, moving, s, [&](auto& problem, auto& systems, auto& work, auto& clock) {
+    return marched(EqualSteps<ExplicitStepper>(scene, s, [&](auto& problem, auto& systems, auto& work, auto& clock) {
       return std::make_unique<ExplicitStepper>(of, problem, systems, s.rtol, s.absolute_tolerance(), work, clock);
-    });
+    }));
   };
   if (integrator.make == make_dopri5) return pair(dopri5_pair());
   if (integrator.make == make_dop853) return pair(dop853_pair());
   if (integrator.make == make_radau5)
-    return marched<RadauStepper>(oscillator, moving, s, [&](auto& problem, auto& systems, auto& work, auto& clock) {
+    return marched(EqualSteps<RadauStepper>(scene, s, [&](auto& problem, auto& systems, auto& work, auto& clock) {
       return std::make_unique<RadauStepper>(problem, systems, s.rtol, s.absolute_tolerance(), work, clock);
-    });
+    }));
   return {};
 }
 

@@ -1,32 +1,13 @@
-// The families, by what they are about. Adding one: a function here, and its line in families.cpp.
+// The families, by what they are about. Adding one: a function there, and its place in the list at the file's end.
 #pragma once
 
 #include "bench/stability/family.h"
 
 namespace poinsot::stability {
 
-// Rotation.
-Family euler_angles();
-Family spin();
-Family top();
-// Drivers and loops.
-Family dp1_driver();
-Family flat_redundant();
-Family flat_planar();
-Family misalignment();
-// Numbers of very different size.
-Family far_away();
-Family mass_ratio();
-Family skew_chain();
-Family stiffness();
-Family rounding_positions();
-Family rounding_accelerations();
-Family rounding_reactions();
-// Starts, forces, long runs.
-Family inconsistent();
-Family pulse();
-Family smooth_pulse();
-Family kinks();
-Family drift();
+std::vector<Family> edges_of_rotation();
+std::vector<Family> edges_of_loops();  // and drivers
+std::vector<Family> edges_of_sizes();  // numbers of very different size
+std::vector<Family> edges_of_runs();   // starts, forces, long runs
 
 }  // namespace poinsot::stability

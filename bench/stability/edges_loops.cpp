@@ -53,17 +53,13 @@ Family flat(std::string_view joints) {
          "x",
          {0, 1e-15, 1e-13, 1e-10, 1e-7, 1e-4, 1e-2, 0.1, 1},
          {0, 1e-13, 1e-7, 0.1, 1},
-         {},
-         {},
          1};
-  f.y = {Axis::accuracy, "step, s | rtol", "", {20, 80, 320, 1280}, {20, 320}, {1e-4, 1e-6, 1e-8, 1e-10}, {1e-4, 1e-8}};
+  f.y = accuracy({20, 80, 320, 1280}, {20, 320});
   f.end = 0.2;
   f.columns = {"post.x", "post.y", "coupler.x", "coupler.y"};
   f.truth = of_posts;
   return f;
 }
-
-}  // namespace
 
 // The distance from f = 1 is that of the angle from 0: θ = x + 4 (t − ½)².
 Family dp1_driver() {
@@ -104,10 +100,8 @@ Family dp1_driver() {
          "x",
          {0, 1e-12, 1e-8, 1e-6, 1e-4, 1e-3, 1e-2, 0.1, 0.5},
          {0, 1e-8, 1e-3, 0.5},
-         {},
-         {},
          0.5};
-  f.y = {Axis::variant, "driver (0: DP1, 1: DP1 with alternate, 2: angle)", "", {0, 1, 2}, {0, 1, 2}, {}, {}, 2};
+  f.y = {Axis::variant, "driver (0: DP1, 1: DP1 with alternate, 2: angle)", "", {0, 1, 2}, {0, 1, 2}, 2};
   f.columns = {"rotor.x", "rotor.y"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     const double angle = at.x + 4 * (t - 0.5) * (t - 0.5);
@@ -160,10 +154,8 @@ Family misalignment() {
          "tilt",
          {0, 1e-14, 1e-12, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2},
          {0, 1e-12, 1e-8, 1e-5, 1e-2},
-         {},
-         {},
          0};
-  f.y = {Axis::accuracy, "step, s | rtol", "", {20, 320}, {20}, {1e-4, 1e-8}, {1e-8}};
+  f.y = accuracy({20, 320}, {20}, {1e-4, 1e-8}, {1e-8});
   f.end = 0.2;
   f.columns = {"post.x", "post.y"};
   f.truth = [](const Place& at, double t) {
@@ -175,6 +167,12 @@ Family misalignment() {
   };
   f.floor = [](const Place& at) { return at.x; };
   return f;
+}
+
+}  // namespace
+
+std::vector<Family> edges_of_loops() {
+  return {dp1_driver(), flat_redundant(), flat_planar(), misalignment()};
 }
 
 }  // namespace poinsot::stability

@@ -17,8 +17,6 @@ std::vector<double> swung_rod(double start, double g, double t) {
   return {std::sin(angle) / 2, -std::cos(angle) / 2};
 }
 
-}  // namespace
-
 Family inconsistent() {
   Family f;
   f.name = "inconsistent";
@@ -40,15 +38,23 @@ Family inconsistent() {
          "x",
          {0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1},
          {0, 1e-9, 1e-3, 1e-1},
-         {},
-         {},
          0};
-  f.y = accuracy();
   f.columns = {"rod.y", "rod.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     return {swung_rod(std::numbers::pi / 2, 1 + at.nudge, t)};
   };
   return f;
+}
+
+// A mass on a slide along a skew axis, pushed along it by 1 N times what is said.
+std::string pushed(std::string_view times) {
+  return fmt::format(R"json({{"scene": 1, "name": "slide", "parameters": {{"x": 0.1}}, "gravity": [0, 0, 0],
+    "bodies": [{{"name": "mass", "mass": 1, "inertia": [0.1, 0.2, 0.3], "position": [0, 0, 0]}}],
+    "joints": [{{"type": "translational", "bodies": ["ground", "mass"], "point": [0, 0, 0], "axis": [0.48, 0.6, 0.64]}}],
+    "forces": [{{"type": "force", "body": "mass", "point": [0, 0, 0],
+      "force": ["0.48{0}", "0.6{0}",
+                "0.64{0}"]}}]}})json",
+                     times);
 }
 
 Family pulse() {
@@ -58,21 +64,9 @@ Family pulse() {
   f.about =
       "a mass of 1 kg on a slide, at rest until at 0.3 s a force of 1/x N sets in, for x s: from then on it moves with "
       "1 m/s. Truth: closed form";
-  f.scenes = {R"json({"scene": 1, "name": "slide", "parameters": {"x": 0.1}, "gravity": [0, 0, 0],
-    "bodies": [{"name": "mass", "mass": 1, "inertia": [0.1, 0.2, 0.3], "position": [0, 0, 0]}],
-    "joints": [{"type": "translational", "bodies": ["ground", "mass"], "point": [0, 0, 0], "axis": [0.48, 0.6, 0.64]}],
-    "forces": [{"type": "force", "body": "mass", "point": [0, 0, 0],
-      "force": ["0.48/x*(step(t - 0.3) - step(t - 0.3 - x))", "0.6/x*(step(t - 0.3) - step(t - 0.3 - x))",
-                "0.64/x*(step(t - 0.3) - step(t - 0.3 - x))"]}]})json"};
-  f.x = {Axis::parameter,
-         "duration of the force, s",
-         "x",
-         {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8},
-         {1e-1, 1e-3, 1e-6},
-         {},
-         {},
-         1e-1};
-  f.y = accuracy();
+  f.scenes = {pushed("/x*(step(t - 0.3) - step(t - 0.3 - x))")};
+  f.x = {
+      Axis::parameter, "duration of the force, s", "x", {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8}, {1e-1, 1e-3, 1e-6}, 1e-1};
   f.columns = {"mass.x", "mass.y", "mass.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     const double into = std::clamp(t - 0.3, 0.0, at.x);
@@ -90,12 +84,7 @@ Family smooth_pulse() {
   f.about =
       "a mass of 1 kg on a slide, at rest until a force exp(-((t - 0.3)/x)^2)/(x sqrt(pi)) N passes: from then on it "
       "moves with 1 m/s. Truth: closed form";
-  f.scenes = {R"json({"scene": 1, "name": "slide", "parameters": {"x": 0.1}, "gravity": [0, 0, 0],
-    "bodies": [{"name": "mass", "mass": 1, "inertia": [0.1, 0.2, 0.3], "position": [0, 0, 0]}],
-    "joints": [{"type": "translational", "bodies": ["ground", "mass"], "point": [0, 0, 0], "axis": [0.48, 0.6, 0.64]}],
-    "forces": [{"type": "force", "body": "mass", "point": [0, 0, 0],
-      "force": ["0.48*exp(-((t - 0.3)/x)^2)/(x*sqrt(pi))", "0.6*exp(-((t - 0.3)/x)^2)/(x*sqrt(pi))",
-                "0.64*exp(-((t - 0.3)/x)^2)/(x*sqrt(pi))"]}]})json"};
+  f.scenes = {pushed("*exp(-((t - 0.3)/x)^2)/(x*sqrt(pi))")};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     // The integral of (1 + erf u)/2 is (u (1 + erf u) + exp(-u^2)/sqrt(pi))/2.
     const auto twice = [&](double u) {
@@ -132,10 +121,7 @@ Family kinks() {
          "",
          {0, 1, 2, 3, 4, 5},
          {0, 1, 2, 3, 4, 5},
-         {},
-         {},
          0};
-  f.y = accuracy();
   f.columns = {"mass.x"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     constexpr double k = 0.305;
@@ -171,8 +157,8 @@ Family drift() {
   f.scenes = {R"json({"scene": 1, "name": "rod", "gravity": [0, 0, -9.81],
     "bodies": [{"name": "rod", "mass": 1, "inertia": [0.02, 0.02, 0.02], "position": [-0.4, 0.3, 0]}],
     "joints": [{"type": "revolute", "bodies": ["ground", "rod"], "point": [0, 0, 0], "axis": [0.6, 0.8, 0]}]})json"};
-  f.x = {Axis::length, "run, in 2 s", "", {5, 50, 500, 5000}, {5, 50}, {}, {}, 0};
-  f.y = {Axis::accuracy, "step, s | rtol", "", {200, 2000}, {200}, {1e-6, 1e-10}, {1e-6}};
+  f.x = {Axis::length, "run, in 2 s", "", {5, 50, 500, 5000}, {5, 50}, 0};
+  f.y = accuracy({200, 2000}, {200}, {1e-6, 1e-10}, {1e-6});
   f.end = 2;
   f.columns = {"rod.x", "rod.y", "rod.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
@@ -181,6 +167,12 @@ Family drift() {
     return {{-0.4 * std::sin(angle), 0.3 * std::sin(angle), -0.5 * std::cos(angle)}};
   };
   return f;
+}
+
+}  // namespace
+
+std::vector<Family> edges_of_runs() {
+  return {inconsistent(), pulse(), smooth_pulse(), kinks(), drift()};
 }
 
 }  // namespace poinsot::stability

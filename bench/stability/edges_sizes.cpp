@@ -63,10 +63,8 @@ Family rounding(std::string_view name, std::string_view title, std::vector<std::
          "",
          {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8},
          {1e-2, 1e-4, 1e-6, 1e-8},
-         {},
-         {},
          0};
-  f.y = {Axis::parameter, "angle at the start, rad", "a", {0.5, 1.5, 3}, {1.5}, {}, {}, 1.5};
+  f.y = {Axis::parameter, "angle at the start, rad", "a", {0.5, 1.5, 3}, {1.5}, 1.5};
   f.steps = 200;
   f.columns = std::move(columns);
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
@@ -100,8 +98,6 @@ std::string turning_chain(int bodies) {
                      bodies, list, joints);
 }
 
-}  // namespace
-
 Family far_away() {
   Family f;
   f.name = "far_away";
@@ -112,8 +108,8 @@ Family far_away() {
   f.scenes = {R"json({"scene": 1, "name": "rod", "gravity": [0, 0, "-9.81*s"], "parameters": {"s": 1, "d": 0},
     "bodies": [{"name": "rod", "mass": 1, "inertia": ["s^2/12", "0.001*s^2", "s^2/12"], "position": ["d", "d + s/2", "d"]}],
     "joints": [{"type": "revolute", "bodies": ["ground", "rod"], "point": ["d", "d", "d"], "axis": [1, 0, 0]}]})json"};
-  f.x = {Axis::parameter, "distance, m", "d", {0, 1, 1e2, 1e4, 1e6, 1e8, 1e10}, {0, 1e4, 1e8}, {}, {}, 0};
-  f.y = {Axis::parameter, "size, m", "s", {1e-6, 1e-3, 1, 1e3, 1e6}, {1e-3, 1, 1e3}, {}, {}, 1};
+  f.x = {Axis::parameter, "distance, m", "d", {0, 1, 1e2, 1e4, 1e6, 1e8, 1e10}, {0, 1e4, 1e8}, 0};
+  f.y = {Axis::parameter, "size, m", "s", {1e-6, 1e-3, 1, 1e3, 1e6}, {1e-3, 1, 1e3}, 1};
   f.columns = {"rod.y", "rod.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     const Rod r = rod(std::numbers::pi / 2, 1 + at.nudge, t);
@@ -142,10 +138,7 @@ Family mass_ratio() {
          "m",
          {1e-8, 1e-6, 1e-4, 1e-2, 1, 1e2, 1e4, 1e6, 1e8},
          {1e-8, 1e-4, 1, 1e4, 1e8},
-         {},
-         {},
          1};
-  f.y = accuracy();
   f.columns = {"inner.y", "inner.z", "outer.y", "outer.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     return {double_pendulum(at.x, kGravity * (1 + at.nudge), t)};
@@ -163,8 +156,8 @@ Family skew_chain() {
       "turned from the hinges' axis by an angle: how badly conditioned a chain is shows in skew frames. Truth: a "
       "circle";
   for (const int bodies : kBodies) f.scenes.push_back(turning_chain(bodies));
-  f.x = {Axis::variant, "links (0: 3, 1: 10, 2: 50)", "", {0, 1, 2}, {0, 1, 2}, {}, {}, 0};
-  f.y = {Axis::parameter, "frames turned by, rad", "s", {0, 1e-12, 1e-9, 1e-6, 1e-3, 1}, {0, 1}, {}, {}, 0};
+  f.x = {Axis::variant, "links (0: 3, 1: 10, 2: 50)", "", {0, 1, 2}, {0, 1, 2}, 0};
+  f.y = {Axis::parameter, "frames turned by, rad", "s", {0, 1e-12, 1e-9, 1e-6, 1e-3, 1}, {0, 1}, 0};
   f.end = 0.5;
   f.steps = 20;
   f.columns = {"link2.y", "link2.z"};
@@ -192,9 +185,7 @@ Family stiffness() {
       {"type": "spring", "bodies": ["ground", "mass"], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "stiffness": "k", "length": 1},
       {"type": "force", "body": "mass", "point": [0, 0, 0],
        "force": ["0.048*k*cos(t)", "0.06*k*cos(t)", "0.064*k*cos(t)"]}]})json"};
-  f.x = {
-      Axis::parameter, "stiffness, N/m", "k", {1e2, 1e3, 1e4, 1e5, 1e6, 1e8, 1e10}, {1e2, 1e4, 1e6, 1e8}, {}, {}, 1e2};
-  f.y = accuracy();
+  f.x = {Axis::parameter, "stiffness, N/m", "k", {1e2, 1e3, 1e4, 1e5, 1e6, 1e8, 1e10}, {1e2, 1e4, 1e6, 1e8}, 1e2};
   f.columns = {"mass.x", "mass.y", "mass.z"};
   f.truth = [](const Place& at, double t) -> std::vector<std::vector<double>> {
     const double slow = 0.1 * at.x / (at.x - 1) * (1 + at.nudge) * std::cos(t), s = 1 + slow;
@@ -205,18 +196,18 @@ Family stiffness() {
   return f;
 }
 
-Family rounding_positions() {
-  return rounding<&Rod::y, &Rod::z>("rounding_positions", "rounding at short steps: positions", {"rod.y", "rod.z"});
-}
+}  // namespace
 
-Family rounding_accelerations() {
-  return of_index1(rounding<&Rod::ay, &Rod::az>("rounding_accelerations", "rounding at short steps: accelerations",
-                                                {"rod.ay", "rod.az"}));
-}
-
-Family rounding_reactions() {
-  return of_index1(rounding<&Rod::fy, &Rod::fz>("rounding_reactions", "rounding at short steps: reactions",
-                                                {"hinge.fy", "hinge.fz"}));
+std::vector<Family> edges_of_sizes() {
+  return {far_away(),
+          mass_ratio(),
+          skew_chain(),
+          stiffness(),
+          rounding<&Rod::y, &Rod::z>("rounding_positions", "rounding at short steps: positions", {"rod.y", "rod.z"}),
+          of_index1(rounding<&Rod::ay, &Rod::az>("rounding_accelerations", "rounding at short steps: accelerations",
+                                                 {"rod.ay", "rod.az"})),
+          of_index1(rounding<&Rod::fy, &Rod::fz>("rounding_reactions", "rounding at short steps: reactions",
+                                                 {"hinge.fy", "hinge.fz"}))};
 }
 
 }  // namespace poinsot::stability

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <vector>
+#include <algorithm>
+#include <ranges>
 
 #include "bench/stability/edges.h"
 #include "core/input_error.h"
@@ -8,37 +10,20 @@
 namespace poinsot::stability {
 
 std::span<const Family> families() {
-  static const std::vector<Family> all{
-      euler_angles(),
-      spin(),
-      top(),
-      dp1_driver(),
-      flat_redundant(),
-      flat_planar(),
-      misalignment(),
-      far_away(),
-      mass_ratio(),
-      skew_chain(),
-      stiffness(),
-      rounding_positions(),
-      rounding_accelerations(),
-      rounding_reactions(),
-      inconsistent(),
-      pulse(),
-      smooth_pulse(),
-      kinks(),
-      drift(),
-  };
+  static const std::vector<Family> all = [] {
+    std::vector<Family> families;
+    for (const auto& edges : {edges_of_rotation(), edges_of_loops(), edges_of_sizes(), edges_of_runs()})
+      families.insert(families.end(), edges.begin(), edges.end());
+    return families;
+  }();
   return all;
 }
 
 const Family& require_family(std::string_view name) {
-  std::string known;
-  for (const Family& family : families()) {
-    if (family.name == name) return family;
-    known += (known.empty() ? "" : ", ") + std::string(family.name);
-  }
-  throw InputError(fmt::format("--family: found \"{}\", expected one of {}", name, known));
+  const auto at = std::ranges::find(families(), name, &Family::name);
+  if (at != families().end()) return *at;
+  throw InputError(fmt::format("--family: found \"{}\", expected one of {}", name,
+                               fmt::join(std::views::transform(families(), &Family::name), ", ")));
 }
 
 std::vector<const Family*> require_families(const std::vector<std::string>& names) {
@@ -49,9 +34,10 @@ std::vector<const Family*> require_families(const std::vector<std::string>& name
   return all;
 }
 
-Axis accuracy() {
-  return {Axis::accuracy, "step, s | rtol",          "",           {40, 160, 640, 2560},
-          {40, 640},      {1e-4, 1e-6, 1e-8, 1e-10}, {1e-4, 1e-8}, 0};
+Axis accuracy(std::vector<double> steps, std::vector<double> quick, std::vector<double> tolerances,
+              std::vector<double> quick_tolerances) {
+  return {Axis::accuracy,        "step, s | rtol",           "", std::move(steps), std::move(quick), 0,
+          std::move(tolerances), std::move(quick_tolerances)};
 }
 
 }  // namespace poinsot::stability

@@ -26,12 +26,15 @@ struct Axis {
   std::string_view name;                // of the parameter
   std::vector<double> values = {};      // of accuracy: numbers of steps
   std::vector<double> quick = {};       // some of them
+  double benign = 0;                    // far from the edge: one of the values that `quick` has, too
   std::vector<double> tolerances = {};  // of accuracy, and
   std::vector<double> quick_tolerances = {};
-  double benign = 0;  // far from the edge: one of the values that `quick` has, too
 
-  const std::vector<double>& of(bool is_quick) const { return is_quick ? quick : values; }
-  const std::vector<double>& tolerances_of(bool is_quick) const { return is_quick ? quick_tolerances : tolerances; }
+  bool of_settings() const { return along != parameter && along != variant; }
+  const std::vector<double>& of(bool is_quick, bool controls_error = false) const {
+    if (along == accuracy && controls_error) return is_quick ? quick_tolerances : tolerances;
+    return is_quick ? quick : values;
+  }
 };
 
 // A place of the map. `nudge`: by how much, relatively, the initial velocity (of a motion from rest the load) is
@@ -42,11 +45,16 @@ struct Place {
   double nudge = 0;
 };
 
+// The axis of accuracy that most families have: 40 to 2560 steps, rtol 1e-4 to 1e-10.
+Axis accuracy(std::vector<double> steps = {40, 160, 640, 2560}, std::vector<double> quick = {40, 640},
+              std::vector<double> tolerances = {1e-4, 1e-6, 1e-8, 1e-10},
+              std::vector<double> quick_tolerances = {1e-4, 1e-8});
+
 struct Family {
   std::string_view name, title;
   std::string_view about;  // what the edge is, and the truth
   std::vector<std::string> scenes;
-  Axis x, y;
+  Axis x, y = accuracy();
   double end = 1;      // s
   double steps = 400;  // to the end; of an axis `step`: of every run
   double rtol = 1e-8;
@@ -54,11 +62,13 @@ struct Family {
   // What the columns should be at t. Several motions where the data do not decide between them (a constraint violated
   // by less than is told apart): the nearest counts.
   std::vector<std::vector<double>> (*truth)(const Place& at, double t) = nullptr;
-  double (*size)(const Place& at) = nullptr;   // of the motion, which errors are relative to; null: 1
-  double (*rate)(const Place& at) = nullptr;   // 1/s: of the motion, by which a step is short or long; null: 1
-  double (*reach)(const Place& at) = nullptr;  // of positions from the origin, in sizes of the motion; null: 1
-  double (*floor)(const Place& at) = nullptr;  // of the error: what the data leave open; null: nothing
-  std::string_view warning = {};               // of a notice that speaks of this edge, wherever it is
+  // Of the motion: its size, which errors are relative to; its rate, 1/s, by which a step is short or long; how far its
+  // positions are from the origin, in its sizes; and of its error what the data leave open.
+  double (*size)(const Place& at) = [](const Place&) { return 1.0; };
+  double (*rate)(const Place& at) = [](const Place&) { return 1.0; };
+  double (*reach)(const Place& at) = [](const Place&) { return 1.0; };
+  double (*floor)(const Place& at) = [](const Place&) { return 0.0; };
+  std::string_view warning = {};  // of a notice that speaks of this edge, wherever it is
 };
 
 std::span<const Family> families();
@@ -66,8 +76,5 @@ std::span<const Family> families();
 const Family& require_family(std::string_view name);
 // These, or all where none is named.
 std::vector<const Family*> require_families(const std::vector<std::string>& names);
-
-// The axis of accuracy that most families have: 40 to 2560 steps, rtol 1e-4 to 1e-10.
-Axis accuracy();
 
 }  // namespace poinsot::stability

@@ -1,11 +1,11 @@
-#include "bench/stability/judge.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 
+#include "bench/stability/family.h"
+#include "bench/stability/verdict.h"
 #include "integrators/integrator.h"
 
 namespace poinsot::stability {
@@ -24,11 +24,8 @@ constexpr double kHuge = 1e300;                   // an error without a number
 constexpr double kLinear = 0.1, kApart = 2;       // of the motion: a promise above the one says the other at most
 constexpr std::size_t kBetween = 8;               // times the sensitivity is asked for to each that is compared
 
-bool fixed(const Axis& axis) {
-  return axis.along == Axis::parameter || axis.along == Axis::variant;
-}
 bool benign(const Family& family, const Cell& cell) {
-  return (!fixed(family.x) || cell.x == family.x.benign) && (!fixed(family.y) || cell.y == family.y.benign);
+  return (family.x.of_settings() || cell.x == family.x.benign) && (family.y.of_settings() || cell.y == family.y.benign);
 }
 
 Place place_of(const Family& family, const Cell& cell) {
@@ -49,7 +46,6 @@ class Truths {
     if (fresh) found->second = compute(place, times);
     return found->second;
   }
-  double size(const Place& place) const { return family_.size ? family_.size(place) : 1; }
 
  private:
   std::vector<std::vector<double>> motions(const Place& place, std::size_t times) const {
@@ -66,7 +62,7 @@ class Truths {
   }
   Motion compute(Place place, std::size_t times) const {
     Motion motion{motions(place, times), 0};
-    const double scale = size(place);
+    const double scale = family_.size(place);
     const std::vector<double> along = motions(place, kBetween * times).front();
     place.nudge = kNudge;
     const std::vector<double> nudged = motions(place, kBetween * times).front();
@@ -120,12 +116,12 @@ void judge(const Family& family, std::vector<Cell>& cells) {
   };
   // S r T (h r)^p
   const auto order_bound = [&](const Cell& cell) {
-    const double rate = family.rate ? family.rate(place_of(family, cell)) : 1;
+    const double rate = family.rate(place_of(family, cell));
     return std::max(truth_of(cell).sensitivity, kLeastSensitivity) * rate * cell.end *
            std::pow(cell.step * rate, integrators().require(cell.integrator).order);
   };
   for (Cell& cell : cells)
-    cell.error = cell.ended() ? error(cell.values, truth_of(cell), truths.size(place_of(family, cell))) : kNone;
+    cell.error = cell.ended() ? error(cell.values, truth_of(cell), family.size(place_of(family, cell))) : kNone;
 
   std::map<std::string, Method> methods;
   for (const Cell& cell : cells) {
@@ -148,15 +144,14 @@ void judge(const Family& family, std::vector<Cell>& cells) {
     const Method& method = methods[cell.method()];
     const double sensitivity = std::max(truth_of(cell).sensitivity, 1.0);
     const Place place = place_of(family, cell);
-    const double reach = family.reach ? std::max(1.0, family.reach(place)) : 1;
-    const double tolerance = cell.rtol * (reach + kAtol / truths.size(place));
+    const double reach = std::max(1.0, family.reach(place));
+    const double tolerance = cell.rtol * (reach + kAtol / family.size(place));
     cell.promised = integrator.controls_error
                         ? std::sqrt(kPerBody * static_cast<double>(cell.bodies)) * cell.steps * tolerance * sensitivity
                     : method.constant == 0 && !method.finest
                         ? kCoarse
                         : kSlack * (method.constant * order_bound(cell) + sensitivity * kNewton);
-    const double open = family.floor ? family.floor(place) : 0;
-    cell.promised += kSlack * sensitivity * (std::numeric_limits<double>::epsilon() * reach + open);
+    cell.promised += kSlack * sensitivity * (std::numeric_limits<double>::epsilon() * reach + family.floor(place));
     if (cell.promised > kLinear) cell.promised = std::max(cell.promised, kApart);
     const bool warned = !family.warning.empty() && cell.message.find(family.warning) != std::string::npos;
     const bool said = !cell.message.empty() && !method.said.contains(without_numbers(cell.message));

@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
+#include "bench/cases/executor.h"
 #include "bench/study/output_file.h"
 #include "bench/study/plot.h"
+#include "core/interruption.h"
 #include "formulations/registry.h"
 #include "integrators/integrator.h"
 
@@ -47,11 +50,7 @@ struct Share {
       for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += counts[k];
     return sum;
   }
-  static int total(const std::array<int, kVerdicts>& counts) {
-    int sum = 0;
-    for (const int n : counts) sum += n;
-    return sum;
-  }
+  static int total(const std::array<int, kVerdicts>& counts) { return std::reduce(counts.begin(), counts.end()); }
   // In which it is accurate wherever it was tried.
   std::vector<std::string> accurate() const {
     std::vector<std::string> names;
@@ -72,6 +71,31 @@ std::string divided(const std::array<int, kVerdicts>& counts) {
 }
 
 }  // namespace
+
+std::vector<Mapped> map_families(const std::vector<const Family*>& families, const Extent& extent,
+                                 const Mapping& mapping, const MapsTold& told) {
+  double all = 0, done = 0;
+  for (const Family* family : families) all += static_cast<double>(FamilyStudy(*family, extent).study().size());
+  std::vector<Mapped> maps;
+  for (const Family* family : families) {
+    const FamilyStudy study(*family, extent);
+    const std::int64_t size = study.study().size();
+    cases::CaseTable table(study.study());
+    const std::filesystem::path part = mapping.folder / fmt::format("{}.part", family->name);
+    if (mapping.fresh) std::filesystem::remove(part);
+    table.open(part);
+    table.read(part, false);
+    compute(study, table, mapping.threads > 0 ? mapping.threads : cases::processors(), [&] {
+      double there = done;
+      for (std::int64_t k = 0; k < size; ++k) there += table.has(k);
+      if (told) told(there, all, *family);
+    });
+    if (interruption_requested) break;
+    done += static_cast<double>(size);
+    maps.push_back({family, study.cells(table)});
+  }
+  return maps;
+}
 
 int count(const std::vector<Cell>& cells, Verdict verdict) {
   return static_cast<int>(std::ranges::count(cells, verdict, &Cell::verdict));

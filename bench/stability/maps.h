@@ -1,13 +1,17 @@
-// The maps of a suite: cells as CSV, pictures of them by bench/study/plots/maps.py, and the tables of what they come
-// to.
+// The maps of a suite: families computed into a folder, their cells as CSV, pictures of them by
+// bench/study/plots/maps.py, and the tables of what they come to.
+//
+//   const auto maps = map_families(require_families({}), {.quick = true}, {.folder = "results"});
+//   const bool pictures = write_maps(maps, "results", foot).empty();
+//   study::write_report(stability_report(maps, pictures, false, foot), "results", "stability");
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "bench/stability/family.h"
-#include "bench/stability/verdict.h"
+#include "bench/stability/suite.h"
 #include "bench/study/report.h"
 
 namespace poinsot::stability {
@@ -16,6 +20,19 @@ struct Mapped {
   const Family* family;
   std::vector<Cell> cells;  // by method
 };
+
+struct Mapping {
+  std::filesystem::path folder;  // its NAME.part keep the cells; those that are there are not computed again
+  bool fresh = false;            // but for this
+  int threads = 0;               // 0: one for each processor
+};
+
+// At intervals, by the thread that called: how many cells of all are there, and at which family it is.
+using MapsTold = std::function<void(double there, double all, const Family& family)>;
+
+// After an interruption (core/interruption.h) those that are complete.
+std::vector<Mapped> map_families(const std::vector<const Family*>& families, const Extent& extent,
+                                 const Mapping& mapping, const MapsTold& told = {});
 
 int count(const std::vector<Cell>& cells, Verdict verdict);
 

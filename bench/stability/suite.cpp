@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 
 #include "bench/cases/executor.h"
-#include "bench/stability/judge.h"
 #include "bench/study/cache.h"
 #include "bench/study/csv.h"
 #include "formulations/registry.h"
@@ -16,18 +13,13 @@
 namespace poinsot::stability {
 namespace {
 
-bool of_settings(const Axis& axis) {
-  return axis.along != Axis::parameter && axis.along != Axis::variant;
-}
-
 bool listed(const std::vector<std::string>& names, std::string_view name) {
   return names.empty() || std::ranges::find(names, name) != names.end();
 }
 
 // How many places an axis has for this integrator.
 std::size_t places(const Axis& axis, bool quick, bool controls_error) {
-  if (!of_settings(axis)) return 1;
-  return axis.along == Axis::accuracy && controls_error ? axis.tolerances_of(quick).size() : axis.of(quick).size();
+  return axis.of_settings() ? axis.of(quick, controls_error).size() : 1;
 }
 
 struct Length {
@@ -36,13 +28,9 @@ struct Length {
 
 // What an axis of settings says at a place of it.
 void apply(const Axis& axis, bool quick, std::size_t place, bool controls_error, Settings& settings, Length& length) {
-  if (!of_settings(axis)) return;
-  if (axis.along == Axis::accuracy && controls_error) {
-    settings.rtol = axis.tolerances_of(quick)[place];
-    return;
-  }
-  const double value = axis.of(quick)[place];
-  if (axis.along == Axis::accuracy) length.steps = value;
+  if (!axis.of_settings()) return;
+  const double value = axis.of(quick, controls_error)[place];
+  if (axis.along == Axis::accuracy) (controls_error ? settings.rtol : length.steps) = value;
   if (axis.along == Axis::step) length.end = value * length.steps;
   if (axis.along == Axis::length) {
     length.end *= value;
@@ -179,16 +167,13 @@ std::vector<Cell> FamilyStudy::cells(const cases::CaseTable& table) const {
   std::vector<Cell> all;
   for (std::int64_t number = 0; number < study_.size(); ++number) all.push_back(cell(table, number));
   judge(family_, all);
-  const auto by_method = [](const Cell& a, const Cell& b) {
-    const auto order = [](const Cell& c) {
-      const auto of = [](const auto& registry, const std::string& name) {
-        return std::ranges::find(registry, name, [](const auto& e) { return e.name; }) - registry.begin();
-      };
-      return std::tuple(of(integrators(), c.integrator), of(formulations(), c.formulation), c.y_place, c.x_place);
-    };
-    return order(a) < order(b);
+  const auto place_in = [](const auto& registry, const std::string& name) {
+    return std::ranges::find(registry, name, [](const auto& e) { return e.name; }) - registry.begin();
   };
-  std::ranges::stable_sort(all, by_method);
+  std::ranges::stable_sort(all, {}, [&](const Cell& c) {
+    return std::tuple(place_in(integrators(), c.integrator), place_in(formulations(), c.formulation), c.y_place,
+                      c.x_place);
+  });
   return all;
 }
 

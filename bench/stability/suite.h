@@ -22,7 +22,6 @@ class FamilyStudy {
  public:
   FamilyStudy(const Family& family, const Extent& extent);
 
-  const Family& family() const { return family_; }
   const cases::Study& study() const { return study_; }
   // Of rows that are all there, judged, by method, y and x.
   std::vector<Cell> cells(const cases::CaseTable& table) const;

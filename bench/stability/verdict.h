@@ -28,6 +28,8 @@
 
 namespace poinsot::stability {
 
+struct Family;
+
 enum class Verdict { accurate, coarse, told, stop, wrong };
 inline constexpr int kVerdicts = 5;
 std::string_view name(Verdict verdict);
@@ -47,5 +49,8 @@ struct Cell {
   bool ended() const { return status == "ok"; }
   std::string method() const { return integrator + " in " + formulation; }
 };
+
+// Finds error, promise and verdict of each cell of a family.
+void judge(const Family& family, std::vector<Cell>& cells);
 
 }  // namespace poinsot::stability
