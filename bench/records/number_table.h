@@ -5,7 +5,6 @@
 // columns are in the run record. Its header, of kNpyHeader bytes, says how many rows there are on the disk.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
