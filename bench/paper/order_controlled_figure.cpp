@@ -109,8 +109,7 @@ FigureResult order_controlled(const FigureRequest& request) {
                   "{:g}. IDA has no order of its own: it chooses formulas of order 1 to 5.",
                   kSamples, kTightest),
       {"mechanism", "integrator", "formulation", "order", "positions", "velocities", "accelerations", "multipliers",
-       "neighbours", "from h, s", "to h, s"},
-      {}};
+       "neighbours", "from h, s", "to h, s"}};
   std::map<std::string_view, Range> exponents;
   for (const ControlledCase& mechanism : mechanisms()) {
     Scene scene = request.scene(mechanism.model);
@@ -135,8 +134,8 @@ FigureResult order_controlled(const FigureRequest& request) {
       for (const FormulationEntry& formulation : formulations()) {
         std::array<Curve, kQuantities.size()> curves;
         for (std::size_t k = 0; k < curves.size(); ++k)
-          curves[k] = {
-              fmt::format("{}: {}", mechanism.title, kQuantities[k]), method.name, std::string(formulation.name), {}};
+          curves[k] = {fmt::format("{}: {}", mechanism.title, kQuantities[k]), method.name,
+                       std::string(formulation.name)};
         for (const int steps : method.steps) {
           Status status;
           const Motion found = march(scene, method, formulation.name, mechanism.end, steps, status);

@@ -64,7 +64,7 @@ std::optional<Power> fit_order(Curve& curve, const Window& window, double roundi
 
 Curve guide(const Curve& curve, int order) {
   constexpr double kBelow = 0.4;
-  Curve line{curve.panel, fmt::format("order {}", order), kGuide, {}};
+  Curve line{curve.panel, fmt::format("order {}", order), kGuide};
   for (const Point& point : curve.points) {
     if (!point.in_fit) continue;
     const double y = line.points.empty() ? kBelow * point.y

@@ -77,8 +77,7 @@ Table empty_table() {
           "dynamics; of free motion dop853 at rtol 1e-13. Newton's tolerance Θ with Θ h² = {:g}.",
           kBetweenInstants, kRounding, kNewtonPosition),
       {"mechanism", "integrator", "formulation", "order", "positions", "velocities", "accelerations", "multipliers",
-       "neighbours", "from h, s", "to h, s"},
-      {}};
+       "neighbours", "from h, s", "to h, s"}};
 }
 
 // Fits the curves of one method, quantity by quantity; a row of the table.
@@ -145,10 +144,8 @@ FigureResult order_integrators(const FigureRequest& request) {
       for (const FormulationEntry& formulation : formulations()) {
         std::array<Curve, kQuantities.size()> curves;
         for (std::size_t k = 0; k < curves.size(); ++k)
-          curves[k] = {fmt::format("{}: {}", mechanism.title, kQuantities[k]),
-                       std::string(method->name),
-                       std::string(formulation.name),
-                       {}};
+          curves[k] = {fmt::format("{}: {}", mechanism.title, kQuantities[k]), std::string(method->name),
+                       std::string(formulation.name)};
         for (const double step : steps) {
           counter.next();
           const auto found = motion_of(scene, settings_for(*method, formulation.name, step, end), result);

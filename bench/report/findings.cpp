@@ -58,7 +58,7 @@ std::string ratio_sentence(const std::vector<const Ratio*>& own, const std::stri
 
 Finding with_matrix(const std::vector<Ratio>& all, const std::string& id, const std::string& title,
                     const std::string& jacobian, bool like_for_like, Ledger& ledger) {
-  Finding finding{id, title, {}};
+  Finding finding{id, title};
   ledger.begin(id);
   for (const Analysis analysis : {Analysis::dynamics, Analysis::kinematics})
     for (const std::string& other : other_formulations()) {
@@ -71,7 +71,7 @@ Finding with_matrix(const std::vector<Ratio>& all, const std::string& id, const 
 }
 
 Finding phases(const std::vector<Ratio>& all, Ledger& ledger) {
-  Finding finding{"phases", "Why: in which phase the time lies", {}};
+  Finding finding{"phases", "Why: in which phase the time lies"};
   ledger.begin(finding.id);
   for (const std::string& other : other_formulations()) {
     std::array<double, kPhases.size()> saved{};
@@ -97,7 +97,7 @@ Finding phases(const std::vector<Ratio>& all, Ledger& ledger) {
 }
 
 Finding matched(const Table& table, Ledger& ledger) {
-  Finding finding{"matched", fmt::format("At matched error: {} against the others", kSubject), {}};
+  Finding finding{"matched", fmt::format("At matched error: {} against the others", kSubject)};
   ledger.begin(finding.id);
   for (const std::string& other : other_formulations())
     for (const std::size_t quantity : {std::size_t{0}, kQuantities.size() - 1}) {
@@ -129,7 +129,7 @@ Finding matched(const Table& table, Ledger& ledger) {
 
 // Of studies that compare the formulations: geometric means over their cases, as bench/cases/pictures.h makes them.
 Finding studies(const std::vector<StudyResults>& all, Ledger& ledger) {
-  Finding finding{"studies", fmt::format("Beyond the paper's mechanisms: {} against the others", kSubject), {}};
+  Finding finding{"studies", fmt::format("Beyond the paper's mechanisms: {} against the others", kSubject)};
   ledger.begin(finding.id);
   std::string confidence;
   for (const StudyResults& study : all)
@@ -160,7 +160,7 @@ Finding studies(const std::vector<StudyResults>& all, Ledger& ledger) {
 }
 
 Finding choices(const std::vector<const CsvTable*>& charts) {
-  Finding finding{"choice", "Which method for which accuracy", {}};
+  Finding finding{"choice", "Which method for which accuracy"};
   for (const CsvTable* chart : charts)
     for (const auto quantity : {kQuantities.front(), kQuantities.back()})
       if (const std::string said = chart->note(fmt::format("conclusion, {}", quantity)); !said.empty())

@@ -39,8 +39,7 @@ Table matched_table(const std::vector<const CsvTable*>& charts) {
       fmt::format("Time over that of {} at the same accuracy", paper::kSubject),
       "Between the measured cases of a method its time is interpolated, log time over log error. Noise: what the "
       "spreads of the two times allow for, in per cent.",
-      {"scene", "integrator", "formulation", "quantity", "accuracy", "ratio", "noise, %"},
-      {}};
+      {"scene", "integrator", "formulation", "quantity", "accuracy", "ratio", "noise, %"}};
   for (const CsvTable* file : charts) {
     const Chart chart = read_chart(*file);
     for (const auto& [integrator, rows] : chart.by_integrator)

@@ -176,8 +176,7 @@ Table contents_table() {
   Table table{"report_contents",
               "What the page shows",
               "",
-              {"section", "number in the paper", "title", "figure", "tables", "command"},
-              {}};
+              {"section", "number in the paper", "title", "figure", "tables", "command"}};
   for (const Section& s : contents())
     for (const Item& item : s.items) {
       std::vector<std::string_view> files;

@@ -64,8 +64,7 @@ Table ratios_table(const std::vector<Ratio>& all) {
               fmt::format("Medians of the quotients of interleaved repetitions, and the interval their order gives. By "
                           "phase: what {} saves, microseconds a step.",
                           paper::kSubject),
-              {"analysis", "mechanism", "formulation", "jacobian", "ratio", "from", "to", "confidence, %"},
-              {}};
+              {"analysis", "mechanism", "formulation", "jacobian", "ratio", "from", "to", "confidence, %"}};
   for (const auto phase : kPhases) table.header.push_back(fmt::format("{}, us", phase));
   table.header.insert(table.header.end(), {"paper C1", "paper C2"});
   for (const Ratio& r : all) {

@@ -71,7 +71,7 @@ std::int64_t count(const std::string& field) {
 }
 
 ChartRow row_of(const std::vector<std::string>& f) {
-  ChartRow row{f[0], f[1], f[2], f[3], number(f[4]), {}, {}};
+  ChartRow row{f[0], f[1], f[2], f[3], number(f[4])};
   Measured& m = row.measured;
   m.status = f[5];
   for (std::size_t k = 0; k < kQuantities.size(); ++k) m.error[k] = number(f[6 + k]);
@@ -149,8 +149,7 @@ void ChartFile::write_all(const Reference* reference) const {
   if (!reference) file.write(fmt::format("{}\n", kUnfinished));
   file.write(header() + "\n");
   if (reference) {
-    ChartRow row{
-        reference->of().formulation, reference->of().integrator, kUsualSolver, "rtol", reference->of().tight, {}, {}};
+    ChartRow row{reference->of().formulation, reference->of().integrator, kUsualSolver, "rtol", reference->of().tight};
     row.measured.status = "reference";
     row.measured.error = reference->agreement;
     file.write(line(row));
@@ -170,7 +169,7 @@ const ChartRow* ChartFile::find(const Case& one) const {
 
 void ChartFile::add(const Case& one, const Measured& measured) {
   const Settings& s = one.settings;
-  rows_.push_back({s.formulation, s.integrator, s.linear_solver, one.parameter(), one.value(), measured, {}});
+  rows_.push_back({s.formulation, s.integrator, s.linear_solver, one.parameter(), one.value(), measured});
   rows_.back().measured.status = on_one_line(measured.status);
   out_ << line(rows_.back()) << std::flush;
   if (!out_) throw OutputError(fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(errno)));

@@ -22,7 +22,7 @@ namespace poinsot::study {
 struct ChartRow {
   std::string formulation, integrator, linear_solver, parameter;
   double value = 0;
-  Measured measured;
+  Measured measured = {};
   std::array<bool, kQuantities.size()> front{};
 
   bool of(const Case& one) const;

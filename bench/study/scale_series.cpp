@@ -95,8 +95,7 @@ Table cost_table(const std::vector<Series>& all) {
               "Implicit Euler, exact Newton matrix; microseconds per body and iteration, the whole step and by phase, "
               "from the second step on; kilobytes resident per body; seconds from the scene to the end of the first "
               "step, in which the linear solver chooses its pivots.",
-              {"structure", "formulation", "linear solver", "bodies"},
-              {}};
+              {"structure", "formulation", "linear solver", "bodies"}};
   for (const Quantity& quantity : kMeasured) table.header.emplace_back(quantity.column);
   for (const Series& series : all) {
     for (const auto& runs : series.runs) {
@@ -118,8 +117,7 @@ Table growth_table(const std::vector<Series>& all) {
       "whole and by phase, and of the start-up time, from 100 bodies on, and of the resident memory, from 1000 "
       "on: 1 is linear. Last, the cost per body of the largest scene over that of the smallest one fitted.",
       {"structure", "formulation", "linear solver", "step", "assembly", "factor", "solve", "rest", "memory", "start-up",
-       "from bodies", "to bodies", "largest / smallest"},
-      {}};
+       "from bodies", "to bodies", "largest / smallest"}};
   for (const Series& series : all) {
     if (!exponent(series, kMeasured[0])) continue;
     std::vector<std::string> row = names(series);
