@@ -46,7 +46,7 @@ std::string text(double x) {
 
 std::string line(const ChartRow& row) {
   const Measured& m = row.measured;
-  const bool figures = m.ok() || m.status == "reference";
+  const bool figures = m.ok() || row.is_reference();
   std::vector<std::string> f{row.formulation, row.integrator,  row.linear_solver,
                              row.parameter,   text(row.value), csv_field(m.status)};
   for (const double error : m.error) f.push_back(figures ? text(error) : "");
@@ -103,6 +103,11 @@ std::vector<ChartRow> chart_rows(const CsvTable& table) {
   if (!is_chart(table)) return rows;
   for (const auto& fields : table.rows) rows.push_back(row_of(fields));
   return rows;
+}
+
+PerQuantity chart_agreement(const std::vector<ChartRow>& rows) {
+  const auto reference = std::ranges::find_if(rows, &ChartRow::is_reference);
+  return reference == rows.end() ? PerQuantity{} : reference->measured.error;
 }
 
 bool is_chart(const CsvTable& table) {
