@@ -153,19 +153,14 @@ bool conserves_energy(const Model& model) {
     if (row.type == RowType::pfaffian && !is_zero(row.f)) return false;
     return row.f.is_constant() && (!row.alternate || row.alternate->f.is_constant());
   };
-  if (!std::all_of(model.rows.begin(), model.rows.end(), still)) return false;
-  for (const PointForce& force : model.point_forces)
-    if (!std::all_of(std::begin(force.force), std::end(force.force), is_zero)) return false;
-  for (const Torque& torque : model.torques)
-    if (!std::all_of(std::begin(torque.torque), std::end(torque.torque), is_zero)) return false;
+  const auto none = [](const auto& components) { return std::ranges::all_of(components, is_zero); };
   // A law may vary with time: what its text hides is not looked into.
   const auto undamped = [](const auto& spring) { return spring.damping == 0 && !spring.law; };
-  if (!std::all_of(model.springs.begin(), model.springs.end(), undamped)) return false;
-  for (const TorsionElement& torsion : model.torsions)
-    if (!undamped(torsion.spring)) return false;
-  if (!model.callbacks.empty()) return false;
-  return std::all_of(model.drags.begin(), model.drags.end(),
-                     [](const LinearDrag& drag) { return drag.translational == 0 && drag.rotational == 0; });
+  const auto idle = [](const LinearDrag& drag) { return drag.translational == 0 && drag.rotational == 0; };
+  return std::ranges::all_of(model.rows, still) && std::ranges::all_of(model.point_forces, none, &PointForce::force) &&
+         std::ranges::all_of(model.torques, none, &Torque::torque) && std::ranges::all_of(model.springs, undamped) &&
+         std::ranges::all_of(model.torsions, undamped, &TorsionElement::spring) &&
+         std::ranges::all_of(model.drags, idle) && model.callbacks.empty();
 }
 
 double kinetic_energy(const Motion& motion, const Model& model) {

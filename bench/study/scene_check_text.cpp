@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "bench/study/name_list.h"
 #include "core/counted.h"
 #include "core/printable.h"
 #include "formulations/registry.h"
@@ -35,13 +36,8 @@ std::vector<std::string> groups_of(const Model& model, std::span<const int> rows
   return groups;
 }
 
-// The first few of them.
 std::string groups_text(const Model& model, std::span<const int> rows) {
-  constexpr std::size_t most = 8;
-  const std::vector<std::string> groups = groups_of(model, rows);
-  const std::size_t shown = std::min(most, groups.size());
-  const std::string names = fmt::format("{}", fmt::join(std::span(groups).first(shown), ", "));
-  return groups.size() > most ? fmt::format("{} and {} more", names, groups.size() - most) : names;
+  return listed(groups_of(model, rows));
 }
 
 void add_header(std::string& text, const Model& model) {
@@ -85,22 +81,14 @@ void add_constraints(std::string& text, const SceneCheck& found) {
     add(text, "  {} dependent rows in a mechanism so connected: what each follows from is not worked out\n",
         analysis.dependent.size());
   const auto from = [&](const Dependency& d) { return analysis.named ? groups_text(model, d.others) : "other rows"; };
-  // Both lists are by row.
-  auto conflict = conflicts.begin();
-  for (const Dependency& d : analysis.dependent) {
-    if (conflict != conflicts.end() && conflict->row == d.row)
-      ++conflict;
-    else
-      add(text, "  {} follows from {}\n", describe_row(model, d.row), from(d));
-  }
+  const auto conflict_of = [&](const Dependency& d) { return std::ranges::find(conflicts, d.row, &Conflict::row); };
+  for (const Dependency& d : analysis.dependent)
+    if (conflict_of(d) == conflicts.end()) add(text, "  {} follows from {}\n", describe_row(model, d.row), from(d));
   add(text, "conflicting constraints: {}\n", conflicts.empty() ? "none" : counted(conflicts.size(), "row"));
-  conflict = conflicts.begin();
-  for (const Dependency& d : analysis.dependent) {
-    if (conflict == conflicts.end() || conflict->row != d.row) continue;
-    add(text, "  {} contradicts {}: off by {} where those hold\n", describe_row(model, d.row), from(d),
-        describe(*conflict));
-    ++conflict;
-  }
+  for (const Dependency& d : analysis.dependent)
+    if (const auto conflict = conflict_of(d); conflict != conflicts.end())
+      add(text, "  {} contradicts {}: off by {} where those hold\n", describe_row(model, d.row), from(d),
+          describe(*conflict));
 }
 
 std::vector<int> undetermined_rows(const SceneCheck& found) {
