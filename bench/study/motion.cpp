@@ -124,7 +124,7 @@ BodyDifference body_difference(const Motion& motion, const Motion& from, const S
     for (std::size_t b = 0; b < from.bodies[k].size(); ++b) {
       const BodyState &x = motion.bodies[k][b], &y = from.bodies[k][b];
       raise(d.r, (x.r - y.r).norm() / sizes.length);
-      raise(d.A, 2 * std::asin(std::min(1.0, (x.A - y.A).norm() / (2 * std::numbers::sqrt2))));
+      raise(d.A, angle_between(x.A, y.A));
       raise(d.rd, (x.rd - y.rd).norm() / sizes.velocity);
       raise(d.w, (x.w - y.w).norm() / sizes.angular_velocity);
       raise(d.rdd, (x.rdd - y.rdd).norm() / sizes.acceleration);
@@ -146,6 +146,10 @@ PerQuantity difference(const Motion& motion, const Motion& from, const Sizes& si
       raise(d[3], std::abs(as_force(model.rows[row], motion.lambda[k][row] - from.lambda[k][row], sizes.length)) /
                       sizes.force);
   return d;
+}
+
+double angle_between(const Matrix3& A, const Matrix3& B) {
+  return 2 * std::asin(std::min(1.0, (A - B).norm() / (2 * std::numbers::sqrt2)));
 }
 
 bool conserves_energy(const Model& model) {
