@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrators/simulate.h"
-
 namespace poinsot::paper {
 using namespace study;
 namespace {

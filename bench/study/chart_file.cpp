@@ -8,7 +8,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <limits>
 
 #include "bench/study/cost_curve.h"
@@ -124,13 +123,11 @@ ChartFile::ChartFile(fs::path file, std::vector<std::string> notes, bool fresh)
 
 void ChartFile::read() {
   std::ifstream in(file_, std::ios::binary);
-  const std::string content(std::istreambuf_iterator<char>(in), {});
   const auto refuse = [&](const std::string& why) {
     throw InputError(fmt::format("{}: {}; --fresh begins it anew, another --out keeps it", file_.string(), why));
   };
   std::vector<std::string> lines;
-  for (std::size_t begin = 0, end = 0; (end = content.find('\n', begin)) != std::string::npos; begin = end + 1)
-    lines.push_back(content.substr(begin, end - begin));  // a last line without its end was cut off
+  for (std::string one; std::getline(in, one) && !in.eof();) lines.push_back(one);  // without a last one cut off
   for (std::size_t k = 0; k < notes_.size(); ++k) {
     const std::string expected = "# " + notes_[k];
     if (k >= lines.size() || !lines[k].starts_with("# ")) refuse("the file is not the beginning of this chart");

@@ -9,7 +9,6 @@
 #include <csignal>
 #include <cstring>
 
-#include "core/input_error.h"
 #include "integrators/simulate.h"
 
 namespace poinsot::study {

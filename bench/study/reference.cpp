@@ -9,8 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "integrators/settings_reader.h"
-
 namespace poinsot::study {
 namespace {
 using Json = nlohmann::json;
@@ -38,10 +36,6 @@ Settings settings_of(const Reference::Method& method, double rtol, const Referen
   settings.end = asked.end;
   settings.every = asked.every;
   return settings;
-}
-
-double largest(const PerQuantity& difference) {
-  return *std::max_element(difference.begin(), difference.end());
 }
 
 // A JSON file has no infinity.
@@ -168,7 +162,7 @@ Reference compute(const Scene& scene, const ReferenceSettings& asked) {
   }
   for (std::size_t m = 0; m < reference.methods.size(); ++m)
     if (reference.methods[m].failure.empty() &&
-        (reference.given < 0 || largest(reference.methods[m].apart) < largest(reference.of().apart)))
+        (reference.given < 0 || std::ranges::max(reference.methods[m].apart) < std::ranges::max(reference.of().apart)))
       reference.given = static_cast<int>(m);
   if (reference.given < 0) return reference;
 
@@ -180,7 +174,7 @@ Reference compute(const Scene& scene, const ReferenceSettings& asked) {
     Reference::Method& other = reference.methods[m];
     if (m == given || !other.failure.empty()) continue;
     other.from_given = difference(tight[m], reference.motion, scale, model);
-    if (reference.nearest >= 0 && largest(other.from_given) >= largest(reference.agreement)) continue;
+    if (reference.nearest >= 0 && std::ranges::max(other.from_given) >= std::ranges::max(reference.agreement)) continue;
     reference.nearest = static_cast<int>(m);
     reference.agreement = other.from_given;
   }
