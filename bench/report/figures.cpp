@@ -128,8 +128,7 @@ std::string chart_html(const CsvTable& chart) {
   const std::string settings = chart.note("settings"), to = "to t = ";
   const std::string until =
       settings.starts_with(to) ? settings.substr(to.size(), settings.find(" s;") - to.size()) : "";
-  std::vector<std::string> colours, markers;
-  for (const FormulationEntry& entry : formulations()) place(markers, std::string(entry.name));
+  std::vector<std::string> colours, markers = formulations().names();
   for (const ChartRow& row : rows)
     if (!row.is_reference()) place(colours, row.integrator);
   std::string html = "<div class=\"panels two\">\n";

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "bench/paper/cell_rows.h"
 #include "bench/study/motion.h"
@@ -18,16 +17,19 @@ using namespace study;
 using paper::kSubject;
 namespace {
 
-std::vector<const Ratio*> pick(const std::vector<Ratio>& all, const std::function<bool(const Ratio&)>& which) {
+std::vector<const Ratio*> pick(const std::vector<Ratio>& all, Analysis analysis, const std::string& formulation,
+                               std::string_view jacobian) {
   std::vector<const Ratio*> picked;
-  for (const Ratio& one : all)
-    if (which(one)) picked.push_back(&one);
+  for (const Ratio& r : all)
+    if (r.analysis == paper::analysis_name(analysis) && r.formulation == formulation && r.jacobian == jacobian)
+      picked.push_back(&r);
   return picked;
 }
 
 // "dynamics: rp takes 1.31 to 1.43 times as long as rA (...); in the paper 2.29 to 2.93".
-std::string ratio_sentence(const std::vector<const Ratio*>& own, const std::string& analysis, const std::string& other,
-                           bool with_paper, Ledger& ledger) {
+std::string ratio_sentence(const std::vector<const Ratio*>& own, const std::string& other, bool with_paper,
+                           Ledger& ledger) {
+  const std::string& analysis = own.front()->analysis;
   Range medians, within, paper;
   double confidence = 1;
   std::size_t apart = 0;
@@ -62,10 +64,8 @@ Finding with_matrix(const std::vector<Ratio>& all, const std::string& id, const 
   ledger.begin(id);
   for (const Analysis analysis : {Analysis::dynamics, Analysis::kinematics})
     for (const std::string& other : other_formulations()) {
-      const std::string name(paper::analysis_name(analysis));
-      const auto own = pick(
-          all, [&](const Ratio& r) { return r.analysis == name && r.formulation == other && r.jacobian == jacobian; });
-      if (!own.empty()) finding.sentences.push_back(ratio_sentence(own, name, other, like_for_like, ledger));
+      const std::vector<const Ratio*> own = pick(all, analysis, other, jacobian);
+      if (!own.empty()) finding.sentences.push_back(ratio_sentence(own, other, like_for_like, ledger));
     }
   return finding;
 }
@@ -75,10 +75,7 @@ Finding phases(const std::vector<Ratio>& all, Ledger& ledger) {
   ledger.begin(finding.id);
   for (const std::string& other : other_formulations()) {
     std::array<double, kPhases.size()> saved{};
-    for (const Ratio* r : pick(all, [&](const Ratio& one) {
-           return one.analysis == paper::analysis_name(Analysis::dynamics) && one.formulation == other &&
-                  one.jacobian == paper::kLikeForLike;
-         }))
+    for (const Ratio* r : pick(all, Analysis::dynamics, other, paper::kLikeForLike))
       for (std::size_t k = 0; k < saved.size(); ++k) saved[k] += r->saved[k];
     double sum = 0;
     for (const double x : saved) sum += x;
@@ -171,9 +168,8 @@ Finding choices(const std::vector<const CsvTable*>& charts) {
 }  // namespace
 
 std::vector<std::string> other_formulations() {
-  std::vector<std::string> names;
-  for (const FormulationEntry& entry : formulations())
-    if (entry.name != kSubject) names.emplace_back(entry.name);
+  std::vector<std::string> names = formulations().names();
+  std::erase(names, kSubject);
   return names;
 }
 

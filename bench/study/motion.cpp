@@ -28,18 +28,8 @@ void settle(double& linear, double& angular, double length, double usual) {
 
 // A multiplier as a force, N.
 double as_force(const Row& row, double lambda, double length) {
-  switch (row.type) {
-    case RowType::DP1:
-    case RowType::angle:
-      return lambda / length;
-    case RowType::D:
-      return lambda * length;
-    case RowType::DP2:
-    case RowType::CD:
-    case RowType::pfaffian:
-      break;
-  }
-  return lambda;
+  if (row.type == RowType::DP1 || row.type == RowType::angle) return lambda / length;
+  return row.type == RowType::D ? lambda * length : lambda;
 }
 
 // What is no number stays.

@@ -125,9 +125,7 @@ void add_state(std::string& text, const SceneCheck& found) {
 }
 
 void add_derivatives(std::string& text, const SceneCheck& found) {
-  std::vector<std::string_view> names;
-  for (const FormulationEntry& formulation : formulations()) names.push_back(formulation.name);
-  add(text, "derivatives: {} compared ({}), {}\n", found.derivatives, fmt::join(names, ", "),
+  add(text, "derivatives: {} compared ({}), {}\n", found.derivatives, fmt::join(formulations().names(), ", "),
       found.wrong.empty() ? fmt::format("all right, largest relative difference {:.2g}", found.derivative_error)
                           : fmt::format("{} wrong", found.wrong.size()));
   for (const auto& [formulation, derivative] : found.wrong)

@@ -191,8 +191,8 @@ Json packed(const std::vector<Apart>& apart) {
 }  // namespace
 
 std::string page_data(const Model& model, const std::string& about, std::span<const Motion> motions) {
-  bool many = false;
-  for (const Motion& motion : motions) many = many || motion.frames.size() * model.bodies.size() > kManyPoses;
+  const bool many = std::ranges::any_of(
+      motions, [&](const Motion& motion) { return motion.frames.size() * model.bodies.size() > kManyPoses; });
   const std::size_t stored = many ? kPoseColumns : kTrajectoryColumns.size();
 
   Json data;
