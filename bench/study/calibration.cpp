@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "formulations/registry.h"
 #include "linsolve/registry.h"
@@ -57,14 +58,12 @@ class Search {
   }
 
   Calibration result() {
-    const auto by_time = [](const Candidate& a, const Candidate& b) { return a.measured.seconds < b.measured.seconds; };
-    std::sort(found_.reaching.begin(), found_.reaching.end(), by_time);
-    std::sort(found_.others.begin(), found_.others.end(),
-              [&](const Candidate& a, const Candidate& b) { return error_of(a.measured) < error_of(b.measured); });
+    std::ranges::sort(found_.reaching, {}, seconds_of);
+    std::ranges::sort(found_.others, {}, [&](const Candidate& c) { return error_of(c.measured); });
     if (found_.reaching.empty()) return found_;
     const auto finalists = std::min<std::size_t>(kFinalists, found_.reaching.size());
     time(found_.reaching, finalists);
-    std::sort(found_.reaching.begin(), found_.reaching.begin() + static_cast<std::ptrdiff_t>(finalists), by_time);
+    std::ranges::sort(std::span(found_.reaching).first(finalists), {}, seconds_of);
     choose_solver();
     return found_;
   }
@@ -91,6 +90,7 @@ class Search {
     nearest_.reset();
   }
 
+  static double seconds_of(const Candidate& candidate) { return candidate.measured.seconds; }
   double error_of(const Measured& measured) const { return error(measured, reference_, asked_); }
   bool reached_by(const Measured& measured) const { return error_of(measured) <= asked_.accuracy; }
 
@@ -116,12 +116,8 @@ class Search {
       if (reached_by(other.measured)) same.push_back(other);
     }
     time(same, same.size());
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < same.size(); ++k)
-      if (same[k].measured.seconds < kMuchFaster * same[0].measured.seconds &&
-          same[k].measured.seconds < same[best].measured.seconds)
-        best = k;
-    found_.reaching.front() = same[best];
+    const Candidate& fastest = *std::ranges::min_element(same, {}, seconds_of);
+    found_.reaching.front() = seconds_of(fastest) < kMuchFaster * seconds_of(same.front()) ? fastest : same.front();
   }
 
   const Sweep& sweep_;
