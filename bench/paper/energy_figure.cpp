@@ -82,8 +82,7 @@ FigureResult energy(const FigureRequest& request) {
               "Energy of the free double pendulum",
               "",
               {"integrator", "formulation", "E(end) − E(0), J", "largest, first half, J", "largest, second half, J",
-               "trend, J", "trend, % of the largest"},
-              {}};
+               "trend, J", "trend, % of the largest"}};
   std::vector<std::pair<const IntegratorEntry*, const FormulationEntry*>> runs;
   for (const IntegratorEntry& integrator : integrators()) {
     if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;

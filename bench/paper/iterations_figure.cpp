@@ -51,8 +51,7 @@ Table beside_original(const Scene& scene, FigureResult& result) {
               "Four link, dynamics, simplified matrix, 1 s, steps of exact length: ours, and the original codes run "
               "again with such steps. Theirs needs more in rp because its residual holds the gradient p of the "
               "normalizations at the old position.",
-              {"formulation", "h, s", "ours", "original"},
-              {}};
+              {"formulation", "h, s", "ours", "original"}};
   for (const OriginalIterations& theirs : original_iterations()) {
     const double ours =
         average(scene, settings_of(Analysis::dynamics, "simplified", theirs.formulation, theirs.step, 1), result);
@@ -78,8 +77,7 @@ FigureResult iterations(const FigureRequest& request) {
               "Newton iterations a step",
               "Four link; kinematics stopped where the correction is below 1e-11, dynamics (implicit Euler) where that "
               "of accelerations and multipliers is below Θ with Θ h² = 1e-11.",
-              {"analysis", "jacobian", "h, s"},
-              {}};
+              {"analysis", "jacobian", "h, s"}};
   for (const FormulationEntry& formulation : formulations()) table.header.emplace_back(formulation.name);
 
   RunCounter counter(4 * formulations().size() * steps.size(), request.progress);
@@ -87,10 +85,8 @@ FigureResult iterations(const FigureRequest& request) {
     for (const char* jacobian : {"exact", "simplified"}) {
       std::vector<Curve> curves;
       for (const FormulationEntry& formulation : formulations())
-        curves.push_back({fmt::format("{}, {}", analysis_name(analysis), jacobian),
-                          std::string(formulation.name),
-                          std::string(formulation.name),
-                          {}});
+        curves.push_back({fmt::format("{}, {}", analysis_name(analysis), jacobian), std::string(formulation.name),
+                          std::string(formulation.name)});
       for (const double step : steps) {
         std::vector<std::string> row{std::string(analysis_name(analysis)), jacobian, fmt::format("{:g}", step)};
         for (Curve& curve : curves) {

@@ -100,17 +100,14 @@ FigureResult order_controlled(const FigureRequest& request) {
                  "step size h, s", "relative error"};
   plot.columns = static_cast<int>(kQuantities.size());
   Table table{
-      "order_controlled_table",
-      "Orders of the one-step methods with error control",
+      "order_controlled_table", "Orders of the one-step methods with error control",
       fmt::format("Error control off, steps of equal length. Exponents of h, fitted to at least five steps from "
                   "h to h as given; neighbours: the least and the largest between neighbouring steps there, "
                   "over all quantities. Errors are the largest over {} instants at even times, bodies and "
                   "components, relative to the largest value of their kind. The reference is dop853 at rtol "
                   "{:g}. IDA has no order of its own: it chooses formulas of order 1 to 5.",
                   kSamples, kTightest),
-      {"mechanism", "integrator", "formulation", "order", "positions", "velocities", "accelerations", "multipliers",
-       "neighbours", "from h, s", "to h, s"},
-      {}};
+      kOrderColumns};
   std::map<std::string_view, Range> exponents;
   for (const ControlledCase& mechanism : mechanisms()) {
     Scene scene = request.scene(mechanism.model);
@@ -135,8 +132,8 @@ FigureResult order_controlled(const FigureRequest& request) {
       for (const FormulationEntry& formulation : formulations()) {
         std::array<Curve, kQuantities.size()> curves;
         for (std::size_t k = 0; k < curves.size(); ++k)
-          curves[k] = {
-              fmt::format("{}: {}", mechanism.title, kQuantities[k]), method.name, std::string(formulation.name), {}};
+          curves[k] = {fmt::format("{}: {}", mechanism.title, kQuantities[k]), method.name,
+                       std::string(formulation.name)};
         for (const int steps : method.steps) {
           Status status;
           const Motion found = march(scene, method, formulation.name, mechanism.end, steps, status);
@@ -145,19 +142,7 @@ FigureResult order_controlled(const FigureRequest& request) {
           for (std::size_t k = 0; k < errors.size(); ++k)
             curves[k].points.push_back({mechanism.end / steps, errors[k]});
         }
-        std::vector<std::string> row{mechanism.title, method.name, std::string(formulation.name),
-                                     std::to_string(order)};
-        Range neighbours;
-        for (Curve& curve : curves) {
-          const std::optional<Power> power = fit_order(curve, window, kNoise);
-          row.push_back(power ? fmt::format("{:.3f}", power->exponent) : "-");
-          if (power) exponents[method.name].add(power->exponent);
-          if (power) neighbours.add(power->neighbours.low), neighbours.add(power->neighbours.high);
-        }
-        row.push_back(neighbours.empty() ? "-" : neighbours.text(3));
-        row.push_back(fmt::format("{:.3g}", window.from));
-        row.push_back(fmt::format("{:.3g}", window.to));
-        table.rows.push_back(row);
+        table.rows.push_back(fit_row(mechanism.title, order, curves, window, kNoise, "-", exponents[method.name]));
         for (Curve& curve : curves) {
           if (formulation.name == formulations().back().name && last_of_order(mechanism, method))
             plot.curves.push_back(guide(curve, order));
@@ -167,8 +152,9 @@ FigureResult order_controlled(const FigureRequest& request) {
     }
   }
   for (const auto& [name, range] : exponents)
-    result.summary.push_back(
-        fmt::format("{} (order {}): exponents {}", name, integrators().require(name).order, range.text(3)));
+    if (!range.empty())
+      result.summary.push_back(
+          fmt::format("{} (order {}): exponents {}", name, integrators().require(name).order, range.text(3)));
   result.plots.push_back(std::move(plot));
   result.tables.push_back(std::move(table));
   return result;

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-
-#include "integrators/simulate.h"
 
 namespace poinsot::paper {
 using namespace study;
@@ -12,11 +11,8 @@ namespace {
 
 constexpr std::size_t kFewest = 5;  // points that show an order
 
-std::vector<Point> points_in(const Curve& curve, const Window& window) {
-  std::vector<Point> points;
-  for (const Point& point : curve.points)
-    if (window.holds(point.x)) points.push_back(point);
-  return points;
+bool is_exact(const Curve& curve, const Window& window, double rounding) {
+  return std::ranges::all_of(curve.points, [&](const Point& p) { return !window.holds(p.x) || p.y < rounding; });
 }
 
 }  // namespace
@@ -45,15 +41,10 @@ std::optional<Motion> exact_motion(const Scene& scene, bool driven, double end, 
   return motion_of(scene, settings, result);
 }
 
-bool is_exact(const Curve& curve, const Window& window, double rounding) {
-  for (const Point& point : points_in(curve, window))
-    if (!(point.y < rounding)) return false;
-  return true;
-}
-
 std::optional<Power> fit_order(Curve& curve, const Window& window, double rounding) {
   std::vector<double> x, y;
-  for (const Point& point : points_in(curve, window)) {
+  for (const Point& point : curve.points) {
+    if (!window.holds(point.x)) continue;
     x.push_back(point.x);
     y.push_back(point.y);
   }
@@ -62,9 +53,27 @@ std::optional<Power> fit_order(Curve& curve, const Window& window, double roundi
   return fit_power(x, y);
 }
 
+std::vector<std::string> fit_row(const char* mechanism, int order, std::span<Curve> curves, const Window& window,
+                                 double rounding, const char* exact, Range& exponents) {
+  std::vector<std::string> row{mechanism, curves[0].series, curves[0].variant, std::to_string(order)};
+  Range neighbours;
+  for (Curve& curve : curves) {
+    const std::optional<Power> power = fit_order(curve, window, rounding);
+    row.push_back(power ? fmt::format("{:.3f}", power->exponent) : is_exact(curve, window, rounding) ? exact : "-");
+    if (!power) continue;
+    exponents.add(power->exponent);
+    neighbours.add(power->neighbours.low);
+    neighbours.add(power->neighbours.high);
+  }
+  row.push_back(neighbours.empty() ? "-" : neighbours.text(3));
+  row.push_back(fmt::format("{:.3g}", window.from));
+  row.push_back(fmt::format("{:.3g}", window.to));
+  return row;
+}
+
 Curve guide(const Curve& curve, int order) {
   constexpr double kBelow = 0.4;
-  Curve line{curve.panel, fmt::format("order {}", order), kGuide, {}};
+  Curve line{curve.panel, fmt::format("order {}", order), kGuide};
   for (const Point& point : curve.points) {
     if (!point.in_fit) continue;
     const double y = line.points.empty() ? kBelow * point.y

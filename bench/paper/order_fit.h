@@ -25,10 +25,17 @@ struct Window {
 
 // Errors that are rounding alone show no order.
 inline constexpr double kRounding = 1e-10;
-bool is_exact(const study::Curve& curve, const Window& window, double rounding = kRounding);
 
 // Marks the points in the window and fits them. Nothing where errors are rounding or fewer than five points are there.
 std::optional<study::Power> fit_order(study::Curve& curve, const Window& window, double rounding = kRounding);
+
+// A row of a table of kOrderColumns: fits the curves of one method, quantity by quantity. `exact` stands where errors
+// are rounding.
+std::vector<std::string> fit_row(const char* mechanism, int order, std::span<study::Curve> curves, const Window& window,
+                                 double rounding, const char* exact, study::Range& exponents);
+inline const std::vector<std::string> kOrderColumns{"mechanism",  "integrator", "formulation",   "order",
+                                                    "positions",  "velocities", "accelerations", "multipliers",
+                                                    "neighbours", "from h, s",  "to h, s"};
 
 // A line of slope `order` below the fitted points.
 study::Curve guide(const study::Curve& curve, int order);

@@ -65,8 +65,7 @@ Scene scene_of(const DrivenOrFree& mechanism, const FigureRequest& request) {
 
 Table empty_table() {
   return {
-      "order_integrators_table",
-      "Orders of the integrators of fixed step",
+      "order_integrators_table", "Orders of the integrators of fixed step",
       fmt::format(
           "Exponents of h, fitted to at least five steps from h to h as given; neighbours: the least and the largest "
           "between neighbouring steps there, over all quantities. Errors are the largest over instants every {:g} s, "
@@ -76,29 +75,7 @@ Table empty_table() {
           "reference of driven mechanisms is their kinematics solved to 1e-12, with the multipliers of inverse "
           "dynamics; of free motion dop853 at rtol 1e-13. Newton's tolerance Θ with Θ h² = {:g}.",
           kBetweenInstants, kRounding, kNewtonPosition),
-      {"mechanism", "integrator", "formulation", "order", "positions", "velocities", "accelerations", "multipliers",
-       "neighbours", "from h, s", "to h, s"},
-      {}};
-}
-
-// Fits the curves of one method, quantity by quantity; a row of the table.
-std::vector<std::string> fit_row(std::span<Curve> curves, const DrivenOrFree& mechanism, const IntegratorEntry& method,
-                                 bool quick, Range& exponents) {
-  const Window window = window_of(method.order, quick);
-  std::vector<std::string> row{mechanism.title, curves[0].series, curves[0].variant, std::to_string(method.order)};
-  Range neighbours;
-  for (Curve& curve : curves) {
-    const std::optional<Power> power = fit_order(curve, window);
-    row.push_back(power ? fmt::format("{:.3f}", power->exponent) : is_exact(curve, window) ? "exact" : "-");
-    if (!power) continue;
-    exponents.add(power->exponent);
-    neighbours.add(power->neighbours.low);
-    neighbours.add(power->neighbours.high);
-  }
-  row.push_back(neighbours.empty() ? "-" : neighbours.text(3));
-  row.push_back(fmt::format("{:g}", window.from));
-  row.push_back(fmt::format("{:g}", window.to));
-  return row;
+      kOrderColumns};
 }
 
 const Point* largest_fitted(const Curve& curve) {
@@ -145,10 +122,8 @@ FigureResult order_integrators(const FigureRequest& request) {
       for (const FormulationEntry& formulation : formulations()) {
         std::array<Curve, kQuantities.size()> curves;
         for (std::size_t k = 0; k < curves.size(); ++k)
-          curves[k] = {fmt::format("{}: {}", mechanism.title, kQuantities[k]),
-                       std::string(method->name),
-                       std::string(formulation.name),
-                       {}};
+          curves[k] = {fmt::format("{}: {}", mechanism.title, kQuantities[k]), std::string(method->name),
+                       std::string(formulation.name)};
         for (const double step : steps) {
           counter.next();
           const auto found = motion_of(scene, settings_for(*method, formulation.name, step, end), result);
@@ -156,7 +131,8 @@ FigureResult order_integrators(const FigureRequest& request) {
           const PerQuantity errors = difference(*found, *exact, size, model);
           for (std::size_t k = 0; k < errors.size(); ++k) curves[k].points.push_back({step, errors[k]});
         }
-        table.rows.push_back(fit_row(curves, mechanism, *method, request.quick, exponents[method]));
+        table.rows.push_back(fit_row(mechanism.title, method->order, curves, window_of(method->order, request.quick),
+                                     kRounding, "exact", exponents[method]));
         for (const Curve& curve : curves) {
           if (largest_fitted(curve)) fitted[method->order].push_back(curve);
           plot.curves.push_back(curve);

@@ -44,8 +44,7 @@ FigureResult order_paper(const FigureRequest& request) {
                   "fitted from h to h as given, and the least and largest between neighbouring steps. Positions "
                   "are prescribed: the last column, their largest difference, is rounding.",
                   kPaperEnd, kPaperPosition),
-      {"coordinate", "formulation", "quantity", "exponent", "least", "largest", "from h, s", "to h, s", "position, m"},
-      {}};
+      {"coordinate", "formulation", "quantity", "exponent", "least", "largest", "from h, s", "to h, s", "position, m"}};
   RunCounter counter(std::size(kCoordinates) * formulations().size() * steps.size(), request.progress);
   Range exponents;
   for (const Coordinate& coordinate : kCoordinates) {
@@ -55,8 +54,8 @@ FigureResult order_paper(const FigureRequest& request) {
     const BodyState& truth = exact->bodies.back()[coordinate.body];
     for (const FormulationEntry& formulation : formulations()) {
       const std::string name(formulation.name);
-      std::array curves{Curve{fmt::format("{}: velocity, m/s", coordinate.title), name, name, {}},
-                        Curve{fmt::format("{}: acceleration, m/s²", coordinate.title), name, name, {}}};
+      std::array curves{Curve{fmt::format("{}: velocity, m/s", coordinate.title), name, name},
+                        Curve{fmt::format("{}: acceleration, m/s²", coordinate.title), name, name}};
       double position = 0;
       for (const double step : steps) {
         counter.next();

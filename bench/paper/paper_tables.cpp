@@ -34,8 +34,7 @@ Table constraint_counts(std::span<const Scene> scenes) {
       "Constraints of the mechanisms",
       "Ours are counted in the compiled models; the paper's table leaves the double pendulum out, its counts are "
       "those of the original codes' model file.",
-      {"mechanism", "CD", "DP1", "DP2", "D", "CD (paper)", "DP1 (paper)", "DP2 (paper)", "D (paper)"},
-      {}};
+      {"mechanism", "CD", "DP1", "DP2", "D", "CD (paper)", "DP1 (paper)", "DP2 (paper)", "D (paper)"}};
   for (std::size_t m = 0; m < kMechanisms.size(); ++m) {
     const Model model = compile(scenes[m]);
     std::vector<std::string> row{std::string(kMechanisms[m].title)};
@@ -54,8 +53,7 @@ Table speed_up_table(std::span<const Cell> cells, Analysis analysis) {
   Table table{file_name(analysis, "speed_up"),
               title(analysis, fmt::format("speed-up relative to {}", kBaseline)),
               "",
-              {"mechanism", "formulation"},
-              {}};
+              {"mechanism", "formulation"}};
   for (const std::string& jacobian : jacobians) table.header.push_back("ours, " + jacobian);
   table.header.insert(table.header.end(), {"paper C1", "paper C2"});
 
@@ -93,8 +91,7 @@ Table iterations_table(std::span<const Cell> cells, Analysis analysis) {
                   ? "Of the position analysis. C1 and C2 are the paper's figures."
                   : "The paper prints no such table for dynamics; C1 and C2 are measured on its codes over 1 s, C2 "
                     "held to order 1.",
-              {"mechanism", "formulation"},
-              {}};
+              {"mechanism", "formulation"}};
   for (const std::string& jacobian : jacobians) table.header.push_back("ours, " + jacobian);
   table.header.insert(table.header.end(), {kinematics ? "paper C1" : "C1", kinematics ? "paper C2" : "C2"});
   for_rows(table, cells, analysis, jacobians,
@@ -112,8 +109,7 @@ Table against_original_table(std::span<const Cell> cells, Analysis analysis, std
   Table table{file_name(analysis, "against_original"),
               title(analysis, "speed-up over the faster of the original Python codes"),
               "The Python codes use the simplified matrix, factored once a step. ",
-              {"mechanism", "formulation", "Python, us a step"},
-              {}};
+              {"mechanism", "formulation", "Python, us a step"}};
   for (const std::string& jacobian : jacobians) {
     table.header.push_back(fmt::format("{}, us a step", jacobian));
     table.header.push_back(fmt::format("speed-up, {}", jacobian));

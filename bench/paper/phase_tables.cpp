@@ -43,8 +43,7 @@ Table phases_table(std::span<const Cell> cells, Analysis analysis) {
               title(analysis, "time of a step by phase, microseconds"),
               "",
               {"mechanism", "formulation", "jacobian", "total", "spread, %", "assembly", "factorization", "solves",
-               "the rest", "iterations", "factorizations"},
-              {}};
+               "the rest", "iterations", "factorizations"}};
   Range linear_algebra;
   for (const std::string& jacobian : jacobians_of(cells))
     for_rows(
@@ -76,8 +75,7 @@ Table advantage_table(std::span<const Cell> cells, Analysis analysis) {
   Table table{file_name(analysis, "advantage"),
               title(analysis, fmt::format("where the time goes that {} saves", kSubject)),
               "",
-              {"mechanism", "formulation", "jacobian", fmt::format("slower than {} by, us", kSubject)},
-              {}};
+              {"mechanism", "formulation", "jacobian", fmt::format("slower than {} by, us", kSubject)}};
   for (const auto& [name, phase] : phases) table.header.push_back(fmt::format("{}, us", name));
 
   double saved[std::size(phases)] = {};
@@ -127,8 +125,7 @@ Table linear_solvers_table(std::span<const Cell> cells) {
       "alone where there is no degree of freedom or the whole matrix; compare solvers on the same system. Refused: the "
       "solver does not take such matrices.",
       {"mechanism", "formulation", "jacobian", "linear solver", "factored", "total", "spread, %", "assembly",
-       "factorization", "solves", "the rest"},
-      {}};
+       "factorization", "solves", "the rest"}};
   for (const Cell& cell : cells) {
     std::vector<std::string> row{std::string(mechanism_of(cell).title), cell.settings.formulation,
                                  cell.settings.jacobian, cell.settings.linear_solver};
@@ -159,8 +156,7 @@ Table raw_table(std::span<const Cell> cells) {
               "",
               {"analysis", "mechanism", "formulation", "jacobian", "linear_solver", "factored", "repetition", "steps",
                "newton_iterations", "jacobian_evaluations", "factorizations", "solves", "total_s", "assembly_s",
-               "factor_s", "solve_s", "other_s"},
-              {}};
+               "factor_s", "solve_s", "other_s"}};
   for (const Cell& cell : cells)
     for (std::size_t r = 0; r < cell.runs.size(); ++r) {
       const Statistics& s = cell.runs[r];

@@ -73,8 +73,7 @@ FigureResult solution_deltas(const FigureRequest& request) {
                   "rA at the same step in the first second, in % of rA's largest |Δz| there.",
                   settings.rtol, settings.end),
       {"formulation", "h, s", "to 1 s, m", "exponent", fmt::format("to {:g} s, m", settings.end), "exponent (all)",
-       "from rA, %"},
-      {}};
+       "from rA, %"}};
   RunCounter counter(formulations().size() * std::size(kSteps), request.progress);
   std::vector<std::vector<double>> first;  // by step, of the first formulation: rA
   std::vector<Curve> between;              // of the others from it

@@ -32,19 +32,19 @@ bool is_npy(const std::filesystem::path& file) {
   return file.extension() == ".npy";
 }
 
-NumberTable::NumberTable(const std::filesystem::path& file, const std::vector<std::string>& columns)
-    : file_(file, rows_of(file, columns.size())), npy_(is_npy(file)), columns_(columns.size()) {
+NumberTable::NumberTable(const std::filesystem::path& file, std::vector<std::string> columns)
+    : file_(file, rows_of(file, columns.size())), npy_(is_npy(file)), columns_(std::move(columns)) {
   if (npy_) {
-    file_.write(npy_header(0, columns_));
+    file_.write(npy_header(0, columns_.size()));
     return;
   }
-  file_.write(columns.front());
-  for (std::size_t k = 1; k < columns.size(); ++k) file_.write_field(columns[k]);
+  file_.write(columns_.front());
+  for (std::size_t k = 1; k < columns_.size(); ++k) file_.write_field(columns_[k]);
   file_.write("\n");
 }
 
 void NumberTable::write(double value) {
-  const bool first = column_ == 0, last = ++column_ == columns_;
+  const bool first = column_ == 0, last = ++column_ == columns_.size();
   if (npy_) {
     file_.write(std::string_view(reinterpret_cast<const char*>(&value), sizeof value));
   } else {

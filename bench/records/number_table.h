@@ -5,7 +5,6 @@
 // columns are in the run record. Its header, of kNpyHeader bytes, says how many rows there are on the disk.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -21,15 +20,16 @@ class NumberTable {
   static constexpr std::size_t kNpyHeader = 128;
 
   // Throws InputError. The first column's name is "t" or another that needs no quotes.
-  NumberTable(const std::filesystem::path& file, const std::vector<std::string>& columns);
+  NumberTable(const std::filesystem::path& file, std::vector<std::string> columns);
 
+  const std::vector<std::string>& columns() const { return columns_; }
   void write(double value);  // the next of the row, which ends with the last column
   study::OutputFile& file() { return file_; }
 
  private:
   study::OutputFile file_;
   const bool npy_;
-  const std::size_t columns_;
+  const std::vector<std::string> columns_;
   std::size_t column_ = 0;  // next
 };
 

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
-#include <utility>
 
 #include "core/counted.h"
 #include "core/printable.h"
@@ -14,11 +12,6 @@ namespace poinsot::records {
 namespace {
 
 constexpr std::size_t kShown = 20;  // bodies
-
-template <class... Arguments>
-void add(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
-}
 
 // "klu on G: 3 factorizations with fresh pivots, 998 with kept ones, condition 17"
 std::string description(const LinearWork& w) {
@@ -43,34 +36,35 @@ std::string run_summary(const Scene& scene, const Settings& settings, const Outc
   std::string text;
   const Statistics& s = outcome.statistics;
   const bool kinematics = settings.analysis == Analysis::kinematics;
-  add(text, "{}: {}, {}{}, {}, {}\n", printable(scene.name), kinematics ? "kinematics" : "dynamics",
-      settings.formulation, kinematics ? "" : ", " + settings.integrator, settings.linear_solver,
+  text += fmt::format(
+      "{}: {}, {}{}, {}, {}\n", printable(scene.name), kinematics ? "kinematics" : "dynamics", settings.formulation,
+      kinematics ? "" : ", " + settings.integrator, settings.linear_solver,
       chooses_steps(settings) ? fmt::format("rtol = {:g}", settings.rtol) : fmt::format("h = {:g} s", settings.step));
-  add(text, "t = {:g} s\n", last.t);
+  text += fmt::format("t = {:g} s\n", last.t);
   std::size_t width = 4;
   for (const Body& body : scene.bodies) width = std::max(width, printable(body.name).size());
   const auto row = [](const Vector3& x) { return fmt::format("{:12.6g} {:12.6g} {:12.6g}", x.x(), x.y(), x.z()); };
-  add(text, "  {:<{}}  {:>38}  {:>38}  {:>38}\n", "body", width, "position, m", "velocity, m/s",
-      "angular velocity (body), rad/s");
+  text += fmt::format("  {:<{}}  {:>38}  {:>38}  {:>38}\n", "body", width, "position, m", "velocity, m/s",
+                      "angular velocity (body), rad/s");
   for (std::size_t b = 0; b < last.bodies.size(); ++b)
-    add(text, "  {:<{}}  {}  {}  {}\n", printable(scene.bodies[b].name), width, row(last.bodies[b].r),
-        row(last.bodies[b].rd), row(last.bodies[b].w));
+    text += fmt::format("  {:<{}}  {}  {}  {}\n", printable(scene.bodies[b].name), width, row(last.bodies[b].r),
+                        row(last.bodies[b].rd), row(last.bodies[b].w));
   if (const std::size_t more = scene.bodies.size() - last.bodies.size(); more > 0 && !last.bodies.empty())
-    add(text, "  ... and {} more; --out FILE.csv writes all\n", more);
+    text += fmt::format("  ... and {} more; --out FILE.csv writes all\n", more);
   const double steps = static_cast<double>(std::max<std::int64_t>(s.steps, 1));
-  add(text, "{}, {:.2f} Newton iterations, {:.2f} factorizations and {:.2f} solves a step\n", counted(s.steps, "step"),
-      static_cast<double>(s.newton_iterations) / steps, static_cast<double>(s.factorizations) / steps,
-      static_cast<double>(s.solves) / steps);
+  text += fmt::format("{}, {:.2f} Newton iterations, {:.2f} factorizations and {:.2f} solves a step\n",
+                      counted(s.steps, "step"), static_cast<double>(s.newton_iterations) / steps,
+                      static_cast<double>(s.factorizations) / steps, static_cast<double>(s.solves) / steps);
   const auto share = [&](double seconds) { return s.seconds.total > 0 ? 100 * seconds / s.seconds.total : 0.0; };
-  add(text,
+  text += fmt::format(
       "{:.3g} s, {:.3g} us a step: assembly {:.0f} %, factorization {:.0f} %, solve {:.0f} %, the rest {:.0f} %\n",
       s.seconds.total, 1e6 * s.seconds.total / steps, share(s.seconds.assembly), share(s.seconds.factor),
       share(s.seconds.solve), share(s.seconds.other));
   for (const MethodWork& w : s.methods)
-    add(text, "{}: t = {:.6g} to {:.6g} s in {}\n", w.integrator, w.from, w.to, counted(w.steps, "step"));
-  for (const LinearWork& w : s.linear) add(text, "{}\n", description(w));
-  add(text, "largest violation of the constraints: position {:.2g}, velocity {:.2g}\n", s.violation.position,
-      s.violation.velocity);
+    text += fmt::format("{}: t = {:.6g} to {:.6g} s in {}\n", w.integrator, w.from, w.to, counted(w.steps, "step"));
+  for (const LinearWork& w : s.linear) text += fmt::format("{}\n", description(w));
+  text += fmt::format("largest violation of the constraints: position {:.2g}, velocity {:.2g}\n", s.violation.position,
+                      s.violation.velocity);
   return text;
 }
 

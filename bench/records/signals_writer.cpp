@@ -11,8 +11,7 @@ std::vector<std::string> names_of(const Model& model) {
 
 }  // namespace
 
-SignalsWriter::SignalsWriter(const std::filesystem::path& file, const Model& model)
-    : names_(names_of(model)), table_(file, names_) {}
+SignalsWriter::SignalsWriter(const std::filesystem::path& file, const Model& model) : table_(file, names_of(model)) {}
 
 void SignalsWriter::write(const Sample& sample) {
   if (!signals_) signals_.emplace(sample.problem);

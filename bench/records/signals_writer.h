@@ -15,12 +15,11 @@ class SignalsWriter {
  public:
   SignalsWriter(const std::filesystem::path& file, const Model& model);  // throws InputError
 
-  const std::vector<std::string>& columns() const { return names_; }
+  const std::vector<std::string>& columns() const { return table_.columns(); }
   void write(const Sample& sample);
   study::OutputFile& file() { return table_.file(); }
 
  private:
-  std::vector<std::string> names_;
   NumberTable table_;
   std::optional<Signals> signals_;  // from the first sample on
 };

@@ -66,8 +66,7 @@ std::string TrajectoryContent::column_names() {
 
 TrajectoryWriter::TrajectoryWriter(const std::filesystem::path& file, const Scene& scene, TrajectoryContent content)
     : content_(std::move(content)),
-      names_(names_of(scene, content_.columns_, content_.bodies_)),
-      table_(file, names_),
+      table_(file, names_of(scene, content_.columns_, content_.bodies_)),
       states_(content_.bodies_.back() + 1) {}
 
 void TrajectoryWriter::write(const Sample& sample) {

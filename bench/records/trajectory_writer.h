@@ -33,7 +33,7 @@ class TrajectoryWriter {
  public:
   TrajectoryWriter(const std::filesystem::path& file, const Scene& scene, TrajectoryContent content);  // InputError
 
-  const std::vector<std::string>& columns() const { return names_; }
+  const std::vector<std::string>& columns() const { return table_.columns(); }
   void write(const Sample& sample);
   void write(double t, std::span<const BodyState> bodies);
   study::OutputFile& file() { return table_.file(); }
@@ -42,7 +42,6 @@ class TrajectoryWriter {
   void write(const Vector3& x);
 
   TrajectoryContent content_;
-  std::vector<std::string> names_;
   NumberTable table_;
   std::vector<BodyState> states_;
 };

@@ -148,7 +148,7 @@ std::optional<std::string> claim_of_subject(const std::vector<Ratio>& all, Ledge
 }  // namespace
 
 Finding claims(const Results& results, const std::vector<Ratio>& all, Ledger& ledger) {
-  Finding finding{"claims", "Where the paper's claims hold", {}};
+  Finding finding{"claims", "Where the paper's claims hold"};
   ledger.begin(finding.id);
   for (const auto& said :
        {claim_of_subject(all, ledger), claim_of_reps(all, ledger), claim_of_iterations(results, ledger),

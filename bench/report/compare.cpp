@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "bench/report/contents.h"
@@ -90,23 +91,30 @@ class Comparer {
     if (before != after) result_.changed.push_back({file, cell, quantity, before, after});
   }
 
+  // What has the same name in both files; what one of them lacks is told.
+  template <class Item, class Name, class Compare>
+  void compare_each(const std::string& file, const std::vector<Item>& before, const std::vector<Item>& after,
+                    const Name& name, const Compare& compare) {
+    for (const Item& item : after)
+      if (std::ranges::find(before, std::invoke(name, item), name) == before.end())
+        result_.only_b.push_back(fmt::format("{}: {}", file, std::invoke(name, item)));
+    for (const Item& item : before) {
+      const auto other = std::ranges::find(after, std::invoke(name, item), name);
+      if (other == after.end())
+        result_.only_a.push_back(fmt::format("{}: {}", file, std::invoke(name, item)));
+      else
+        compare(item, *other);
+    }
+  }
+
   void compare_raw(const CsvTable& a, const CsvTable& b) {
     const std::string why = why_no_times(a, b);
     if (!why.empty()) leave_out(a, "times", why);
-    const std::vector<RawCell> before = raw_cells(a), after = raw_cells(b);
-    for (const RawCell& cell : after)
-      if (std::ranges::find(before, cell.name(), &RawCell::name) == before.end())
-        result_.only_b.push_back(fmt::format("raw.csv: {}", cell.name()));
-    for (const RawCell& cell : before) {
-      const auto other = std::ranges::find(after, cell.name(), &RawCell::name);
-      if (other == after.end()) {
-        result_.only_a.push_back(fmt::format("raw.csv: {}", cell.name()));
-        continue;
-      }
+    compare_each("raw.csv", raw_cells(a), raw_cells(b), &RawCell::name, [&](const RawCell& cell, const RawCell& other) {
       for (const auto& [quantity, count] : cell.counts)
-        changed("raw.csv", cell.name(), quantity, count, other->counts.at(quantity));
-      if (why.empty()) compare_times(cell, *other);
-    }
+        changed("raw.csv", cell.name(), quantity, count, other.counts.at(quantity));
+      if (why.empty()) compare_times(cell, other);
+    });
   }
 
   void compare_times(const RawCell& a, const RawCell& b) {
@@ -131,39 +139,28 @@ class Comparer {
     const std::string why = why_no_times(a, b), file = a.file + ".csv";
     if (!why.empty()) leave_out(a, "times", why);
     const std::vector<ChartRow> before = chart_rows(a), after = chart_rows(b);
+    const PerQuantity agreement = chart_agreement(before);
     const auto name = [](const ChartRow& r) {
-      return r.measured.status == "reference" ? std::string("reference")
-                                              : fmt::format("{}, {} {}", r.method(), r.parameter, r.value);
+      return r.is_reference() ? r.measured.status : fmt::format("{}, {} {}", r.method(), r.parameter, r.value);
     };
-    const auto agreement = std::ranges::find(before, "reference", name);
-    for (const ChartRow& row : after)
-      if (std::ranges::find(before, name(row), name) == before.end())
-        result_.only_b.push_back(fmt::format("{}: {}", file, name(row)));
-    for (const ChartRow& row : before) {
-      const auto other = std::ranges::find(after, name(row), name);
-      if (other == after.end()) {
-        result_.only_a.push_back(fmt::format("{}: {}", file, name(row)));
-        continue;
-      }
-      const Measured &m = row.measured, &n = other->measured;
-      if (m.status == "reference") continue;
+    compare_each(file, before, after, name, [&](const ChartRow& row, const ChartRow& other) {
+      const Measured &m = row.measured, &n = other.measured;
+      if (row.is_reference()) return;
       changed(file, name(row), "status", m.status, n.status);
-      if (!m.ok() || !n.ok()) continue;
+      if (!m.ok() || !n.ok()) return;
       changed(file, name(row), "newton_iterations", std::to_string(m.newton_iterations),
               std::to_string(n.newton_iterations));
-      for (std::size_t k = 0; k < kQuantities.size(); ++k) {
-        const double resolved = agreement == before.end() ? 0 : kResolved * agreement->measured.error[k];
-        if (std::abs(m.error[k] - n.error[k]) > resolved)
+      for (std::size_t k = 0; k < kQuantities.size(); ++k)
+        if (std::abs(m.error[k] - n.error[k]) > kResolved * agreement[k])
           changed(file, name(row), fmt::format("error in {}", kQuantities[k]), fmt::format("{:.3g}", m.error[k]),
                   fmt::format("{:.3g}", n.error[k]));
-      }
-      if (!why.empty() || !(m.seconds > 0) || !(n.seconds > 0)) continue;
+      if (!why.empty() || !(m.seconds > 0) || !(n.seconds > 0)) return;
       const double ratio = n.seconds / m.seconds, noise = 1 + std::hypot(m.spread, n.spread);
       ++result_.times;
       if (ratio > noise || ratio * noise < 1)
         result_.changed_times.push_back(
             {file, name(row), m.seconds, n.seconds, {ratio, ratio / noise, ratio * noise, 0}});
-    }
+    });
   }
 
   // Cell by cell: of the numbers that differ, how many and by how much.

@@ -28,12 +28,16 @@ int place(std::vector<std::string>& names, const std::string& name) {
   return static_cast<int>(names.size()) - 1;
 }
 
-std::string key_item(int colour, int marker, const std::string& name) {
+// What colours and markers mean: a list, but for its end.
+std::string key_items(const std::vector<std::string>& colours, const std::vector<std::string>& markers) {
   constexpr const char* shapes[] = {"●", "■", "▲", "◆"};
-  const std::string chip = colour != kGrey
-                               ? fmt::format("<span class=\"chip c{}\" aria-hidden=\"true\"></span>", colour % kColours)
-                               : fmt::format("<span aria-hidden=\"true\">{}</span> ", shapes[marker % 4]);
-  return fmt::format("<li>{}{}</li>", chip, escape(name));
+  std::string html = "<ul class=\"key\" aria-label=\"Key\">";
+  for (std::size_t k = 0; k < colours.size(); ++k)
+    html += fmt::format("<li><span class=\"chip c{}\" aria-hidden=\"true\"></span>{}</li>", k % kColours,
+                        escape(colours[k]));
+  for (std::size_t k = 0; k < markers.size(); ++k)
+    html += fmt::format("<li><span aria-hidden=\"true\">{}</span> {}</li>", shapes[k % 4], escape(markers[k]));
+  return html;
 }
 
 std::string figure(const SvgPanel& panel, const std::string& said) {
@@ -87,16 +91,17 @@ std::string panels_html(const CsvTable& points, const std::string& title) {
     SvgPanel& own = panels[field(panel)];
     const auto [at, fresh] = curves.try_emplace({field(panel), field(series), field(variant)}, own.curves.size());
     if (fresh) {
-      own.curves.push_back(
-          {field(series), guide ? kGrey : place(colours, field(series)), kLine, {}, {}, {}, guide, false});
-      if (!guide) own.curves.back().marker = place(markers, field(variant));
+      own.curves.push_back({.name = field(series),
+                            .colour = guide ? kGrey : place(colours, field(series)),
+                            .marker = guide ? kLine : place(markers, field(variant)),
+                            .dashed = guide});
     }
     SvgCurve& curve = own.curves[at->second];
     const std::string name = field(variant).empty() || field(variant) == field(series)
                                  ? field(series)
                                  : fmt::format("{}, {}", field(series), field(variant));
-    curve.points.push_back({csv_number(field(x)), csv_number(field(y)),
-                            guide ? "" : fmt::format("{}: {}, {}", name, field(x), field(y)), false});
+    curve.points.push_back(
+        {csv_number(field(x)), csv_number(field(y)), guide ? "" : fmt::format("{}: {}, {}", name, field(x), field(y))});
     if (!field(low).empty()) {
       curve.low.push_back(csv_number(field(low)));
       curve.high.push_back(csv_number(field(high)));
@@ -113,24 +118,19 @@ std::string panels_html(const CsvTable& points, const std::string& title) {
     own.alt = alt_of(own, title);
     html += figure(own, "");
   }
-  html += "</div>\n<ul class=\"key\" aria-label=\"Key\">";
-  for (std::size_t k = 0; k < colours.size(); ++k) html += key_item(static_cast<int>(k), 0, colours[k]);
-  if (markers.size() > 1 && markers != colours)
-    for (std::size_t k = 0; k < markers.size(); ++k) html += key_item(kGrey, static_cast<int>(k), markers[k]);
-  return html + "</ul>\n";
+  if (markers.size() == 1 || markers == colours) markers.clear();  // they tell nothing more
+  return html + "</div>\n" + key_items(colours, markers) + "</ul>\n";
 }
 
 std::string chart_html(const CsvTable& chart) {
   const std::vector<ChartRow> rows = chart_rows(chart);
-  const auto reference = std::ranges::find(rows, "reference", [](const ChartRow& r) { return r.measured.status; });
-  const PerQuantity agreement = reference == rows.end() ? PerQuantity{} : reference->measured.error;
+  const PerQuantity agreement = chart_agreement(rows);
   const std::string settings = chart.note("settings"), to = "to t = ";
   const std::string until =
       settings.starts_with(to) ? settings.substr(to.size(), settings.find(" s;") - to.size()) : "";
-  std::vector<std::string> colours, markers;
-  for (const FormulationEntry& entry : formulations()) place(markers, std::string(entry.name));
+  std::vector<std::string> colours, markers = formulations().names();
   for (const ChartRow& row : rows)
-    if (row.measured.status != "reference") place(colours, row.integrator);
+    if (!row.is_reference()) place(colours, row.integrator);
   std::string html = "<div class=\"panels two\">\n";
   for (std::size_t quantity = 0; quantity < kQuantities.size(); ++quantity) {
     const CostCurves curves(rows, quantity, agreement[quantity]);
@@ -150,14 +150,10 @@ std::string chart_html(const CsvTable& chart) {
     for (const CostCurve& curve : curves.all()) {
       const ChartRow& first = rows[curve.knots.front().row];
       const bool named = names_method(said, curve.method);
-      SvgCurve drawn{curve.method,
-                     named ? place(colours, first.integrator) : kGrey,
-                     place(markers, first.formulation),
-                     {},
-                     {},
-                     {},
-                     false,
-                     named};
+      SvgCurve drawn{.name = curve.method,
+                     .colour = named ? place(colours, first.integrator) : kGrey,
+                     .marker = place(markers, first.formulation),
+                     .labelled = named};
       for (std::size_t k = 0; k < rows.size(); ++k) {
         const Measured& m = rows[k].measured;
         if (!m.ok() || rows[k].method() != curve.method || !(m.error[quantity] <= 1)) continue;
@@ -172,10 +168,8 @@ std::string chart_html(const CsvTable& chart) {
     panel.alt = alt_of(panel, chart.file);
     html += figure(panel, said);
   }
-  html += "</div>\n<ul class=\"key\" aria-label=\"Key\">";
-  for (std::size_t k = 0; k < colours.size(); ++k) html += key_item(static_cast<int>(k), 0, colours[k]);
-  for (std::size_t k = 0; k < markers.size(); ++k) html += key_item(kGrey, static_cast<int>(k), markers[k]);
-  return html + "<li>grey: methods that the sentence does not name; large points: on the front</li></ul>\n";
+  return html + "</div>\n" + key_items(colours, markers) +
+         "<li>grey: methods that the sentence does not name; large points: on the front</li></ul>\n";
 }
 
 }  // namespace poinsot::report

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "bench/paper/cell_rows.h"
 #include "bench/study/motion.h"
@@ -18,16 +17,19 @@ using namespace study;
 using paper::kSubject;
 namespace {
 
-std::vector<const Ratio*> pick(const std::vector<Ratio>& all, const std::function<bool(const Ratio&)>& which) {
+std::vector<const Ratio*> pick(const std::vector<Ratio>& all, Analysis analysis, const std::string& formulation,
+                               std::string_view jacobian) {
   std::vector<const Ratio*> picked;
-  for (const Ratio& one : all)
-    if (which(one)) picked.push_back(&one);
+  for (const Ratio& r : all)
+    if (r.analysis == paper::analysis_name(analysis) && r.formulation == formulation && r.jacobian == jacobian)
+      picked.push_back(&r);
   return picked;
 }
 
 // "dynamics: rp takes 1.31 to 1.43 times as long as rA (...); in the paper 2.29 to 2.93".
-std::string ratio_sentence(const std::vector<const Ratio*>& own, const std::string& analysis, const std::string& other,
-                           bool with_paper, Ledger& ledger) {
+std::string ratio_sentence(const std::vector<const Ratio*>& own, const std::string& other, bool with_paper,
+                           Ledger& ledger) {
+  const std::string& analysis = own.front()->analysis;
   Range medians, within, paper;
   double confidence = 1;
   std::size_t apart = 0;
@@ -58,27 +60,22 @@ std::string ratio_sentence(const std::vector<const Ratio*>& own, const std::stri
 
 Finding with_matrix(const std::vector<Ratio>& all, const std::string& id, const std::string& title,
                     const std::string& jacobian, bool like_for_like, Ledger& ledger) {
-  Finding finding{id, title, {}};
+  Finding finding{id, title};
   ledger.begin(id);
   for (const Analysis analysis : {Analysis::dynamics, Analysis::kinematics})
     for (const std::string& other : other_formulations()) {
-      const std::string name(paper::analysis_name(analysis));
-      const auto own = pick(
-          all, [&](const Ratio& r) { return r.analysis == name && r.formulation == other && r.jacobian == jacobian; });
-      if (!own.empty()) finding.sentences.push_back(ratio_sentence(own, name, other, like_for_like, ledger));
+      const std::vector<const Ratio*> own = pick(all, analysis, other, jacobian);
+      if (!own.empty()) finding.sentences.push_back(ratio_sentence(own, other, like_for_like, ledger));
     }
   return finding;
 }
 
 Finding phases(const std::vector<Ratio>& all, Ledger& ledger) {
-  Finding finding{"phases", "Why: in which phase the time lies", {}};
+  Finding finding{"phases", "Why: in which phase the time lies"};
   ledger.begin(finding.id);
   for (const std::string& other : other_formulations()) {
     std::array<double, kPhases.size()> saved{};
-    for (const Ratio* r : pick(all, [&](const Ratio& one) {
-           return one.analysis == paper::analysis_name(Analysis::dynamics) && one.formulation == other &&
-                  one.jacobian == paper::kLikeForLike;
-         }))
+    for (const Ratio* r : pick(all, Analysis::dynamics, other, paper::kLikeForLike))
       for (std::size_t k = 0; k < saved.size(); ++k) saved[k] += r->saved[k];
     double sum = 0;
     for (const double x : saved) sum += x;
@@ -97,7 +94,7 @@ Finding phases(const std::vector<Ratio>& all, Ledger& ledger) {
 }
 
 Finding matched(const Table& table, Ledger& ledger) {
-  Finding finding{"matched", fmt::format("At matched error: {} against the others", kSubject), {}};
+  Finding finding{"matched", fmt::format("At matched error: {} against the others", kSubject)};
   ledger.begin(finding.id);
   for (const std::string& other : other_formulations())
     for (const std::size_t quantity : {std::size_t{0}, kQuantities.size() - 1}) {
@@ -129,7 +126,7 @@ Finding matched(const Table& table, Ledger& ledger) {
 
 // Of studies that compare the formulations: geometric means over their cases, as bench/cases/pictures.h makes them.
 Finding studies(const std::vector<StudyResults>& all, Ledger& ledger) {
-  Finding finding{"studies", fmt::format("Beyond the paper's mechanisms: {} against the others", kSubject), {}};
+  Finding finding{"studies", fmt::format("Beyond the paper's mechanisms: {} against the others", kSubject)};
   ledger.begin(finding.id);
   std::string confidence;
   for (const StudyResults& study : all)
@@ -160,7 +157,7 @@ Finding studies(const std::vector<StudyResults>& all, Ledger& ledger) {
 }
 
 Finding choices(const std::vector<const CsvTable*>& charts) {
-  Finding finding{"choice", "Which method for which accuracy", {}};
+  Finding finding{"choice", "Which method for which accuracy"};
   for (const CsvTable* chart : charts)
     for (const auto quantity : {kQuantities.front(), kQuantities.back()})
       if (const std::string said = chart->note(fmt::format("conclusion, {}", quantity)); !said.empty())
@@ -171,9 +168,8 @@ Finding choices(const std::vector<const CsvTable*>& charts) {
 }  // namespace
 
 std::vector<std::string> other_formulations() {
-  std::vector<std::string> names;
-  for (const FormulationEntry& entry : formulations())
-    if (entry.name != kSubject) names.emplace_back(entry.name);
+  std::vector<std::string> names = formulations().names();
+  std::erase(names, kSubject);
   return names;
 }
 

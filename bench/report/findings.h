@@ -12,7 +12,7 @@ namespace poinsot::report {
 
 struct Finding {
   std::string id, title;
-  std::vector<std::string> sentences;
+  std::vector<std::string> sentences = {};
 };
 
 struct Findings {

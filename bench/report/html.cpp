@@ -2,35 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 #include "bench/study/csv.h"
 
 namespace poinsot::report {
 
 std::string escape(std::string_view text) {
+  static constexpr std::pair<char, std::string_view> kMarkup[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string escaped;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\'':
-        escaped += "&#39;";
-        break;
-      default:
-        escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
+    const auto* markup = std::ranges::find(kMarkup, c, &std::pair<char, std::string_view>::first);
+    if (markup != std::end(kMarkup))
+      escaped += markup->second;
+    else
+      escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   }
   return escaped;
 }

@@ -38,7 +38,7 @@ class Ledger {
  private:
   std::string finding_;
   study::Table table_{
-      "report_findings", "The numbers of the findings", "", {"finding", "quantity", "value", "from", "to"}, {}};
+      "report_findings", "The numbers of the findings", "", {"finding", "quantity", "value", "from", "to"}};
 };
 
 }  // namespace poinsot::report

@@ -14,23 +14,6 @@ namespace {
 
 constexpr int kExponents[] = {2, 4, 6, 8, 10};
 
-// The rows of one integrator, and where the reference ends.
-struct Chart {
-  std::map<std::string, std::vector<ChartRow>> by_integrator;
-  PerQuantity agreement{};
-};
-
-Chart read_chart(const CsvTable& table) {
-  Chart chart;
-  for (const ChartRow& row : chart_rows(table)) {
-    if (row.measured.status == "reference")
-      chart.agreement = row.measured.error;
-    else
-      chart.by_integrator[row.integrator].push_back(row);
-  }
-  return chart;
-}
-
 }  // namespace
 
 Table matched_table(const std::vector<const CsvTable*>& charts) {
@@ -39,13 +22,16 @@ Table matched_table(const std::vector<const CsvTable*>& charts) {
       fmt::format("Time over that of {} at the same accuracy", paper::kSubject),
       "Between the measured cases of a method its time is interpolated, log time over log error. Noise: what the "
       "spreads of the two times allow for, in per cent.",
-      {"scene", "integrator", "formulation", "quantity", "accuracy", "ratio", "noise, %"},
-      {}};
+      {"scene", "integrator", "formulation", "quantity", "accuracy", "ratio", "noise, %"}};
   for (const CsvTable* file : charts) {
-    const Chart chart = read_chart(*file);
-    for (const auto& [integrator, rows] : chart.by_integrator)
+    const std::vector<ChartRow> all = chart_rows(*file);
+    const PerQuantity agreement = chart_agreement(all);
+    std::map<std::string, std::vector<ChartRow>> by_integrator;
+    for (const ChartRow& row : all)
+      if (!row.is_reference()) by_integrator[row.integrator].push_back(row);
+    for (const auto& [integrator, rows] : by_integrator)
       for (std::size_t quantity = 0; quantity < kQuantities.size(); ++quantity) {
-        const std::vector<CostCurve> curves = cost_curves(rows, quantity, chart.agreement[quantity]);
+        const std::vector<CostCurve> curves = cost_curves(rows, quantity, agreement[quantity]);
         const auto of = [&rows = rows](const CostCurve& c) { return rows[c.knots.front().row].formulation; };
         for (const CostCurve& subject : curves)
           for (const CostCurve& other : curves)
@@ -53,7 +39,7 @@ Table matched_table(const std::vector<const CsvTable*>& charts) {
               const double error = std::pow(10.0, -k);
               const auto ours = subject.seconds_at(error), theirs = other.seconds_at(error);
               if (of(subject) != paper::kSubject || of(other) == paper::kSubject || !ours || !theirs) continue;
-              if (error < kResolved * chart.agreement[quantity]) continue;
+              if (error < kResolved * agreement[quantity]) continue;
               // Where either is asked for less than its coarsest case has, the accuracies are not matched.
               if (error > subject.knots.front().error || error > other.knots.front().error) continue;
               table.rows.push_back(

@@ -22,10 +22,6 @@ namespace {
 constexpr std::size_t kLong = 12;  // rows of a table that is folded
 constexpr std::array<std::string_view, 4> kOrigin{"processor", "program", "compiler", "libraries"};
 
-std::string command(const Results& results, std::string_view words) {
-  return fmt::format("<code>poinsot {} --out {}</code>", words, escape(results.folder.string()));
-}
-
 std::string table_block(std::string_view caption, const std::string& file, const std::vector<std::string>& header,
                         const std::vector<std::vector<std::string>>& rows, const std::string& settings) {
   std::string html = table_html(caption, header, rows);
@@ -43,7 +39,8 @@ std::string own_settings(const Results& results, const CsvTable& table) {
 }
 
 std::string missing_block(const Results& results, std::string_view what, std::string_view by) {
-  return fmt::format("<p class=\"missing\">Missing: {}. {} makes it.</p>\n", escape(what), command(results, by));
+  return fmt::format("<p class=\"missing\">Missing: {}. <code>poinsot {} --out {}</code> makes it.</p>\n", escape(what),
+                     by, escape(results.folder.string()));
 }
 
 // "kinematics_phases" says which of several tables of an item it is.
@@ -176,8 +173,7 @@ Table contents_table() {
   Table table{"report_contents",
               "What the page shows",
               "",
-              {"section", "number in the paper", "title", "figure", "tables", "command"},
-              {}};
+              {"section", "number in the paper", "title", "figure", "tables", "command"}};
   for (const Section& s : contents())
     for (const Item& item : s.items) {
       std::vector<std::string_view> files;

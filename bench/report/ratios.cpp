@@ -12,10 +12,6 @@ namespace poinsot::report {
 using namespace study;
 namespace {
 
-double median(const std::vector<double>& values) {
-  return median_interval(values).median;
-}
-
 void add_published(Ratio& ratio) {
   const Analysis analysis =
       ratio.analysis == paper::analysis_name(Analysis::kinematics) ? Analysis::kinematics : Analysis::dynamics;
@@ -51,7 +47,7 @@ std::vector<Ratio> ratios(const CsvTable& raw) {
     }
     if (quotients.empty()) continue;
     Ratio ratio{cell.analysis, cell.mechanism, cell.formulation, cell.jacobian, median_interval(quotients), {}, 0, 0};
-    for (std::size_t k = 0; k < saved.size(); ++k) ratio.saved[k] = median(saved[k]);
+    for (std::size_t k = 0; k < saved.size(); ++k) ratio.saved[k] = median_interval(saved[k]).median;
     add_published(ratio);
     all.push_back(std::move(ratio));
   }
@@ -64,8 +60,7 @@ Table ratios_table(const std::vector<Ratio>& all) {
               fmt::format("Medians of the quotients of interleaved repetitions, and the interval their order gives. By "
                           "phase: what {} saves, microseconds a step.",
                           paper::kSubject),
-              {"analysis", "mechanism", "formulation", "jacobian", "ratio", "from", "to", "confidence, %"},
-              {}};
+              {"analysis", "mechanism", "formulation", "jacobian", "ratio", "from", "to", "confidence, %"}};
   for (const auto phase : kPhases) table.header.push_back(fmt::format("{}, us", phase));
   table.header.insert(table.header.end(), {"paper C1", "paper C2"});
   for (const Ratio& r : all) {

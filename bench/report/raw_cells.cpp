@@ -38,20 +38,13 @@ std::vector<RawCell> raw_cells(const CsvTable& raw) {
     };
     const auto last = std::find_if(cells.rbegin(), cells.rend(), its);
     if (last == cells.rend() || last->repetitions.contains(repetition)) {
-      RawCell cell{field("analysis"),
-                   field("mechanism"),
-                   field("formulation"),
-                   field("jacobian"),
-                   field("linear_solver"),
-                   last == cells.rend() ? 0 : last->block + 1,
-                   {},
-                   {}};
-      for (const char* count : kCounts) cell.counts[count] = field(count);
-      cells.push_back(std::move(cell));
+      cells.push_back({field("analysis"), field("mechanism"), field("formulation"), field("jacobian"),
+                       field("linear_solver"), last == cells.rend() ? 0 : last->block + 1});
+      for (const char* count : kCounts) cells.back().counts[count] = field(count);
     }
     RawCell& cell = *std::find_if(cells.rbegin(), cells.rend(), its);
     const double us = 1e6 / csv_number(field("steps"));
-    RawCell::Repetition one{us * csv_number(field("total_s")), {}};
+    RawCell::Repetition one{us * csv_number(field("total_s"))};
     for (std::size_t k = 0; k < kPhaseColumns.size(); ++k) one.phase[k] = us * csv_number(field(kPhaseColumns[k]));
     cell.repetitions.emplace(repetition, one);
   }

@@ -19,9 +19,9 @@ struct RawCell {
   };
 
   std::string analysis, mechanism, formulation, jacobian, linear_solver;
-  int block = 0;                                  // measured once more, beside other linear solvers: 1
-  std::map<std::string, Repetition> repetitions;  // by number
-  std::map<std::string, std::string> counts;      // steps, iterations and so on of the first repetition, by column
+  int block = 0;                                       // measured once more, beside other linear solvers: 1
+  std::map<std::string, Repetition> repetitions = {};  // by number
+  std::map<std::string, std::string> counts = {};      // steps, iterations and so on of the first repetition, by column
 
   std::string name() const;  // of its own in the file
 };

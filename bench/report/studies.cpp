@@ -53,7 +53,7 @@ std::vector<StudyResults> read_studies(const fs::path& folder) {
 }
 
 study::Table studies_table(const std::vector<StudyResults>& studies) {
-  study::Table table{"report_studies", "Studies", "", {"study", "about", "picture", "file"}, {}};
+  study::Table table{"report_studies", "Studies", "", {"study", "about", "picture", "file"}};
   for (const StudyResults& study : studies)
     for (const StudyPicture& picture : study.pictures)
       table.rows.push_back({study.name, study.about, picture.title, study.folder + picture.file + ".csv"});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "bench/report/html.h"
 #include "bench/study/range.h"
@@ -158,13 +159,10 @@ std::string names_svg(const SvgPanel& panel, const Axis& x, const Axis& y) {
   constexpr double line = 13;
   std::vector<double> at;
   for (const End& end : ends) at.push_back(std::max(end.y, at.empty() ? kTop + 6 : at.back() + line));
-  const double over = at.empty() ? 0 : std::max(0.0, at.back() - (kHeight - kBottom - 4));
-  double free = kHeight;
-  for (std::size_t k = at.size(); k-- > 0;) {
-    at[k] = over > 0 ? std::min(at[k], free - line) : at[k];
-    if (k + 1 == at.size() && over > 0) at[k] = kHeight - kBottom - 4;
-    free = at[k];
-  }
+  constexpr double lowest = kHeight - kBottom - 4;
+  double free = lowest + line;
+  if (!at.empty() && at.back() > lowest)
+    for (double& place : std::views::reverse(at)) free = place = std::min(place, free - line);
   std::string text;
   for (std::size_t k = 0; k < ends.size(); ++k)
     text += fmt::format(

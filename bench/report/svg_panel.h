@@ -16,8 +16,8 @@ struct SvgCurve {
   std::string name;
   int colour = 0;  // 0 to kColours − 1; kGrey: one of those that are not spoken of
   int marker = 0;  // kLine: none
-  std::vector<SvgPoint> points;
-  std::vector<double> low, high;  // of a band, as long as the points
+  std::vector<SvgPoint> points = {};
+  std::vector<double> low = {}, high = {};  // of a band, as long as the points
   bool dashed = false;
   bool labelled = false;  // its name at its end
 };

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "formulations/registry.h"
 #include "linsolve/registry.h"
@@ -32,7 +33,7 @@ class Search {
     int k = std::clamp(static_cast<int>(std::ceil(-2 * std::log10(asked_.accuracy))), loosest, tightest);
     for (int runs = 0; !reaches(k); ++runs) {
       if (k == tightest || runs == 8 || last_.seconds > limit()) return close();
-      const double missing = std::log10(error(last_, reference_, asked_) / asked_.accuracy);
+      const double missing = std::log10(error_of(last_) / asked_.accuracy);
       k = std::min(k + (std::isfinite(missing) ? std::clamp(static_cast<int>(2 * missing), 1, 8) : 1), tightest);
     }
     while (k > loosest && !tried.contains(k - 1) && reaches(k - 1)) --k;
@@ -43,7 +44,7 @@ class Search {
     const auto reaches = [&](int steps) { return run(sweep_.make_case(formulation, integrator, steps, 0)); };
     int steps = 5 * kOutputs;
     for (int runs = 0; !reaches(steps); ++runs) {
-      const double missing = error(last_, reference_, asked_) / asked_.accuracy;
+      const double missing = error_of(last_) / asked_.accuracy;
       double factor = std::isfinite(missing) ? 1.1 * std::pow(missing, 1.0 / std::max(integrator.order, 1)) : 3;
       // Far from the accuracy the order does not show yet.
       factor = std::clamp(factor, 1.2, runs == 0 ? 10.0 : 1e4);
@@ -57,15 +58,12 @@ class Search {
   }
 
   Calibration result() {
-    const auto by_time = [](const Candidate& a, const Candidate& b) { return a.measured.seconds < b.measured.seconds; };
-    std::sort(found_.reaching.begin(), found_.reaching.end(), by_time);
-    std::sort(found_.others.begin(), found_.others.end(), [&](const Candidate& a, const Candidate& b) {
-      return error(a.measured, reference_, asked_) < error(b.measured, reference_, asked_);
-    });
+    std::ranges::sort(found_.reaching, {}, seconds_of);
+    std::ranges::sort(found_.others, {}, [&](const Candidate& c) { return error_of(c.measured); });
     if (found_.reaching.empty()) return found_;
     const auto finalists = std::min<std::size_t>(kFinalists, found_.reaching.size());
     time(found_.reaching, finalists);
-    std::sort(found_.reaching.begin(), found_.reaching.begin() + static_cast<std::ptrdiff_t>(finalists), by_time);
+    std::ranges::sort(std::span(found_.reaching).first(finalists), {}, seconds_of);
     choose_solver();
     return found_;
   }
@@ -74,9 +72,8 @@ class Search {
   // Whether the case reaches the accuracy; kept as its method's best where it is.
   bool run(const Case& one) {
     last_ = sweep_.compare(one);
-    const bool reached = error(last_, reference_, asked_) <= asked_.accuracy;
+    const bool reached = reached_by(last_);
     if (reached && (!reaching_ || last_.seconds < reaching_->measured.seconds)) reaching_ = {one, last_};
-    const auto error_of = [&](const Measured& measured) { return error(measured, reference_, asked_); };
     if (!nearest_ || error_of(last_) < error_of(nearest_->measured)) nearest_ = {one, last_};
     return reached;
   }
@@ -93,8 +90,12 @@ class Search {
     nearest_.reset();
   }
 
+  static double seconds_of(const Candidate& candidate) { return candidate.measured.seconds; }
+  double error_of(const Measured& measured) const { return error(measured, reference_, asked_); }
+  bool reached_by(const Measured& measured) const { return error_of(measured) <= asked_.accuracy; }
+
   double limit() const {
-    const bool resolved = error(Measured{}, reference_, asked_) <= asked_.accuracy;
+    const bool resolved = reached_by(Measured{});
     return std::min(resolved ? kLongest : kInVain, std::max(kNoise, kHopeless * best_));
   }
 
@@ -112,15 +113,11 @@ class Search {
       if (entry.name == kUsualSolver) continue;
       other.one.settings.linear_solver = entry.name;
       other.measured = sweep_.compare(other.one);
-      if (error(other.measured, reference_, asked_) <= asked_.accuracy) same.push_back(other);
+      if (reached_by(other.measured)) same.push_back(other);
     }
     time(same, same.size());
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < same.size(); ++k)
-      if (same[k].measured.seconds < kMuchFaster * same[0].measured.seconds &&
-          same[k].measured.seconds < same[best].measured.seconds)
-        best = k;
-    found_.reaching.front() = same[best];
+    const Candidate& fastest = *std::ranges::min_element(same, {}, seconds_of);
+    found_.reaching.front() = seconds_of(fastest) < kMuchFaster * seconds_of(same.front()) ? fastest : same.front();
   }
 
   const Sweep& sweep_;

@@ -8,7 +8,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <limits>
 
 #include "bench/study/cost_curve.h"
@@ -46,7 +45,7 @@ std::string text(double x) {
 
 std::string line(const ChartRow& row) {
   const Measured& m = row.measured;
-  const bool figures = m.ok() || m.status == "reference";
+  const bool figures = m.ok() || row.is_reference();
   std::vector<std::string> f{row.formulation, row.integrator,  row.linear_solver,
                              row.parameter,   text(row.value), csv_field(m.status)};
   for (const double error : m.error) f.push_back(figures ? text(error) : "");
@@ -71,7 +70,7 @@ std::int64_t count(const std::string& field) {
 }
 
 ChartRow row_of(const std::vector<std::string>& f) {
-  ChartRow row{f[0], f[1], f[2], f[3], number(f[4]), {}, {}};
+  ChartRow row{f[0], f[1], f[2], f[3], number(f[4])};
   Measured& m = row.measured;
   m.status = f[5];
   for (std::size_t k = 0; k < kQuantities.size(); ++k) m.error[k] = number(f[6 + k]);
@@ -105,6 +104,11 @@ std::vector<ChartRow> chart_rows(const CsvTable& table) {
   return rows;
 }
 
+PerQuantity chart_agreement(const std::vector<ChartRow>& rows) {
+  const auto reference = std::ranges::find_if(rows, &ChartRow::is_reference);
+  return reference == rows.end() ? PerQuantity{} : reference->measured.error;
+}
+
 bool is_chart(const CsvTable& table) {
   return fmt::format("{}", fmt::join(table.header, ",")) == header();
 }
@@ -119,13 +123,11 @@ ChartFile::ChartFile(fs::path file, std::vector<std::string> notes, bool fresh)
 
 void ChartFile::read() {
   std::ifstream in(file_, std::ios::binary);
-  const std::string content(std::istreambuf_iterator<char>(in), {});
   const auto refuse = [&](const std::string& why) {
     throw InputError(fmt::format("{}: {}; --fresh begins it anew, another --out keeps it", file_.string(), why));
   };
   std::vector<std::string> lines;
-  for (std::size_t begin = 0, end = 0; (end = content.find('\n', begin)) != std::string::npos; begin = end + 1)
-    lines.push_back(content.substr(begin, end - begin));  // a last line without its end was cut off
+  for (std::string one; std::getline(in, one) && !in.eof();) lines.push_back(one);  // without a last one cut off
   for (std::size_t k = 0; k < notes_.size(); ++k) {
     const std::string expected = "# " + notes_[k];
     if (k >= lines.size() || !lines[k].starts_with("# ")) refuse("the file is not the beginning of this chart");
@@ -149,8 +151,7 @@ void ChartFile::write_all(const Reference* reference) const {
   if (!reference) file.write(fmt::format("{}\n", kUnfinished));
   file.write(header() + "\n");
   if (reference) {
-    ChartRow row{
-        reference->of().formulation, reference->of().integrator, kUsualSolver, "rtol", reference->of().tight, {}, {}};
+    ChartRow row{reference->of().formulation, reference->of().integrator, kUsualSolver, "rtol", reference->of().tight};
     row.measured.status = "reference";
     row.measured.error = reference->agreement;
     file.write(line(row));
@@ -170,7 +171,7 @@ const ChartRow* ChartFile::find(const Case& one) const {
 
 void ChartFile::add(const Case& one, const Measured& measured) {
   const Settings& s = one.settings;
-  rows_.push_back({s.formulation, s.integrator, s.linear_solver, one.parameter(), one.value(), measured, {}});
+  rows_.push_back({s.formulation, s.integrator, s.linear_solver, one.parameter(), one.value(), measured});
   rows_.back().measured.status = on_one_line(measured.status);
   out_ << line(rows_.back()) << std::flush;
   if (!out_) throw OutputError(fmt::format("{}: cannot be written: {}", file_.string(), std::strerror(errno)));

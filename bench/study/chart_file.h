@@ -22,16 +22,19 @@ namespace poinsot::study {
 struct ChartRow {
   std::string formulation, integrator, linear_solver, parameter;
   double value = 0;
-  Measured measured;
+  Measured measured = {};
   std::array<bool, kQuantities.size()> front{};
 
   bool of(const Case& one) const;
   std::string method() const;
+  bool is_reference() const { return measured.status == "reference"; }
 };
 
-// Whether a table is a chart, and its rows: those of a reference have its status and no seconds.
+// Whether a table is a chart, and its rows: that of the reference has its status and no seconds.
 bool is_chart(const CsvTable& table);
 std::vector<ChartRow> chart_rows(const CsvTable& table);
+// How far the reference among the rows can be trusted; zeros where there is none.
+PerQuantity chart_agreement(const std::vector<ChartRow>& rows);
 
 class ChartFile {
  public:

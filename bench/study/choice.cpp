@@ -36,8 +36,7 @@ Table choice_table(const std::vector<SceneChart>& charts) {
       "For this accuracy on this kind of scene take this",
       "The method that is the fastest there, or not apart from the fastest by more than the noise of the times, "
       "on most of the scenes.",
-      {"scenes", "quantity", "accuracy", "method", "on", "of"},
-      {}};
+      {"scenes", "quantity", "accuracy", "method", "on", "of"}};
   for (std::size_t kind = 0; kind < kSceneKinds.size(); ++kind)
     for (std::size_t quantity = 0; quantity < kQuantities.size(); ++quantity)
       for (const double accuracy : kAccuracies) {
@@ -75,7 +74,7 @@ PanelPlot fronts_plot(const std::vector<SceneChart>& charts) {
     }
     for (const auto& [integrator, rows] : by_integrator)
       for (const CostCurve& curve : cost_curves(rows, 0, chart.agreement[0])) {
-        Curve drawn{chart.scene, integrator, "", {}};
+        Curve drawn{chart.scene, integrator, ""};
         for (const CostCurve::Knot& knot : curve.knots)
           if (knot.error <= 1) drawn.points.push_back({knot.error, knot.seconds});
         if (!drawn.points.empty()) plot.curves.push_back(std::move(drawn));

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "bench/study/measure.h"
+#include "bench/study/name_list.h"
 #include "bench/study/range.h"
 
 namespace poinsot::study {
@@ -136,12 +137,7 @@ std::string CostCurves::conclusion() const {
     for (std::size_t k = 0; k < standing.alike; ++k) names.push_back(curves_[standing.order[k].curve].method);
     std::sort(names.begin() + 1, names.end());
     std::string first = names.front();
-    if (names.size() > 1) {
-      const std::size_t more = names.size() > kNamed ? names.size() - kNamed : 0;
-      names.resize(names.size() - more);
-      first = fmt::format("{}{}, alike within the noise", fmt::join(names, ", "),
-                          more > 0 ? fmt::format(" and {} more", more) : "");
-    }
+    if (names.size() > 1) first = fmt::format("{}, alike within the noise", listed(names, kNamed));
     const std::string next = standing.margin() ? curves_[standing.order[standing.alike].curve].method : "";
     if (stretches.empty() || stretches.back().first != first || stretches.back().next != next)
       stretches.push_back({error, error, first, next, {}});

@@ -61,7 +61,7 @@ std::vector<Standing> of_methods(const std::vector<std::string>& integrators, co
 Table table(std::string file, std::string title, std::vector<std::string> header, const std::vector<Standing>& all) {
   for (const auto quantity : kQuantities) header.emplace_back(quantity);
   header.insert(header.end(), {"any", "scenes"});
-  Table table{std::move(file), std::move(title), {}, std::move(header), {}};
+  Table table{std::move(file), std::move(title), {}, std::move(header)};
   for (const Standing& s : all) {
     std::vector<std::string> row = s.names;
     for (const int n : s.on) row.push_back(std::to_string(n));

@@ -9,17 +9,14 @@
 #include <csignal>
 #include <cstring>
 
-#include "core/input_error.h"
 #include "integrators/simulate.h"
 
 namespace poinsot::study {
 namespace {
 
-// What comes through the pipe: plain numbers and a short sentence.
+// What comes through the pipe: figures or a short sentence.
 struct Answer {
-  bool ok = false;
-  double numbers[8] = {};
-  int bodies = 0;
+  RunFigures figures;
   char failure[400] = {};
 };
 
@@ -48,19 +45,18 @@ Answer answer(const SceneGenerator& generator, int bodies, const Settings& setti
       return out;
     }
     const Statistics &s = outcome.statistics, &s1 = first.statistics;
-    out.bodies = static_cast<int>(scene.bodies.size());
-    const double units = static_cast<double>(s.newton_iterations - s1.newton_iterations) * out.bodies * 1e-6;
+    const int made = static_cast<int>(scene.bodies.size());
+    const double units = static_cast<double>(s.newton_iterations - s1.newton_iterations) * made * 1e-6;
     const auto later = [&](double Seconds::*phase) { return (s.seconds.*phase - s1.seconds.*phase) / units; };
-    const double numbers[] = {later(&Seconds::total),
-                              later(&Seconds::assembly),
-                              later(&Seconds::factor),
-                              later(&Seconds::solve),
-                              later(&Seconds::other),
-                              all - s.seconds.total + s1.seconds.total,
-                              (resident_kilobytes() - before) / out.bodies,
-                              all};
-    std::copy(std::begin(numbers), std::end(numbers), std::begin(out.numbers));
-    out.ok = true;
+    out.figures = {.us_per_body = later(&Seconds::total),
+                   .assembly = later(&Seconds::assembly),
+                   .factor = later(&Seconds::factor),
+                   .solve = later(&Seconds::solve),
+                   .rest = later(&Seconds::other),
+                   .start = all - s.seconds.total + s1.seconds.total,
+                   .kilobytes_per_body = (resident_kilobytes() - before) / made,
+                   .seconds = all,
+                   .bodies = made};
   } catch (const std::exception& error) {
     fail(error.what());
   }
@@ -71,9 +67,9 @@ Answer answer(const SceneGenerator& generator, int bodies, const Settings& setti
 
 IsolatedRun run_isolated(const SceneGenerator& generator, int bodies, const Settings& settings) {
   int ends[2];
-  if (pipe(ends) != 0) return {"no pipe could be made"};
+  if (pipe(ends) != 0) return {{}, "no pipe could be made"};
   const pid_t child = fork();
-  if (child < 0) return {"no process could be made"};
+  if (child < 0) return {{}, "no process could be made"};
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // interrupted with the program
     const Answer out = answer(generator, bodies, settings);
@@ -85,16 +81,8 @@ IsolatedRun run_isolated(const SceneGenerator& generator, int bodies, const Sett
   const bool complete = read(ends[0], &got, sizeof got) == static_cast<ssize_t>(sizeof got);
   close(ends[0]);
   waitpid(child, nullptr, 0);
-  IsolatedRun run;
-  if (!complete) {
-    run.failure = "the run ended without an answer (out of memory?)";
-  } else if (!got.ok) {
-    run.failure = got.failure;
-  } else {
-    const double* n = got.numbers;
-    run = {"", n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], got.bodies};
-  }
-  return run;
+  if (!complete) return {{}, "the run ended without an answer (out of memory?)"};
+  return {got.figures, got.failure};
 }
 
 }  // namespace poinsot::study

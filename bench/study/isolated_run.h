@@ -12,14 +12,18 @@
 
 namespace poinsot::study {
 
-struct IsolatedRun {
-  std::string failure;                                   // why there are no figures
+// Plain numbers: they come out of the process through a pipe.
+struct RunFigures {
   double us_per_body = 0;                                // and Newton iteration, after the first step
   double assembly = 0, factor = 0, solve = 0, rest = 0;  // the same by phase
   double start = 0;                                      // s from the scene's structs to the end of the first step
   double kilobytes_per_body = 0;                         // resident, beyond an idle process
   double seconds = 0;                                    // of the whole run
   int bodies = 0;
+};
+
+struct IsolatedRun : RunFigures {
+  std::string failure;  // why there are no figures
 };
 
 IsolatedRun run_isolated(const SceneGenerator& generator, int bodies, const Settings& settings);

@@ -20,22 +20,6 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
-double total(const Statistics& s) {
-  return s.seconds.total;
-}
-double assembly(const Statistics& s) {
-  return s.seconds.assembly;
-}
-double factor(const Statistics& s) {
-  return s.seconds.factor;
-}
-double solve(const Statistics& s) {
-  return s.seconds.solve;
-}
-double rest(const Statistics& s) {
-  return s.seconds.other;
-}
-
 Timing timing(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const double median = quantile(values, 0.5);

@@ -34,11 +34,11 @@ Timing timing(std::vector<double> values);
 using PhaseSeconds = double (*)(const Statistics&);  // seconds of a run
 Timing us_per_step(const Cell& cell, PhaseSeconds phase);
 
-double total(const Statistics& s);
-double assembly(const Statistics& s);
-double factor(const Statistics& s);
-double solve(const Statistics& s);
-double rest(const Statistics& s);
+inline constexpr PhaseSeconds total = [](const Statistics& s) { return s.seconds.total; };
+inline constexpr PhaseSeconds assembly = [](const Statistics& s) { return s.seconds.assembly; };
+inline constexpr PhaseSeconds factor = [](const Statistics& s) { return s.seconds.factor; };
+inline constexpr PhaseSeconds solve = [](const Statistics& s) { return s.seconds.solve; };
+inline constexpr PhaseSeconds rest = [](const Statistics& s) { return s.seconds.other; };
 
 double iterations_per_step(const Cell& cell);
 

@@ -28,18 +28,8 @@ void settle(double& linear, double& angular, double length, double usual) {
 
 // A multiplier as a force, N.
 double as_force(const Row& row, double lambda, double length) {
-  switch (row.type) {
-    case RowType::DP1:
-    case RowType::angle:
-      return lambda / length;
-    case RowType::D:
-      return lambda * length;
-    case RowType::DP2:
-    case RowType::CD:
-    case RowType::pfaffian:
-      break;
-  }
-  return lambda;
+  if (row.type == RowType::DP1 || row.type == RowType::angle) return lambda / length;
+  return row.type == RowType::D ? lambda * length : lambda;
 }
 
 // What is no number stays.
@@ -124,7 +114,7 @@ BodyDifference body_difference(const Motion& motion, const Motion& from, const S
     for (std::size_t b = 0; b < from.bodies[k].size(); ++b) {
       const BodyState &x = motion.bodies[k][b], &y = from.bodies[k][b];
       raise(d.r, (x.r - y.r).norm() / sizes.length);
-      raise(d.A, 2 * std::asin(std::min(1.0, (x.A - y.A).norm() / (2 * std::numbers::sqrt2))));
+      raise(d.A, angle_between(x.A, y.A));
       raise(d.rd, (x.rd - y.rd).norm() / sizes.velocity);
       raise(d.w, (x.w - y.w).norm() / sizes.angular_velocity);
       raise(d.rdd, (x.rdd - y.rdd).norm() / sizes.acceleration);
@@ -148,24 +138,23 @@ PerQuantity difference(const Motion& motion, const Motion& from, const Sizes& si
   return d;
 }
 
+double angle_between(const Matrix3& A, const Matrix3& B) {
+  return 2 * std::asin(std::min(1.0, (A - B).norm() / (2 * std::numbers::sqrt2)));
+}
+
 bool conserves_energy(const Model& model) {
   const auto still = [](const Row& row) {
     if (row.type == RowType::pfaffian && !is_zero(row.f)) return false;
     return row.f.is_constant() && (!row.alternate || row.alternate->f.is_constant());
   };
-  if (!std::all_of(model.rows.begin(), model.rows.end(), still)) return false;
-  for (const PointForce& force : model.point_forces)
-    if (!std::all_of(std::begin(force.force), std::end(force.force), is_zero)) return false;
-  for (const Torque& torque : model.torques)
-    if (!std::all_of(std::begin(torque.torque), std::end(torque.torque), is_zero)) return false;
+  const auto none = [](const auto& components) { return std::ranges::all_of(components, is_zero); };
   // A law may vary with time: what its text hides is not looked into.
   const auto undamped = [](const auto& spring) { return spring.damping == 0 && !spring.law; };
-  if (!std::all_of(model.springs.begin(), model.springs.end(), undamped)) return false;
-  for (const TorsionElement& torsion : model.torsions)
-    if (!undamped(torsion.spring)) return false;
-  if (!model.callbacks.empty()) return false;
-  return std::all_of(model.drags.begin(), model.drags.end(),
-                     [](const LinearDrag& drag) { return drag.translational == 0 && drag.rotational == 0; });
+  const auto idle = [](const LinearDrag& drag) { return drag.translational == 0 && drag.rotational == 0; };
+  return std::ranges::all_of(model.rows, still) && std::ranges::all_of(model.point_forces, none, &PointForce::force) &&
+         std::ranges::all_of(model.torques, none, &Torque::torque) && std::ranges::all_of(model.springs, undamped) &&
+         std::ranges::all_of(model.torsions, undamped, &TorsionElement::spring) &&
+         std::ranges::all_of(model.drags, idle) && model.callbacks.empty();
 }
 
 double kinetic_energy(const Motion& motion, const Model& model) {

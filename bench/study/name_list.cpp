@@ -27,4 +27,9 @@ std::vector<std::string> names_in(std::string_view option, const std::string& li
   return names;
 }
 
+std::string listed(std::span<const std::string> names, std::size_t most) {
+  const std::string text = fmt::format("{}", fmt::join(names.first(std::min(most, names.size())), ", "));
+  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
+}
+
 }  // namespace poinsot::study

@@ -23,10 +23,6 @@ namespace {
 
 constexpr std::size_t kBuffer = 1 << 20;
 
-std::string shown(const fs::path& target) {
-  return target == "-" ? "standard output" : target.string();
-}
-
 [[noreturn]] void refuse(const fs::path& target, std::string_view reason) {
   throw InputError(cannot_be_written(target, reason));
 }
@@ -34,7 +30,7 @@ std::string shown(const fs::path& target) {
 }  // namespace
 
 std::string cannot_be_written(const fs::path& target, std::string_view reason) {
-  return fmt::format("{}: cannot be written: {}", shown(target), reason);
+  return fmt::format("{}: cannot be written: {}", target == "-" ? "standard output" : target.string(), reason);
 }
 
 bool is_device(const fs::path& file) {

@@ -9,7 +9,7 @@ namespace poinsot::study {
 namespace fs = std::filesystem;
 
 Table points_table(const PanelPlot& plot) {
-  Table table{plot.file, plot.title, "", {"panel", "series", "variant", "x", "y", "low", "high", "in_fit"}, {}};
+  Table table{plot.file, plot.title, "", {"panel", "series", "variant", "x", "y", "low", "high", "in_fit"}};
   const auto number = [](double value) { return fmt::format("{:.10g}", value); };
   for (const Curve& curve : plot.curves)
     for (const Point& point : curve.points)

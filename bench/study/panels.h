@@ -20,7 +20,7 @@ struct Point {
 struct Curve {
   std::string panel, series;
   std::string variant;  // kGuide: a line to compare with
-  std::vector<Point> points;
+  std::vector<Point> points = {};
 };
 inline constexpr const char* kGuide = "guide";
 

@@ -1,6 +1,8 @@
 // Smallest and largest of the values seen.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <string>
@@ -16,7 +18,7 @@ struct Range {
   }
   bool empty() const { return low > high; }
   // "1.20 to 1.55"
-  std::string text(int decimals) const;
+  std::string text(int decimals) const { return fmt::format("{:.{}f} to {:.{}f}", low, decimals, high, decimals); }
 };
 
 }  // namespace poinsot::study

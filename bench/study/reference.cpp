@@ -9,8 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "integrators/settings_reader.h"
-
 namespace poinsot::study {
 namespace {
 using Json = nlohmann::json;
@@ -40,16 +38,7 @@ Settings settings_of(const Reference::Method& method, double rtol, const Referen
   return settings;
 }
 
-double largest(const PerQuantity& difference) {
-  return *std::max_element(difference.begin(), difference.end());
-}
-
-// A JSON file has no infinity.
-Json packed(const PerQuantity& difference) {
-  Json list;
-  for (const double x : difference) list.push_back(std::isfinite(x) ? Json(x) : Json(nullptr));
-  return list;
-}
+// A JSON file has no infinity: it is written as null.
 PerQuantity unpacked(const Json& list) {
   PerQuantity difference;
   for (std::size_t k = 0; k < difference.size(); ++k)
@@ -68,11 +57,10 @@ void each_number(State& body, const One& one) {
 std::string packed(const Reference& reference) {
   Json json;
   for (const Reference::Method& m : reference.methods)
-    json["methods"].push_back(
-        {m.integrator, m.formulation, m.loose, m.tight, m.failure, packed(m.apart), packed(m.from_given)});
+    json["methods"].push_back({m.integrator, m.formulation, m.loose, m.tight, m.failure, m.apart, m.from_given});
   json["given"] = reference.given;
   json["nearest"] = reference.nearest;
-  json["agreement"] = packed(reference.agreement);
+  json["agreement"] = reference.agreement;
   json["t"] = reference.motion.t;
   json["lambda"] = reference.motion.lambda;
   std::vector<double> numbers;
@@ -168,7 +156,7 @@ Reference compute(const Scene& scene, const ReferenceSettings& asked) {
   }
   for (std::size_t m = 0; m < reference.methods.size(); ++m)
     if (reference.methods[m].failure.empty() &&
-        (reference.given < 0 || largest(reference.methods[m].apart) < largest(reference.of().apart)))
+        (reference.given < 0 || std::ranges::max(reference.methods[m].apart) < std::ranges::max(reference.of().apart)))
       reference.given = static_cast<int>(m);
   if (reference.given < 0) return reference;
 
@@ -180,7 +168,7 @@ Reference compute(const Scene& scene, const ReferenceSettings& asked) {
     Reference::Method& other = reference.methods[m];
     if (m == given || !other.failure.empty()) continue;
     other.from_given = difference(tight[m], reference.motion, scale, model);
-    if (reference.nearest >= 0 && largest(other.from_given) >= largest(reference.agreement)) continue;
+    if (reference.nearest >= 0 && std::ranges::max(other.from_given) >= std::ranges::max(reference.agreement)) continue;
     reference.nearest = static_cast<int>(m);
     reference.agreement = other.from_given;
   }

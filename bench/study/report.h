@@ -13,7 +13,7 @@ struct Table {
   std::string title;
   std::string text;  // what the table shows and what follows from it, one paragraph
   std::vector<std::string> header;
-  std::vector<std::vector<std::string>> rows;  // as long as the header; the first columns are names
+  std::vector<std::vector<std::string>> rows = {};  // as long as the header; the first columns are names
 };
 
 struct Report {

@@ -70,12 +70,6 @@ bool take_too_long(const std::vector<IsolatedRun>& runs) {
   return good(runs) && 10 * runs.front().seconds > kLongestOfSize;
 }
 
-std::vector<int> sizes(int most) {
-  std::vector<int> all;
-  for (int n = 1; n <= most; n *= 10) all.push_back(n);
-  return all;
-}
-
 // Few steps where a step is long: about as much work for every size, 5 to 200 steps after the first.
 double end_of(int bodies, double step) {
   return step * (1 + std::clamp(20000 / bodies, 5, 200));
@@ -95,8 +89,7 @@ Table cost_table(const std::vector<Series>& all) {
               "Implicit Euler, exact Newton matrix; microseconds per body and iteration, the whole step and by phase, "
               "from the second step on; kilobytes resident per body; seconds from the scene to the end of the first "
               "step, in which the linear solver chooses its pivots.",
-              {"structure", "formulation", "linear solver", "bodies"},
-              {}};
+              {"structure", "formulation", "linear solver", "bodies"}};
   for (const Quantity& quantity : kMeasured) table.header.emplace_back(quantity.column);
   for (const Series& series : all) {
     for (const auto& runs : series.runs) {
@@ -118,8 +111,7 @@ Table growth_table(const std::vector<Series>& all) {
       "whole and by phase, and of the start-up time, from 100 bodies on, and of the resident memory, from 1000 "
       "on: 1 is linear. Last, the cost per body of the largest scene over that of the smallest one fitted.",
       {"structure", "formulation", "linear solver", "step", "assembly", "factor", "solve", "rest", "memory", "start-up",
-       "from bodies", "to bodies", "largest / smallest"},
-      {}};
+       "from bodies", "to bodies", "largest / smallest"}};
   for (const Series& series : all) {
     if (!exponent(series, kMeasured[0])) continue;
     std::vector<std::string> row = names(series);
@@ -151,7 +143,8 @@ PanelPlot scaling_plot(const std::vector<Series>& all) {
 }
 
 std::vector<Series> measure_scale(const ScaleRequest& request, const ProgressCallback& progress) {
-  const std::vector<int> all_sizes = sizes(request.most);
+  std::vector<int> all_sizes;
+  for (int n = 1; n <= request.most; n *= 10) all_sizes.push_back(n);
   std::vector<Series> all;
   for (const SceneGenerator& structure : scene_generators())
     for (const std::string& formulation : request.formulations)
@@ -171,7 +164,7 @@ std::vector<Series> measure_scale(const ScaleRequest& request, const ProgressCal
     if (round > 0 && !good(of_size)) return;
     if (n > 0 && take_too_long(series.runs[n - 1])) {
       const IsolatedRun& before = series.runs[n - 1].front();
-      of_size.push_back({fmt::format("{}, {} bodies took {:.0f} s", kLeftOut, before.bodies, before.seconds)});
+      of_size.push_back({{}, fmt::format("{}, {} bodies took {:.0f} s", kLeftOut, before.bodies, before.seconds)});
       return;
     }
     series.settings.end = series.settings.every = end_of(all_sizes[n], series.settings.step);

@@ -58,23 +58,15 @@ std::vector<BodyState> pose_meant(const SceneCheck& result, std::vector<BodyStat
 }  // namespace
 
 std::string_view left_free(const Group& joint) {
+  // In the order of kJointTypes.
+  static constexpr std::string_view kLeftFree[] = {
+      "turning about its axis",     "turning about every axis",
+      "turning about its two axes", "turning about its axis and sliding along it",
+      "sliding along its axis",     "nothing"};
+  static_assert(std::size(kLeftFree) == std::size(kJointTypes));
   const auto* entry = std::ranges::find(kJointTypes, joint.type, &TypeName<JointType>::name);
   check(entry != std::end(kJointTypes), "the group is a joint");
-  switch (entry->type) {
-    case JointType::revolute:
-      return "turning about its axis";
-    case JointType::spherical:
-      return "turning about every axis";
-    case JointType::universal:
-      return "turning about its two axes";
-    case JointType::cylindrical:
-      return "turning about its axis and sliding along it";
-    case JointType::translational:
-      return "sliding along its axis";
-    case JointType::fixed:
-      return "nothing";
-  }
-  return "";
+  return kLeftFree[entry - kJointTypes];
 }
 
 bool without_freedom(const Scene& scene) {

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/body_state.h"
 #include "core/scene.h"
 #include "formulations/derivative_check.h"
 #include "integrators/start/initial_state.h"

@@ -4,10 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "bench/study/name_list.h"
 #include "core/counted.h"
 #include "core/printable.h"
 #include "formulations/registry.h"
@@ -15,11 +15,6 @@
 namespace poinsot::study {
 namespace {
 using Ordered = nlohmann::ordered_json;
-
-template <class... Arguments>
-void add(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
-}
 
 // "joint 'hinge'", "driver 'motor'": the groups that rows belong to. Rows of a group lie together.
 std::vector<std::string> groups_of(const Model& model, std::span<const int> rows) {
@@ -35,26 +30,21 @@ std::vector<std::string> groups_of(const Model& model, std::span<const int> rows
   return groups;
 }
 
-// The first few of them.
 std::string groups_text(const Model& model, std::span<const int> rows) {
-  constexpr std::size_t most = 8;
-  const std::vector<std::string> groups = groups_of(model, rows);
-  const std::size_t shown = std::min(most, groups.size());
-  const std::string names = fmt::format("{}", fmt::join(std::span(groups).first(shown), ", "));
-  return groups.size() > most ? fmt::format("{} and {} more", names, groups.size() - most) : names;
+  return listed(groups_of(model, rows));
 }
 
 void add_header(std::string& text, const Model& model) {
   const std::size_t forces = model.point_forces.size() + model.torques.size() + model.springs.size() +
                              model.torsions.size() + model.drags.size() + model.callbacks.size();
-  add(text, "{}: {}, {}, {}\n", printable(model.name), counted(model.bodies.size(), "body", "bodies"),
-      counted(model.rows.size(), "constraint row"), counted(forces, "force"));
+  text += fmt::format("{}: {}, {}, {}\n", printable(model.name), counted(model.bodies.size(), "body", "bodies"),
+                      counted(model.rows.size(), "constraint row"), counted(forces, "force"));
 }
 
 void add_measures(std::string& text, const SceneCheck& found) {
   const Vector3 &x = found.extent, &g = found.model->gravity;
-  add(text, "mass: {:.6g} kg; extent: {:.4g} x {:.4g} x {:.4g} m; gravity: {}\n", found.mass, x.x(), x.y(), x.z(),
-      g.isZero(0) ? "none" : fmt::format("[{:g}, {:g}, {:g}] m/s2", g.x(), g.y(), g.z()));
+  text += fmt::format("mass: {:.6g} kg; extent: {:.4g} x {:.4g} x {:.4g} m; gravity: {}\n", found.mass, x.x(), x.y(),
+                      x.z(), g.isZero(0) ? "none" : fmt::format("[{:g}, {:g}, {:g}] m/s2", g.x(), g.y(), g.z()));
 }
 
 // Of the first joints; in a scene of thousands nobody reads them all.
@@ -63,44 +53,37 @@ void add_joints(std::string& text, const Model& model) {
   int joints = 0;
   for (const Group& group : model.groups) {
     if (group.kind != GroupKind::joint || ++joints > most) continue;
-    add(text, "joint '{}' leaves free: {}\n", group.name, left_free(group));
+    text += fmt::format("joint '{}' leaves free: {}\n", group.name, left_free(group));
   }
-  if (joints > most) add(text, "... and {} more joints\n", joints - most);
+  if (joints > most) text += fmt::format("... and {} more joints\n", joints - most);
 }
 
 void add_constraints(std::string& text, const SceneCheck& found) {
   const Model& model = *found.model;
   const RankAnalysis& analysis = found.rank;
   const std::vector<Conflict>& conflicts = analysis.conflicts;
-  add(text, "degrees of freedom: {}\n", analysis.degrees_of_freedom());
+  text += fmt::format("degrees of freedom: {}\n", analysis.degrees_of_freedom());
   if (analysis.singular_position())
-    add(text, "  the initial pose is a singular position: {} independent rows here, {} beside it\n", analysis.rank_here,
-        analysis.rank);
+    text += fmt::format("  the initial pose is a singular position: {} independent rows here, {} beside it\n",
+                        analysis.rank_here, analysis.rank);
   for (const Dependency& d : analysis.singular)
-    add(text, "  {} is singular here: {}\n", describe_row(model, d.row),
-        d.others.empty() ? "its gradient vanishes" : "it follows from " + groups_text(model, d.others));
+    text += fmt::format("  {} is singular here: {}\n", describe_row(model, d.row),
+                        d.others.empty() ? "its gradient vanishes" : "it follows from " + groups_text(model, d.others));
   const std::size_t redundant = analysis.dependent.size() - conflicts.size();
-  add(text, "redundant constraints: {}\n", redundant == 0 ? "none" : counted(redundant, "row"));
+  text += fmt::format("redundant constraints: {}\n", redundant == 0 ? "none" : counted(redundant, "row"));
   if (!analysis.named)
-    add(text, "  {} dependent rows in a mechanism so connected: what each follows from is not worked out\n",
-        analysis.dependent.size());
+    text += fmt::format("  {} dependent rows in a mechanism so connected: what each follows from is not worked out\n",
+                        analysis.dependent.size());
   const auto from = [&](const Dependency& d) { return analysis.named ? groups_text(model, d.others) : "other rows"; };
-  // Both lists are by row.
-  auto conflict = conflicts.begin();
-  for (const Dependency& d : analysis.dependent) {
-    if (conflict != conflicts.end() && conflict->row == d.row)
-      ++conflict;
-    else
-      add(text, "  {} follows from {}\n", describe_row(model, d.row), from(d));
-  }
-  add(text, "conflicting constraints: {}\n", conflicts.empty() ? "none" : counted(conflicts.size(), "row"));
-  conflict = conflicts.begin();
-  for (const Dependency& d : analysis.dependent) {
-    if (conflict == conflicts.end() || conflict->row != d.row) continue;
-    add(text, "  {} contradicts {}: off by {} where those hold\n", describe_row(model, d.row), from(d),
-        describe(*conflict));
-    ++conflict;
-  }
+  const auto conflict_of = [&](const Dependency& d) { return std::ranges::find(conflicts, d.row, &Conflict::row); };
+  for (const Dependency& d : analysis.dependent)
+    if (conflict_of(d) == conflicts.end())
+      text += fmt::format("  {} follows from {}\n", describe_row(model, d.row), from(d));
+  text += fmt::format("conflicting constraints: {}\n", conflicts.empty() ? "none" : counted(conflicts.size(), "row"));
+  for (const Dependency& d : analysis.dependent)
+    if (const auto conflict = conflict_of(d); conflict != conflicts.end())
+      text += fmt::format("  {} contradicts {}: off by {} where those hold\n", describe_row(model, d.row), from(d),
+                          describe(*conflict));
 }
 
 std::vector<int> undetermined_rows(const SceneCheck& found) {
@@ -112,24 +95,24 @@ std::vector<int> undetermined_rows(const SceneCheck& found) {
 
 void add_undetermined(std::string& text, const SceneCheck& found) {
   if (found.rank.undetermined.empty()) return;
-  add(text, "reactions that redundant rows leave undetermined: {}\n",
-      printable(groups_text(*found.model, undetermined_rows(found))));
+  text += fmt::format("reactions that redundant rows leave undetermined: {}\n",
+                      printable(groups_text(*found.model, undetermined_rows(found))));
 }
 
 void add_doubt(std::string& text, const SceneCheck& found) {
   const RankAnalysis& analysis = found.rank;
   if (analysis.doubtful < 0) return;
-  add(text, "neither dependent nor clearly independent: {}, of which {:.0e} is left beside the others\n",
-      describe_row(*found.model, analysis.doubtful), analysis.doubt);
+  text += fmt::format("neither dependent nor clearly independent: {}, of which {:.0e} is left beside the others\n",
+                      describe_row(*found.model, analysis.doubtful), analysis.doubt);
 }
 
 void add_state(std::string& text, const SceneCheck& found) {
   const auto line = [&](const char* what, double largest, int row, int order) {
     if (largest <= kSatisfied)
-      add(text, "{}: consistent, largest violation {:.2g}\n", what, largest);
+      text += fmt::format("{}: consistent, largest violation {:.2g}\n", what, largest);
     else
-      add(text, "{}: violates {} by {}, the most of all\n", what, describe_row(*found.model, row),
-          describe_residual(*found.model, row, largest, order));
+      text += fmt::format("{}: violates {} by {}, the most of all\n", what, describe_row(*found.model, row),
+                          describe_residual(*found.model, row, largest, order));
   };
   const Violation& v = found.violation;
   line("initial pose", v.position, v.position_row, 0);
@@ -137,13 +120,13 @@ void add_state(std::string& text, const SceneCheck& found) {
 }
 
 void add_derivatives(std::string& text, const SceneCheck& found) {
-  std::vector<std::string_view> names;
-  for (const FormulationEntry& formulation : formulations()) names.push_back(formulation.name);
-  add(text, "derivatives: {} compared ({}), {}\n", found.derivatives, fmt::join(names, ", "),
-      found.wrong.empty() ? fmt::format("all right, largest relative difference {:.2g}", found.derivative_error)
+  text += fmt::format("derivatives: {} compared ({}), {}\n", found.derivatives, fmt::join(formulations().names(), ", "),
+                      found.wrong.empty()
+                          ? fmt::format("all right, largest relative difference {:.2g}", found.derivative_error)
                           : fmt::format("{} wrong", found.wrong.size()));
   for (const auto& [formulation, derivative] : found.wrong)
-    add(text, "  {}: {}: {} is off by {:.3g}\n", formulation, derivative.name, derivative.what, derivative.error);
+    text +=
+        fmt::format("  {}: {}: {} is off by {:.3g}\n", formulation, derivative.name, derivative.what, derivative.error);
 }
 
 }  // namespace
@@ -158,7 +141,7 @@ std::string check_text(const SceneCheck& found) {
   add_doubt(text, found);
   add_state(text, found);
   if (!found.rank.conflicts.empty() || !found.refusal.empty()) return text;
-  for (const std::string& notice : found.start.notices) add(text, "  {}\n", printable(notice));
+  for (const std::string& notice : found.start.notices) text += fmt::format("  {}\n", printable(notice));
   add_derivatives(text, found);
   return text;
 }

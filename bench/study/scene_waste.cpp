@@ -1,8 +1,8 @@
 #include "bench/study/scene_waste.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include "bench/study/name_list.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/rank.h"
 
@@ -10,15 +10,6 @@ namespace poinsot::study {
 namespace {
 
 constexpr double kStill = 1e-9;  // of the mechanism's motion: rounding
-
-// Names in quotation marks, at most a handful.
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 8;
-  const std::vector<std::string> first(names.begin(),
-                                       names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())));
-  return fmt::format("{}{}", fmt::join(first, ", "),
-                     names.size() > most ? fmt::format(" and {} more", names.size() - most) : "");
-}
 
 }  // namespace
 

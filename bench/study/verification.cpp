@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
+#include <functional>
 
+#include "bench/study/motion.h"
 #include "core/input_error.h"
 #include "integrators/simulate.h"
 #include "integrators/start/reactions.h"
@@ -69,8 +69,8 @@ double distance(double x, double y) {
 double distance(const Vector3& x, const Vector3& y) {
   return (x - y).norm();
 }
-double distance(const Matrix3& x, const Matrix3& y) {  // the angle between the two
-  return 2 * std::asin(std::min(1.0, (x - y).norm() / (2 * std::numbers::sqrt2)));
+double distance(const Matrix3& x, const Matrix3& y) {
+  return angle_between(x, y);
 }
 double size(double x) {
   return std::abs(x);
@@ -82,62 +82,53 @@ double size(const Matrix3&) {
   return 1;
 }
 
-struct Farthest {
-  double apart = 0, size = 0, t = 0;
-  std::size_t item = 0;
+struct Compared {
+  Verification::Quantity quantity;
+  double size = 0;
 };
 
-// `item` k of what `items` gives of a time: a body's position, a joint's force.
+// Where two runs are farthest apart in a `part` of what `items` gives of a time, an item for each name.
 template <class Items, class Part>
-Farthest farthest(const Recorded& run, const Recorded& finer, Items Given::*items, const Part& part) {
-  Farthest found;
+Compared farthest(const Verification::Quantity& quantity, const Recorded& run, const Recorded& finer,
+                  Items Given::*items, Part part, const std::vector<std::string>& names) {
+  Compared found{quantity};
+  if (!names.empty()) found.quantity.where = names.front();
   for (std::size_t n = 0; n < run.t.size(); ++n) {
     const Items &x = run.given[n].*items, &y = finer.given[n].*items;
     for (std::size_t k = 0; k < x.size(); ++k) {
-      found.size = std::max(found.size, size(part(y[k])));
-      const double apart = distance(part(x[k]), part(y[k]));
-      if (apart <= found.apart) continue;
-      found.apart = apart;
-      found.t = run.t[n];
-      found.item = k;
+      found.size = std::max(found.size, size(std::invoke(part, y[k])));
+      const double apart = distance(std::invoke(part, x[k]), std::invoke(part, y[k]));
+      if (apart <= found.quantity.apart) continue;
+      found.quantity.apart = apart;
+      found.quantity.t = run.t[n];
+      found.quantity.where = names[k];
     }
   }
   return found;
 }
 
-struct Named {
-  std::string_view name, unit;
-  Farthest farthest;
-  std::vector<std::string> items;
-};
-
-std::vector<Named> compare(const Scene& scene, const Recorded& run, const Recorded& finer) {
+std::vector<Compared> compare(const Scene& scene, const Recorded& run, const Recorded& finer) {
   std::vector<std::string> bodies, jointed, constraints;
   for (const Body& body : scene.bodies) bodies.push_back(body.name);
   for (const Group& group : compile(scene).groups)
     (group.kind == GroupKind::constraint ? constraints : jointed).push_back(group.name);
-  const auto of_bodies = [&](std::string_view name, std::string_view unit, auto part) {
-    return Named{name, unit,
-                 farthest(
-                     run, finer, &Given::bodies, [&](const BodyState& b) -> const auto& { return b.*part; }),
-                 bodies};
+  std::vector<Compared> all;
+  const auto add = [&](std::string_view name, std::string_view unit, auto items, const std::vector<std::string>& names,
+                       auto part) {
+    all.push_back(farthest({name, unit}, run, finer, items, part, names));
   };
-  const auto itself = [](const auto& x) -> const auto& {
-    return x;
-  };
-  std::vector<Named> all{of_bodies("position", "m", &BodyState::r),
-                         of_bodies("orientation", "rad", &BodyState::A),
-                         of_bodies("velocity", "m/s", &BodyState::rd),
-                         of_bodies("angular velocity", "rad/s", &BodyState::w),
-                         of_bodies("acceleration", "m/s^2", &BodyState::rdd),
-                         of_bodies("angular acceleration", "rad/s^2", &BodyState::wd)};
+  add("position", "m", &Given::bodies, bodies, &BodyState::r);
+  add("orientation", "rad", &Given::bodies, bodies, &BodyState::A);
+  add("velocity", "m/s", &Given::bodies, bodies, &BodyState::rd);
+  add("angular velocity", "rad/s", &Given::bodies, bodies, &BodyState::w);
+  add("acceleration", "m/s^2", &Given::bodies, bodies, &BodyState::rdd);
+  add("angular acceleration", "rad/s^2", &Given::bodies, bodies, &BodyState::wd);
   if (run.given.empty()) return all;
   if (!run.given.front().forces.empty()) {
-    all.push_back({"reaction force", "N", farthest(run, finer, &Given::forces, itself), jointed});
-    all.push_back({"reaction moment", "N m", farthest(run, finer, &Given::moments, itself), jointed});
+    add("reaction force", "N", &Given::forces, jointed, std::identity());
+    add("reaction moment", "N m", &Given::moments, jointed, std::identity());
   }
-  if (!run.given.front().multipliers.empty())
-    all.push_back({"multiplier", "", farthest(run, finer, &Given::multipliers, itself), constraints});
+  if (!run.given.front().multipliers.empty()) add("multiplier", "", &Given::multipliers, constraints, std::identity());
   return all;
 }
 
@@ -188,21 +179,19 @@ Verification verify(const Scene& scene, const Settings& settings) {
   Recorded second = record(scene, finer);
   if (failed(result.against, second)) return result;
   result.times = run.t.size();
-  for (const Named& q : compare(scene, run, second))
-    result.quantities.push_back(
-        {q.name, q.unit, q.farthest.apart, q.items.empty() ? "" : q.items[q.farthest.item], q.farthest.t, {}, {}});
+  for (Compared& q : compare(scene, run, second)) result.quantities.push_back(std::move(q.quantity));
   if (!steps) return result;
   run = {};
   finer.step /= 2;
   const Recorded third = record(scene, finer);
   if (failed(fmt::format("a quarter of the step, which shows the order, h = {:g} s,", finer.step), third))
     return result;
-  const std::vector<Named> beyond = compare(scene, second, third);
+  const std::vector<Compared> beyond = compare(scene, second, third);
   for (std::size_t k = 0; k < beyond.size(); ++k) {
     Verification::Quantity& q = result.quantities[k];
-    const Farthest& next = beyond[k].farthest;
-    if (!(next.apart > kRounding * next.size) || !(q.apart > 0) || !std::isfinite(q.apart)) continue;
-    q.order = std::log2(q.apart / next.apart);
+    const double next = beyond[k].quantity.apart;
+    if (!(next > kRounding * beyond[k].size) || !(q.apart > 0) || !std::isfinite(q.apart)) continue;
+    q.order = std::log2(q.apart / next);
     if (*q.order >= kLeastOrder) q.error = q.apart / (1 - std::exp2(-*q.order));
   }
   return result;

@@ -24,9 +24,9 @@ struct Verification {
   struct Quantity {
     std::string_view name, unit;
     double apart = 0;
-    std::string where;                   // body, joint, driver or constraint
-    double t = 0;                        // s
-    std::optional<double> order, error;  // where they can be told
+    std::string where = {};                        // body, joint, driver or constraint
+    double t = 0;                                  // s
+    std::optional<double> order = {}, error = {};  // where they can be told
   };
   std::string against;  // "half the step, h = 0.0005 s"
   std::string failure;  // why there is nothing, or no order

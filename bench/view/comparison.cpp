@@ -2,18 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
+
+#include "bench/study/motion.h"
 
 namespace poinsot::view {
-namespace {
-
-// Of A and B: 2 asin(|A − B|/(2√2)) with the Frobenius norm, good for small angles.
-double angle_between(const Eigen::Matrix3d& A, const Eigen::Matrix3d& B) {
-  const double chord = (A - B).norm() / (2 * std::sqrt(2.0));
-  return 2 * std::asin(std::min(1.0, chord));
-}
-
-}  // namespace
 
 std::vector<Apart> apart(const Motion& first, const Motion& second) {
   std::vector<Apart> result;
@@ -34,7 +26,7 @@ std::vector<Apart> apart(const Motion& first, const Motion& second) {
         most.position = distance;
         most.body = b;
       }
-      most.angle = std::max(most.angle, angle_between(x.A, A));
+      most.angle = std::max(most.angle, study::angle_between(x.A, A));
     }
   }
   return result;

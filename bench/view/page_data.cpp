@@ -7,7 +7,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -87,20 +86,16 @@ Json json(const Symbols& symbols) {
 
 Json loads(const Model& model) {
   Json all = Json::array();
-  for (const PointForce& force : model.point_forces)
-    all.push_back({{"type", "force"},
-                   {"name", force.name},
-                   {"body", force.body},
-                   {"point", json(force.point)},
-                   {"frame", type_name(force.frame)},
-                   {"unit", "N"}});
-  for (const Torque& torque : model.torques)
-    all.push_back({{"type", "torque"},
-                   {"name", torque.name},
-                   {"body", torque.body},
-                   {"point", json(Vector3::Zero())},
-                   {"frame", type_name(torque.frame)},
-                   {"unit", "N m"}});
+  const auto add = [&](const char* type, const auto& load, const Vector3& point, const char* unit) {
+    all.push_back({{"type", type},
+                   {"name", load.name},
+                   {"body", load.body},
+                   {"point", json(point)},
+                   {"frame", type_name(load.frame)},
+                   {"unit", unit}});
+  };
+  for (const PointForce& force : model.point_forces) add("force", force, force.point, "N");
+  for (const Torque& torque : model.torques) add("torque", torque, Vector3::Zero(), "N m");
   return all;
 }
 
@@ -196,8 +191,8 @@ Json packed(const std::vector<Apart>& apart) {
 }  // namespace
 
 std::string page_data(const Model& model, const std::string& about, std::span<const Motion> motions) {
-  bool many = false;
-  for (const Motion& motion : motions) many = many || motion.frames.size() * model.bodies.size() > kManyPoses;
+  const bool many = std::ranges::any_of(
+      motions, [&](const Motion& motion) { return motion.frames.size() * model.bodies.size() > kManyPoses; });
   const std::size_t stored = many ? kPoseColumns : kTrajectoryColumns.size();
 
   Json data;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <utility>
 
@@ -32,7 +31,7 @@ struct Seen {
 
 // A joint between two bodies from rows; no type where they make none.
 JointSymbol joint_of(std::span<const Seen> rows, int first, int second) {
-  JointSymbol joint{"", "", first, second, {}, {}, {}, {}};
+  JointSymbol joint{"", "", first, second};  // with axes of zeros where it has none
   std::vector<const Seen*> directions;
   int coincident = 0, on_axis = 0;
   for (const Seen& row : rows) {
