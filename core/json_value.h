@@ -25,6 +25,13 @@ class JsonValue {
   JsonValue(const nlohmann::json& value, std::string_view file, ExpressionNames* names = nullptr)
       : value_(&value), file_(file), names_(names) {}
 
+  // The same place, for a value that follows from the one here.
+  JsonValue holding(const nlohmann::json& value) const {
+    JsonValue other = *this;
+    other.value_ = &value;
+    return other;
+  }
+
   std::string path() const;  // a JSON pointer; "/" for the document itself
   [[noreturn]] void fail(std::string_view message) const;
   [[noreturn]] void expected(std::string_view allowed) const;  // "found ..., expected {allowed}"

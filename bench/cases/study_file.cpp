@@ -32,23 +32,21 @@ void vary_setting(Study& study, const JsonValue& item) {
   if (std::ranges::find(study.settings_varied, entry->key) != study.settings_varied.end())
     key.fail(fmt::format("'{}' varies already, expected another setting", entry->key));
   std::vector<JsonValue> values;
-  std::vector<double> range;
+  std::vector<nlohmann::json> range;
   const auto list = item.optional("values");
   if (list) {
     values = items(*list, "an array of values, at least one", 1);
   } else if (item.optional("from")) {
-    range = read_range(item);
+    std::ranges::copy(read_range(item), std::back_inserter(range));
+    for (const nlohmann::json& value : range) values.push_back(item.holding(value));
   } else {
     item.expected("\"values\", or \"from\", \"to\" and \"count\"");
   }
   std::vector<SettingsChoice> all;
   for (const SettingsChoice& before : study.settings) {
-    for (std::size_t k = 0; k < values.size() + range.size(); ++k) {
+    for (const JsonValue& value : values) {
       SettingsChoice choice = before;
-      if (list)
-        read_setting(*entry, values[k], choice.settings);
-      else
-        read_setting(*entry, JsonValue(nlohmann::json(range[k]), item.path()), choice.settings);
+      read_setting(*entry, value, choice.settings);
       choice.values.push_back(value_text(*entry, choice.settings));
       all.push_back(std::move(choice));
     }
