@@ -49,7 +49,8 @@ class Mechanism {
   // Φ/position, and (Ψv − f)/velocity where `velocity` is not 0.
   void constraint_residual(const T& position, const T& velocity, T* out) const {
     const T by = T(1) / position;
-    Rows<F, T>::holonomic(c, [&](const Gradient& g, auto, const T& Phi) { out[g.row] = by * Phi; });
+    Rows<F, T>::scalar(c, [&](const Gradient& g, auto, const T& Phi) { out[g.row] = by * Phi; });
+    for (const CoincidenceRows& k : c.elements->coincidences) coincidence_residual(k, by, out);
     if (velocity == T(0)) {
       for (const PfaffianRow& k : c.elements->pfaffian) out[k.row] = T(0);
     } else {
@@ -191,7 +192,7 @@ class Mechanism {
         wrench_[index(k.j)].f += force;
         wrench_[index(k.j)].e += C::Et_times(c.s[index(k.q)], force);
       }
-      if (rows) Eigen::Map<Vec3<T>>{rows + k.row} = by * c.span(k.i, k.j, k.p, k.q);
+      if (rows) coincidence_residual(k, by, rows);
     }
     Rows<F, T>::velocity(c, [&](const Gradient& g, auto has_r, const T& psi) {
       react<decltype(has_r)::value>(g, lambda[g.row]);
@@ -213,6 +214,9 @@ class Mechanism {
     }
   }
 
+  void coincidence_residual(const CoincidenceRows& k, const T& by, T* out) const {
+    Eigen::Map<Vec3<T>>{out + k.row} = by * c.span(k.i, k.j, k.p, k.q);
+  }
   void normalization_residual(const T& by, T* out) const {
     if constexpr (F::normalized) {
       for (int b = 0; b < nb(); ++b) out[c.elements->rows + b] = by * T(0.5) * (c.p(b).squaredNorm() - T(1));

@@ -40,7 +40,7 @@ constexpr Kernels kKernels[] = {kernels<6>(),  kernels<7>(),  kernels<9>(),  ker
 class Dense final : public ScaledLu {
  public:
   std::uint64_t orientation() override {
-    bool negative = odd(0, n_, [this](int k) { return order_[static_cast<std::size_t>(k)]; });
+    bool negative = odd_order_;
     for (double inverse : inverse_) negative ^= inverse < 0;
     return negative ? 2 : 1;
   }
@@ -69,6 +69,7 @@ class Dense final : public ScaledLu {
       place_[static_cast<std::size_t>(order_[k])] = static_cast<int>(k);
       chosen_[k] = std::abs(inverse_[k]);
     }
+    odd_order_ = odd(0, n_, [this](int k) { return order_[static_cast<std::size_t>(k)]; });
     return {};
   }
 
@@ -111,6 +112,7 @@ class Dense final : public ScaledLu {
   std::vector<double> lu_, inverse_, x_;
   std::vector<double> chosen_;      // 1/|pivot| when the order was chosen
   std::vector<int> order_, place_;  // row by position, position by row
+  bool odd_order_ = false;
 };
 
 }  // namespace
