@@ -72,13 +72,33 @@ class Compiler {
     const JointFrames& f = model_.joints.emplace_back(complete_frames(j, model_.bodies));
     begin(GroupKind::joint, j, f.s_j);
     model_.groups.back().body_fixed = j.frames.has_value();
-    const auto is = [&](JointType type) { return j.type == type; };
-    const bool slides = is(JointType::cylindrical) || is(JointType::translational);
-    if (!slides) coincident(f);
-    if (is(JointType::universal)) perpendicular(f.axis_i, f.axis_j);
-    if (!is(JointType::universal) && !is(JointType::spherical)) parallel(f);
-    if (slides) on_axis(f);
-    if (is(JointType::fixed) || is(JointType::translational)) perpendicular(f.a_i, f.axis_j.cross(f.a_j));
+    switch (j.type) {
+      case JointType::revolute:
+        coincident(f);
+        parallel(f);
+        break;
+      case JointType::spherical:
+        coincident(f);
+        break;
+      case JointType::universal:
+        coincident(f);
+        perpendicular(f.axis_i, f.axis_j);
+        break;
+      case JointType::cylindrical:
+        parallel(f);
+        on_axis(f);
+        break;
+      case JointType::translational:
+        parallel(f);
+        on_axis(f);
+        perpendicular(f.a_i, f.axis_j.cross(f.a_j));
+        break;
+      case JointType::fixed:
+        coincident(f);
+        parallel(f);
+        perpendicular(f.a_i, f.axis_j.cross(f.a_j));
+        break;
+    }
   }
 
   // 3 CD: the joint's point is the same on both bodies.

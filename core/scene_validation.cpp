@@ -70,12 +70,25 @@ class Validation {
     finite(at, "s_j", c.s_j);
     finite(at, "c", c.c);
     finite(at, "f", c.f);
-    const bool is_DP1 = c.type == ConstraintType::DP1;
-    if (is_DP1 || c.type == ConstraintType::DP2) direction(at, "a_i", c.a_i);
-    if (is_DP1 || c.type == ConstraintType::pfaffian) direction(at, "a_j", c.a_j);
-    if (c.type == ConstraintType::CD) direction(at, "c", c.c);
+    switch (c.type) {
+      case ConstraintType::DP1:
+        direction(at, "a_i", c.a_i);
+        direction(at, "a_j", c.a_j);
+        break;
+      case ConstraintType::DP2:
+        direction(at, "a_i", c.a_i);
+        break;
+      case ConstraintType::D:
+        break;
+      case ConstraintType::CD:
+        direction(at, "c", c.c);
+        break;
+      case ConstraintType::pfaffian:
+        direction(at, "a_j", c.a_j);
+        break;
+    }
     if (!c.alternate) return;
-    if (!is_DP1) {
+    if (c.type != ConstraintType::DP1) {
       at.fail("alternate", fmt::format("found one of a {}, expected it of a DP1 only", type_name(c.type)));
     }
     direction(at, "alternate/a_i", c.alternate->a_i);
@@ -95,12 +108,20 @@ class Validation {
       return;
     }
     finite(at, "point", j.point);
-    if (j.type == JointType::universal) {
-      direction(at, "axis_i", j.axis_i);
-      direction(at, "axis_j", j.axis_j);
-      perpendicular(at, "axis_j", "an axis", j.axis_j, "axis_i", j.axis_i);
-    } else if (j.type != JointType::spherical && j.type != JointType::fixed) {
-      direction(at, "axis", j.axis);
+    switch (j.type) {
+      case JointType::spherical:
+      case JointType::fixed:
+        break;
+      case JointType::universal:
+        direction(at, "axis_i", j.axis_i);
+        direction(at, "axis_j", j.axis_j);
+        perpendicular(at, "axis_j", "an axis", j.axis_j, "axis_i", j.axis_i);
+        break;
+      case JointType::revolute:
+      case JointType::cylindrical:
+      case JointType::translational:
+        direction(at, "axis", j.axis);
+        break;
     }
   }
 
