@@ -44,7 +44,7 @@ class GeneralizedAlpha : public FixedSteps {
         velocity_rows_(velocity_rows(problem_)),
         a_(nv_),
         jerk_(nv_),
-        line_(x_.z),
+        extrapolation_(x_.z),
         dq_(nv_),
         corrects_velocity_(form == Form::stabilized2),
         y_(Vector::Zero(nv_)),
@@ -65,11 +65,11 @@ class GeneralizedAlpha : public FixedSteps {
     scale_ = scale();
     const double ratio = h_ / before;
     a_ = x_.z.head(nv_) + ratio * (a_ - x_.z.head(nv_));
-    line_.resize(x_.z, ratio);
+    extrapolation_.resize(x_.z, ratio);
     newton_.renew();
   }
   Status forget() override {
-    line_.restart(x_.z);
+    extrapolation_.restart(x_.z);
     y_.setZero();
     return {};
   }
@@ -91,14 +91,14 @@ class GeneralizedAlpha : public FixedSteps {
     held_a_.noalias() = (k_.alpha_f * x_.z.head(nv_) - k_.alpha_m * a_) / (1 - k_.alpha_m);
     held_v_.noalias() = v_n_ + (h_ * (1 - k_.gamma)) * a_ + (h_ * k_.gamma) * held_a_;
     held_dq_.noalias() = h_ * v_n_ + (h_ * h_ * (0.5 - k_.beta)) * a_ + (h_ * h_ * k_.beta) * held_a_;
-    line_.lead(x_.z);
+    extrapolation_.lead(x_.z);
 
     Status status = iterate(t);
     if (form_ == Form::stabilized2 && settings_.retry && status.failure == Failure::not_converged && newton_.stalled())
       status = iterate_at_index3(t);
     if (!status.ok()) return status;
     end_step();
-    ringing_.watch(run_, x_.z, line_.before(), x_.q, t, h_);
+    ringing_.watch(run_, x_.z, extrapolation_.before(), x_.q, t, h_);
     return status;
   }
 
@@ -145,7 +145,7 @@ class GeneralizedAlpha : public FixedSteps {
   // Without velocity constraints, from where the step began.
   Status iterate_at_index3(double t) {
     corrects_velocity_ = false;
-    x_.z = line_.before();
+    x_.z = extrapolation_.before();
     y_.setZero();
     newton_.renew();
     const Status status = iterate(t);
@@ -176,7 +176,7 @@ class GeneralizedAlpha : public FixedSteps {
     if (damped || !change_of_acceleration(h_, a_).ok() || !((a_ - jerk_).norm() < jerk_.norm())) jerk_.setZero();
     jerk_ /= h_;
     a_.noalias() = x_.z.head(nv_) + (k_.shift() * h_) * jerk_;
-    line_.restart(x_.z);
+    extrapolation_.restart(x_.z);
     y_.setZero();
     if (form_ == Form::stabilized2) return {};
 
@@ -264,7 +264,7 @@ class GeneralizedAlpha : public FixedSteps {
   Consistent consistent_;
   std::vector<int> velocity_rows_;
   Vector a_, jerk_;
-  Extrapolation line_;                // of z
+  Extrapolation extrapolation_;       // of z
   Vector dq_;                         // what leads from q_n to q
   bool corrects_velocity_;            // stabilized index 2, but for steps that do not converge so
   bool told_ = false;                 // of those

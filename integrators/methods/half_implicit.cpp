@@ -19,16 +19,16 @@ class HalfImplicit final : public FixedSteps {
         newton_(problem_, ends_.begin().system, settings_, Refresh::every_step, run.statistics),
         broyden_(problem_.nv() + problem_.nc(), problem_.nv()),
         velocity_rows_(velocity_rows(problem_)),
-        line_(x_.z),
+        extrapolation_(x_.z),
         dq_(nv_),
         rows_(nc_),
         growth_(nv_) {}
 
   double index3_scale() const override { return h_ * h_; }
   Status prepare() override { return ends_.prepare(); }
-  void resize(double before) override { line_.resize(x_.z, h_ / before); }
+  void resize(double before) override { extrapolation_.resize(x_.z, h_ / before); }
   Status forget() override {
-    line_.restart(x_.z);
+    extrapolation_.restart(x_.z);
     return {};
   }
   Status resume() override {
@@ -43,7 +43,7 @@ class HalfImplicit final : public FixedSteps {
   Problem& last_seen() override { return stand(); }
 
   Status step(double t) override {
-    line_.lead(x_.z);
+    extrapolation_.lead(x_.z);
     StepEnds::End &begin = ends_.begin(), &end = ends_.end();
     const auto advance = [&] {
       x_.v.noalias() = v_n_ + h_ * x_.z.head(nv_);
@@ -81,7 +81,7 @@ class HalfImplicit final : public FixedSteps {
   NewtonLoop newton_;
   Broyden broyden_;
   std::vector<int> velocity_rows_;
-  Extrapolation line_;
+  Extrapolation extrapolation_;
   Vector dq_, rows_;
   Growth growth_;
 };

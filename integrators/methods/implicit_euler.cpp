@@ -14,7 +14,7 @@ class ImplicitEuler final : public FixedSteps {
         policy_(jacobians().require(settings_.jacobian)),
         system_(problem_, run.systems.add(policy_.workload()), policy_.matrix, run.statistics, clock_),
         newton_(problem_, system_, settings_, policy_.refresh, run.statistics),
-        line_(x_.z),
+        extrapolation_(x_.z),
         dq_(nv_) {
     resize(h_);
   }
@@ -22,12 +22,12 @@ class ImplicitEuler final : public FixedSteps {
   double index3_scale() const override { return scale_.position; }
   void resize(double before) override {
     scale_ = {1, h_, h_ * h_};
-    line_.resize(x_.z, h_ / before);
+    extrapolation_.resize(x_.z, h_ / before);
     newton_.renew();
   }
   Status prepare() override { return system_.prepare(); }
   Status forget() override {
-    line_.restart(x_.z);
+    extrapolation_.restart(x_.z);
     return {};
   }
   Status resume() override { return forget(); }
@@ -36,7 +36,8 @@ class ImplicitEuler final : public FixedSteps {
   // The unknowns are a = (r̈, ω̄̇) and λ at t_{n+1}, in x_.z. Numbers are those of the paper's equations for rA; rp has
   // (40) and (41) in the place of (32) and (34b), reps has (44).
   Status step(double t) override {
-    if (policy_.refresh != Refresh::before_step) line_.lead(x_.z);  // the original study's codes predict nothing
+    if (policy_.refresh != Refresh::before_step)
+      extrapolation_.lead(x_.z);  // the original study's codes predict nothing
     const auto advance = [&] {
       x_.v.noalias() = v_n_ + h_ * x_.z.head(nv_);  // (32a, b)  ṙ = ṙ_n + h r̈,  ω̄ = ω̄_n + h ω̄̇
       dq_.noalias() = h_ * x_.v;
@@ -77,7 +78,7 @@ class ImplicitEuler final : public FixedSteps {
   StepScale scale_;
   StepSystem system_;
   NewtonLoop newton_;
-  Extrapolation line_;
+  Extrapolation extrapolation_;
   Vector dq_;  // the variation that leads from q_n to q
 };
 

@@ -20,7 +20,7 @@ class Rattle final : public FixedSteps {
         broyden_(problem_.nv() + problem_.nc(), problem_.nv()),
         velocity_rows_(velocity_rows(problem_)),
         z_(x_.z),
-        line_(z_),
+        extrapolation_(z_),
         u_(nv_),
         dq_(nv_),
         e_(nv_),
@@ -50,9 +50,9 @@ class Rattle final : public FixedSteps {
     return factor(ends_.begin(), x_.t);
   }
 
-  void resize(double before) override { line_.resize(z_, h_ / before); }
+  void resize(double before) override { extrapolation_.resize(z_, h_ / before); }
   Status step(double t) override {
-    line_.lead(z_);
+    extrapolation_.lead(z_);
     if (Status status = first_half(t); !status.ok()) return status;
     if (Status status = second_half(t); !status.ok()) return status;
     ends_.take_turns();
@@ -90,7 +90,7 @@ class Rattle final : public FixedSteps {
  private:
   void start_from(const Vector& z) {
     z_ = z;
-    line_.restart(z_);
+    extrapolation_.restart(z_);
   }
 
   Status factor(StepEnds::End& end, double t) {
@@ -169,7 +169,7 @@ class Rattle final : public FixedSteps {
   Broyden broyden_;
   std::vector<int> velocity_rows_;
   Vector z_;  // unknowns of the first half; x_.z is the (a, λ) given out
-  Extrapolation line_;
+  Extrapolation extrapolation_;
   Vector u_, dq_, e_, momentum_, rows_, rhs_, zeros_;
   Growth growth_;
 };
