@@ -3,13 +3,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
 
 #include "app/command_tree.h"
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/terminal.h"
 #include "core/input_error.h"
+#include "core/projected.h"
 
 namespace poinsot::app {
 namespace {
@@ -49,7 +49,7 @@ std::string bash(const CommandTree& tree) {
   text += fmt::format(
       "  if [ \"$COMP_CWORD\" -eq 1 ]; then COMPREPLY=($(IFS=' '; compgen -W '{} {}' -- \"$word\")); return; fi\n"
       "  case ${{COMP_WORDS[1]}} in\n",
-      fmt::join(std::views::transform(tree.commands, &Command::name), " "), fmt::join(option_names(tree.program), " "));
+      fmt::join(projected(tree.commands, &Command::name), " "), fmt::join(option_names(tree.program), " "));
   for (const Command& command : tree.commands) {
     text += fmt::format("    {})\n      case $before in\n", command.name);
     for (const Argument& option : command.options)

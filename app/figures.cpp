@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
 
 #include "app/commands.h"
 #include "app/options.h"
@@ -10,6 +9,7 @@
 #include "app/terminal.h"
 #include "bench/paper/figure.h"
 #include "core/input_error.h"
+#include "core/projected.h"
 
 namespace poinsot::app {
 using namespace study;
@@ -25,7 +25,7 @@ struct FiguresOptions {
 };
 
 std::vector<const FigureEntry*> chosen(const std::vector<std::string>& names) {
-  const auto known = std::views::transform(paper::figures(), &FigureEntry::name);
+  const auto known = projected(paper::figures(), &FigureEntry::name);
   for (const std::string& name : names)
     if (std::ranges::find(known, name) == known.end())
       throw InputError(fmt::format("NAME: found \"{}\", expected one of {}", name, fmt::join(known, ", ")));

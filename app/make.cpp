@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <ranges>
 #include <string>
 
 #include "app/commands.h"
@@ -9,6 +8,7 @@
 #include "app/terminal.h"
 #include "bench/study/output_file.h"
 #include "core/input_error.h"
+#include "core/projected.h"
 #include "core/scene_generator.h"
 #include "core/scene_writer.h"
 
@@ -23,7 +23,7 @@ struct MakeOptions {
 };
 
 std::string structures() {
-  return fmt::format("{}", fmt::join(std::views::transform(scene_generators(), &SceneGenerator::name), ", "));
+  return fmt::format("{}", fmt::join(projected(scene_generators(), &SceneGenerator::name), ", "));
 }
 
 int make(const MakeOptions& options) {

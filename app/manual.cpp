@@ -3,12 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <memory>
-#include <ranges>
 
 #include "app/command_tree.h"
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/terminal.h"
+#include "core/projected.h"
 #include "core/provenance.h"
 
 namespace poinsot::app {
@@ -47,7 +47,7 @@ std::string page(const CommandTree& tree) {
   const auto& [program, commands] = tree;
   std::string text = fmt::format(".TH POINSOT 1 \"\" \"poinsot {}\"\n.SH NAME\npoinsot \\- {}\n.SH SYNOPSIS\n",
                                  provenance().version, plain(program.about.substr(program.about.find(": ") + 2)));
-  text += fmt::format("{}", fmt::join(std::views::transform(commands, synopsis), ".br\n"));
+  text += fmt::format("{}", fmt::join(projected(commands, synopsis), ".br\n"));
   text += ".SH OPTIONS\n" + arguments(program.options) + ".SH COMMANDS\n";
   for (const Command& one : commands) {
     text += fmt::format(".SS {}\n{}\n{}{}", synopsis(one).substr(3, synopsis(one).find('\n') - 3), plain(one.about),

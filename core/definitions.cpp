@@ -4,9 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
 #include <span>
 #include <utility>
+
+#include "core/projected.h"
 
 namespace poinsot {
 namespace {
@@ -34,7 +35,8 @@ std::shared_ptr<const Spline> read_table(const std::string& name, const JsonValu
 template <class Entries>
 std::string names_of(const Entries& entries, std::string_view what) {
   if (entries.empty()) return "";
-  return fmt::format(", the {}{} {}", what, entries.size() == 1 ? "" : "s", fmt::join(std::views::keys(entries), ", "));
+  return fmt::format(", the {}{} {}", what, entries.size() == 1 ? "" : "s",
+                     fmt::join(projected(entries, [](const auto& entry) { return entry.first; }), ", "));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <set>
 
 #include "bench/cases/study_scenes.h"
@@ -13,6 +12,7 @@
 #include "core/input_error.h"
 #include "core/json_document.h"
 #include "core/places.h"
+#include "core/projected.h"
 #include "integrators/settings_reader.h"
 
 namespace poinsot::cases {
@@ -26,9 +26,7 @@ void vary_setting(Study& study, const JsonValue& item) {
   item.keys("a setting that varies", {"setting", "values", "from", "to", "count", "spacing"});
   const JsonValue key = item.required("setting");
   const SettingEntry* entry = find_setting(key.string("the key of a solver configuration"));
-  if (!entry)
-    key.expected(
-        fmt::format("one of {}", fmt::join(std::views::transform(setting_entries(), &SettingEntry::key), ", ")));
+  if (!entry) key.expected(fmt::format("one of {}", fmt::join(projected(setting_entries(), &SettingEntry::key), ", ")));
   if (std::ranges::find(study.settings_varied, entry->key) != study.settings_varied.end())
     key.fail(fmt::format("'{}' varies already, expected another setting", entry->key));
   std::vector<JsonValue> values;
@@ -57,7 +55,7 @@ void vary_setting(Study& study, const JsonValue& item) {
 
 void require_parameter(const Study& study, const JsonValue& place, const std::string& name) {
   for (const StudyScene& one : study.scenes) {
-    const auto known = std::views::transform(one.scene.parameters, &Parameter::name);
+    const auto known = projected(one.scene.parameters, &Parameter::name);
     if (std::ranges::find(known, name) == known.end())
       place.fail(fmt::format("scene '{}' has no parameter '{}'; it has {}", one.name, name,
                              known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));

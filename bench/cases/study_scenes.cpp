@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <ranges>
 #include <string_view>
 #include <utility>
 
 #include "bench/cases/random_mechanism.h"
 #include "bench/study/cache.h"
 #include "core/input_error.h"
+#include "core/projected.h"
 #include "core/scene_generator.h"
 #include "core/scene_writer.h"
 
@@ -48,7 +48,7 @@ void add_made(Study& study, const JsonValue& item) {
   item.keys("a made scene", {"make", "bodies"});
   const JsonValue structure = item.required("make"), bodies = item.required("bodies");
   const std::string allowed =
-      fmt::format("one of {}", fmt::join(std::views::transform(scene_generators(), &SceneGenerator::name), ", "));
+      fmt::format("one of {}", fmt::join(projected(scene_generators(), &SceneGenerator::name), ", "));
   const SceneGenerator* generator = find_scene_generator(structure.string(allowed));
   if (!generator) structure.expected(allowed);
   constexpr std::int64_t kMost = 10'000'000;

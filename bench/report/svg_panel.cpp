@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "bench/report/html.h"
 #include "bench/study/range.h"
@@ -162,7 +161,7 @@ std::string names_svg(const SvgPanel& panel, const Axis& x, const Axis& y) {
   constexpr double lowest = kHeight - kBottom - 4;
   double free = lowest + line;
   if (!at.empty() && at.back() > lowest)
-    for (double& place : std::views::reverse(at)) free = place = std::min(place, free - line);
+    for (std::size_t k = at.size(); k-- > 0;) free = at[k] = std::min(at[k], free - line);
   std::string text;
   for (std::size_t k = 0; k < ends.size(); ++k)
     text += fmt::format(

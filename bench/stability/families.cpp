@@ -2,10 +2,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
 
 #include "bench/stability/edges.h"
 #include "core/input_error.h"
+#include "core/projected.h"
 
 namespace poinsot::stability {
 
@@ -23,7 +23,7 @@ const Family& require_family(std::string_view name) {
   const auto at = std::ranges::find(families(), name, &Family::name);
   if (at != families().end()) return *at;
   throw InputError(fmt::format("--family: found \"{}\", expected one of {}", name,
-                               fmt::join(std::views::transform(families(), &Family::name), ", ")));
+                               fmt::join(projected(families(), &Family::name), ", ")));
 }
 
 std::vector<const Family*> require_families(const std::vector<std::string>& names) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <ranges>
+#include <numeric>
 
 #include "core/check.h"
 #include "core/index.h"
@@ -12,8 +12,9 @@
 namespace poinsot {
 
 std::vector<int> all_but(std::size_t count, const std::vector<int>& some) {
-  std::vector<int> others;
-  std::ranges::set_difference(std::views::iota(0, static_cast<int>(count)), some, std::back_inserter(others));
+  std::vector<int> all(count), others;
+  std::iota(all.begin(), all.end(), 0);
+  std::ranges::set_difference(all, some, std::back_inserter(others));
   return others;
 }
 
