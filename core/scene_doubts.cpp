@@ -100,9 +100,10 @@ void tell_axes(const Model& model, std::vector<std::string>& sentences) {
     const std::pair bodies(i, j);
     const Hinge* nearest = nullptr;
     double least = HUGE_VAL;  // rad
-    for (const Hinge& hinge : std::ranges::equal_range(hinges, bodies, {}, &Hinge::bodies))
-      if (const double apart = std::atan2(hinge.axis.cross(axis).norm(), std::abs(hinge.axis.dot(axis))); apart < least)
-        nearest = &hinge, least = apart;
+    for (auto at = std::ranges::lower_bound(hinges, bodies, {}, &Hinge::bodies);
+         at != hinges.end() && at->bodies == bodies; ++at)
+      if (const double apart = std::atan2(at->axis.cross(axis).norm(), std::abs(at->axis.dot(axis))); apart < least)
+        nearest = &*at, least = apart;
     if (!nearest || least <= kDigits) return;
     if (doubts++ > 0) return;
     const std::string frame_of =
