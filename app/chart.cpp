@@ -135,8 +135,7 @@ int chart(const ChartOptions& options) {
   std::vector<fs::path> written;
   for (const Plot& plot : plots) written.push_back(plot.csv);
   std::vector<std::string> compared = asked.integrators;
-  for (const std::string& name : integrators_of(Analysis::kinematics))
-    if (std::ranges::find(compared, name) == compared.end()) compared.push_back(name);
+  std::ranges::copy(integrators_of(Analysis::kinematics), std::back_inserter(compared));
   if (charts.size() > 1) {
     std::vector<std::string> foot = origin_lines(core);
     foot.push_back(options.quick ? "settings: the reduced set, --quick" : "settings: the full set");
