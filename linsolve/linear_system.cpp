@@ -48,7 +48,16 @@ LinearSystem::LinearSystem(const LinearChoice& choice, Workload workload)
 }
 
 LinearStatus LinearSystem::analyze(const Pattern& pattern) {
+  constexpr int kSmall = 20'000;  // unknowns
+  factored_ = false;
+  if (pattern.n > 0 && pattern == pattern_) return {};
   let_go();
+  LinearStatus status = analyze_anew(pattern);
+  if (status.ok() && pattern.n <= kSmall) pattern_ = pattern;
+  return status;
+}
+
+LinearStatus LinearSystem::analyze_anew(const Pattern& pattern) {
   if (may_reduce_ && SquareJacobian::fits(pattern)) {
     auto jacobian = std::make_unique<SquareJacobian>(solver_->make());
     if (jacobian->analyze(pattern)) {
@@ -62,6 +71,12 @@ LinearStatus LinearSystem::analyze(const Pattern& pattern) {
 }
 
 LinearStatus LinearSystem::factor() {
+  LinearStatus status = factor_at_hand();
+  factored_ = status.ok();
+  return status;
+}
+
+LinearStatus LinearSystem::factor_at_hand() {
   if (!jacobian_) return whole_->factor();
   by_jacobian_ = jacobian_->take_values();
   return by_jacobian_ ? jacobian_->factor() : factor_whole_instead();
@@ -82,11 +97,6 @@ LinearStatus LinearSystem::factor_whole_instead() {
   return whole_->factor();
 }
 
-bool LinearSystem::factored() const {
-  if (by_jacobian_) return jacobian_->factored();
-  return whole_ && whole_->state() == LinearSolver::State::factored;
-}
-
 void LinearSystem::add_work(std::vector<LinearWork>& work) const {
   for (const LinearWork& before : past_) add(before, work);
   if (jacobian_) add(solver_->name, jacobian_->solver(), "G", work);
@@ -99,7 +109,7 @@ void LinearSystem::let_go() {
   past_.swap(all);
   whole_.reset(), jacobian_.reset();
   pattern_ = {};
-  by_jacobian_ = false;
+  by_jacobian_ = factored_ = false;
 }
 
 LinearSystem& LinearSystems::add(Workload workload) {

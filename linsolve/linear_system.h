@@ -41,13 +41,15 @@ class LinearSystem {
   // Throws InputError where a name of the choice is not in its registry.
   explicit LinearSystem(const LinearChoice& choice, Workload workload = Workload::factorizations);
 
+  // Where the pattern is that of before, what was found out of it and of its last values stays: pivots are examined
+  // anew only where the next values need others. Of small systems; others would keep their patterns for nothing.
   LinearStatus analyze(const Pattern& pattern);
   LinearStatus factor();
   LinearStatus solve(std::span<double> b) { return by_jacobian_ ? jacobian_->solve(b) : whole_->solve(b); }
 
   std::span<const int> slots() const { return jacobian_ ? jacobian_->slots() : whole_->slots(); }
   std::span<double> values() { return jacobian_ ? jacobian_->values() : whole_->values(); }
-  bool factored() const;  // solve() may be called
+  bool factored() const { return factored_; }  // solve() may be called
   void add_work(std::vector<LinearWork>& work) const;
   // Gives its memory back. It is to be analyzed anew before it is used again; what it did stays in its work.
   void let_go();
@@ -59,6 +61,8 @@ class LinearSystem {
   }
 
  private:
+  LinearStatus analyze_anew(const Pattern& pattern);
+  LinearStatus factor_at_hand();
   LinearStatus factor_whole_instead();
 
   const LinearSolverEntry* solver_;
@@ -66,9 +70,10 @@ class LinearSystem {
   Workload workload_;
   std::unique_ptr<SquareJacobian> jacobian_;  // where the structure has the form
   std::unique_ptr<LinearSolver> whole_;       // where it has not, or once the values have not
-  Pattern pattern_;                           // beside jacobian_
+  Pattern pattern_;                           // of jacobian_, and of small systems
   bool by_jacobian_ = false;                  // the last factorization
-  std::vector<LinearWork> past_;              // of what was let go
+  bool factored_ = false;
+  std::vector<LinearWork> past_;  // of what was let go
 };
 
 // The linear systems of a run, all of one choice; they live as long as this does.

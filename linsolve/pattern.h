@@ -12,12 +12,16 @@ namespace poinsot {
 struct Block {
   int row, col;    // upper left corner, scalar indices
   int rows, cols;  // shape, at least 1 × 1
+
+  bool operator==(const Block&) const = default;
 };
 
 struct Pattern {
   int n = 0;                  // number of unknowns
   std::vector<Block> blocks;  // in writing order
   std::vector<int> node;      // size n: the body or the group of constraints an unknown belongs to, from 0
+
+  bool operator==(const Pattern&) const = default;
 };
 
 }  // namespace poinsot

@@ -36,47 +36,49 @@ class Separation {
     for (std::size_t k = 0; k < vectors_.size(); ++k) pivot_on(k, largest_of(k));
   }
 
-  // Entries above the limit become pivots, if need be; those of the group of the pivot they replace are preferred.
-  void flatten(double limit, std::span<const int> group) {
-    for (int pass = 0; pass < kPasses; ++pass) {
-      bool any = false;
-      for (std::size_t k = 0; k < vectors_.size(); ++k) {
-        auto best = largest_of(k);
-        if (std::abs(best.second) <= limit) continue;
-        if (!group.empty()) {
-          const auto other = largest_of(k, group, group[index(pivots_[k])]);
-          if (std::abs(other.second) > std::max(1.0, std::abs(best.second) / limit)) best = other;
-        }
-        pivot_on(k, best);
-        any = true;
-      }
-      if (!any) return;
-    }
+  // Entries above `limit` become pivots.
+  void flatten(double limit) {
+    flatten([&](std::size_t k) {
+      const auto best = largest_of(k);
+      return std::abs(best.second) > limit ? best : kNone;
+    });
+  }
+  // Those of the pivot's own group above `own`, and others above `limit`, to which those of the own group are
+  // preferred.
+  void flatten(double own, double limit, std::span<const int> group) {
+    flatten([&](std::size_t k) {
+      const auto best = largest_of(k), other = largest_of(k, group, group[index(pivots_[k])]);
+      const double size = std::abs(best.second);
+      if (std::abs(other.second) > (size > limit ? std::max(1.0, size / limit) : own)) return other;
+      return size > limit ? best : kNone;
+    });
   }
 
   // Pivots by groups, in the order of how many these could have by themselves, and how good ones.
-  void gather(std::span<const int> group) {
+  void gather(const Grouped& grouped) {
     std::map<int, std::vector<int>> columns;  // by group
-    for (const auto& [column, vectors] : having_) columns[group[index(column)]].push_back(column);
+    for (const auto& [column, vectors] : having_) columns[grouped.group[index(column)]].push_back(column);
     struct Worth {
       int pivots;
+      char last;
       double volume;
       int group;
     };
     std::vector<Worth> order;
     for (const auto& [g, of] : columns) {
       const auto [pivots, volume] = worth(of);
-      if (pivots > 0) order.push_back({pivots, volume, g});
+      if (pivots > 0) order.push_back({pivots, grouped.last[index(of.front())], volume, g});
     }
     std::ranges::stable_sort(order, [](const Worth& a, const Worth& b) {
-      return a.pivots != b.pivots ? a.pivots > b.pivots : 0.999 * a.volume > b.volume;
+      if (a.pivots != b.pivots) return a.pivots > b.pivots;
+      return a.last != b.last ? a.last < b.last : 0.999 * a.volume > b.volume;
     });
     std::vector<char> settled(vectors_.size(), 0);
     std::size_t left = vectors_.size();
     for (const Worth& one : order) {
       while (left > 0) {
         std::size_t vector = 0;
-        std::pair<int, double> best{-1, 0.0};
+        std::pair<int, double> best = kNone;
         for (const int column : columns[one.group])
           for (const std::size_t k : having_[column])
             if (const double value = settled[k] ? 0 : find(vectors_[k], column);
@@ -91,6 +93,23 @@ class Separation {
   }
 
  private:
+  static constexpr std::pair<int, double> kNone{-1, 0.0};
+
+  // `pick` says which entry of a vector becomes its pivot.
+  template <typename Pick>
+  void flatten(Pick&& pick) {
+    bool any = true;
+    for (int pass = 0; pass < kPasses && any; ++pass) {
+      any = false;
+      for (std::size_t k = 0; k < vectors_.size(); ++k) {
+        const std::pair<int, double> entry = pick(k);
+        if (entry.first < 0) continue;
+        pivot_on(k, entry);
+        any = true;
+      }
+    }
+  }
+
   static double find(const SparseEntries& z, int column) {
     const auto it = std::ranges::lower_bound(z, column, {}, &std::pair<int, double>::first);
     return it != z.end() && it->first == column ? it->second : 0.0;
@@ -101,7 +120,7 @@ class Separation {
         vectors_[k], [](const auto& x, const auto& y) { return 0.999 * std::abs(x.second) < std::abs(y.second); });
   }
   std::pair<int, double> largest_of(std::size_t k, std::span<const int> group, int of) const {
-    std::pair<int, double> best{-1, 0.0};
+    std::pair<int, double> best = kNone;
     for (const auto& entry : vectors_[k])
       if (group[index(entry.first)] == of && entry.first != pivots_[k] &&
           std::abs(entry.second) >= std::abs(best.second))
@@ -161,7 +180,7 @@ Separation begin(std::vector<SparseEntries>&& vectors) {
   Separation separation(std::move(vectors), std::move(ends));
   if (!separation.too_long()) {
     separation.pivot_on_largest();
-    separation.flatten(kFlat, {});
+    separation.flatten(kFlat);
   }
   return separation;
 }
@@ -201,24 +220,24 @@ std::vector<int> separate(std::vector<SparseEntries>&& vectors) {
   return begin(std::move(vectors)).take_pivots();
 }
 
-std::vector<int> gather(std::vector<SparseEntries>&& vectors, std::span<const int> group) {
+std::vector<int> gather(std::vector<SparseEntries>&& vectors, const Grouped& columns) {
   Separation separation = begin(std::move(vectors));
   if (!separation.too_long()) {
-    separation.gather(group);
-    separation.flatten(kGathered, group);
+    separation.gather(columns);
+    separation.flatten(kGathered, kGathered, columns.group);
   }
   return separation.take_pivots();
 }
 
-void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, std::span<const int> group, double most) {
-  const auto of_group = [&](int column) { return group[index(column)]; };
+void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, const Grouped& columns, double most) {
+  const auto of_group = [&](int column) { return columns.group[index(column)]; };
   const std::vector<int> before = pivots;
   Separation separation(std::move(vectors), std::move(pivots));
   if (!separation.too_long()) {
-    separation.flatten(most, group);
+    separation.flatten(most, kGathered, columns.group);
     if (!std::ranges::equal(before, separation.pivots(), {}, of_group, of_group)) {
-      separation.gather(group);
-      separation.flatten(most, group);
+      separation.gather(columns);
+      separation.flatten(most, kGathered, columns.group);
     }
   }
   pivots = separation.take_pivots();

@@ -14,17 +14,23 @@
 namespace poinsot {
 
 // An entry larger than that takes the place of the pivot.
-inline constexpr double kFlat = 1.5, kGathered = 3.2;
+inline constexpr double kFlat = 1.5, kGathered = 6;
 
 // No entry is above kFlat. Returns the pivots, by vector.
 std::vector<int> separate(std::vector<SparseEntries>&& vectors);
 
-// Pivots of as few groups as are enough, group[k] being that of column k: no entry is above kGathered.
-std::vector<int> gather(std::vector<SparseEntries>&& vectors, std::span<const int> group);
+// By column: its group, and whether that is to be among the last of those that could have as many pivots.
+struct Grouped {
+  std::vector<int> group;
+  std::vector<char> last;
+};
+
+// Pivots of as few groups as are enough: no entry is above kGathered.
+std::vector<int> gather(std::vector<SparseEntries>&& vectors, const Grouped& columns);
 
 // The vectors have their pivots, and entries that have grown since. Others take the place of as few of them as lead
-// back to entries of at most `most`, of the same group where that does.
-void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, std::span<const int> group, double most);
+// back to entries of at most `most` in the pivots' groups, at most kGathered in all.
+void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, const Grouped& columns, double most);
 
 // The parts that are negligible beside the largest entry are left out.
 double largest(const SparseEntries& z);

@@ -36,7 +36,6 @@ class SquareJacobian {
   // After take_values() that said so. The unknown of a failure is one of the whole system.
   LinearStatus factor();
   LinearStatus solve(std::span<double> b);
-  bool factored() const { return solver_->state() == LinearSolver::State::factored; }
   const LinearSolver& solver() const { return *solver_; }
 
  private:

@@ -147,6 +147,31 @@ TEST(LinearSystem, ValuesThatAreNotSymmetricTakeTheWholeMatrix) {
   }
 }
 
+// As where a redundant row takes the place of another of its joint: pivots serve on, old factors do not.
+TEST(LinearSystem, AnalyzedForTheSamePlacesKeepsItsPivots) {
+  SampleSystem other = square(0);
+  for (const std::size_t k : {1u, 2u}) std::ranges::copy(std::vector<double>{1.1, 2, 3, -1.2}, other.block(k).begin());
+  std::swap(other.block(2)[1], other.block(2)[2]);  // stays the transpose
+  for (const LinearSolverEntry& entry : linear_solvers()) {
+    for (const std::string_view system : {"auto", "whole"}) {
+      SCOPED_TRACE(fmt::format("{} {}", entry.name, system));
+      LinearSystems systems({std::string(entry.name), std::string(system)});
+      LinearSystem& linear = systems.add();
+      ASSERT_TRUE(linear.analyze(square(0).pattern).ok());
+      expect_solves(linear, square(0));
+      ASSERT_TRUE(linear.analyze(other.pattern).ok());
+      EXPECT_FALSE(linear.factored());
+      expect_solves(linear, other);
+      ASSERT_EQ(systems.work().size(), 1);
+      EXPECT_EQ(systems.work()[0].factorizations + systems.work()[0].refactorizations, 2);
+      EXPECT_EQ(linear.statistics().analyses, 1);
+      systems.let_go();
+      ASSERT_TRUE(linear.analyze(other.pattern).ok());
+      expect_solves(linear, other);
+    }
+  }
+}
+
 TEST(LinearSystem, ASingularJacobianNamesAnUnknownOfTheWhole) {
   SampleSystem system = square(0);
   system.block(1)[0] = system.block(2)[0] = -6;  // G = [-6 3; 2 -1]

@@ -47,8 +47,7 @@ CarriedMotion carry(const Scene& scene, const Settings& settings) {
 
 class ManyLoops : public ::testing::TestWithParam<std::string> {};
 
-// Long steps turn the loops by as much as wears a choice of rows out: it has to be made anew before. Rows of loops that
-// share nothing but the body that carries them turn with it, and last.
+// Long steps turn the loops by as much as wears a choice of rows out: it has to be made anew before.
 TEST_P(ManyLoops, RejectNoStepsForTheirRows) {
   for (const std::string_view name : {"dopri5", "dop853"}) {
     const auto compare = [&](auto&& make, int count, double end, std::int64_t more) {
@@ -61,11 +60,11 @@ TEST_P(ManyLoops, RejectNoStepsForTheirRows) {
       EXPECT_LE(with.outcome.statistics.rejected_steps, without.outcome.statistics.rejected_steps + more);
       EXPECT_LE(static_cast<double>(with.outcome.statistics.steps),
                 1.03 * static_cast<double>(without.outcome.statistics.steps));
-      return with.exchanges;
+      EXPECT_GT(with.exchanges, 0);
     };
-    for (const int count : {1, 3}) EXPECT_EQ(compare(&Carried::four_bars, count, 5, 0), 0);
-    EXPECT_EQ(compare(&Carried::four_bars, 69, 0.6, 0), 0);  // 207 redundant rows: chosen loop by loop
-    EXPECT_GT(compare(&Carried::ladder, 5, 1.5, 1), 0);      // whose own motion has steps rejected: one more or less
+    for (const int count : {1, 3}) compare(&Carried::four_bars, count, 5, 0);
+    compare(&Carried::four_bars, 69, 0.6, 0);  // 207 redundant rows: chosen loop by loop
+    compare(&Carried::ladder, 5, 1.5, 1);      // whose own motion has steps rejected: one more or less
   }
 }
 
@@ -94,7 +93,7 @@ TEST_P(ManyLoops, MoveAsWithoutRedundancy) {
         EXPECT_LT(off, 1e-5 * largest);
       }
       EXPECT_LT(with.outcome.statistics.violation.position, 1e-11);
-      EXPECT_EQ(with.exchanges > 0, make == &Carried::ladder);
+      EXPECT_GT(with.exchanges, 0);
       EXPECT_LE(static_cast<double>(with.outcome.statistics.steps),
                 1.1 * static_cast<double>(without.outcome.statistics.steps));
     }

@@ -31,10 +31,10 @@ TEST(Separation, KeepsEntriesSmall) {
   std::normal_distribution<double> normal;
   for (int k = 0; k < 50; ++k) {
     const Eigen::MatrixXd Z = Eigen::MatrixXd::NullaryExpr(30, 6, [&] { return normal(random); });
-    std::vector<int> group(30);
-    for (std::size_t i = 0; i < group.size(); ++i) group[i] = static_cast<int>(i) / 5;
-    EXPECT_LE(largest_entry(Z, separate(vectors_of(Z))), 1.5 + 1e-9);
-    EXPECT_LE(largest_entry(Z, gather(vectors_of(Z), group)), 3.2 + 1e-9);
+    Grouped columns{std::vector<int>(30), std::vector<char>(30)};
+    for (std::size_t i = 0; i < 30; ++i) columns.group[i] = static_cast<int>(i) / 5;
+    EXPECT_LE(largest_entry(Z, separate(vectors_of(Z))), kFlat + 1e-9);
+    EXPECT_LE(largest_entry(Z, gather(vectors_of(Z), columns)), kGathered + 1e-9);
   }
 }
 
@@ -42,23 +42,25 @@ TEST(Separation, KeepsEntriesSmall) {
 TEST(Separation, GathersInOneGroup) {
   Eigen::MatrixXd Z(9, 2);
   Z << 0.9, 0.3, 0.2, 0.7, 0.5, 0.1, /**/ 1, 0, 0.2, 1, 0.3, 0.1, /**/ 0.4, 0.8, 0.9, 0.2, 0.1, 0.3;
-  const std::vector<int> group{0, 0, 0, 1, 1, 1, 2, 2, 2};
-  EXPECT_THAT(gather(vectors_of(Z), group), UnorderedElementsAre(3, 4));
+  Grouped columns{{0, 0, 0, 1, 1, 1, 2, 2, 2}, std::vector<char>(9)};
+  EXPECT_THAT(gather(vectors_of(Z), columns), UnorderedElementsAre(3, 4));
+  columns.last = {0, 0, 0, 1, 1, 1, 0, 0, 0};  // the next best
+  EXPECT_THAT(gather(vectors_of(Z), columns), UnorderedElementsAre(6, 7));
 }
 
 TEST(Separation, RepairsWithinTheGroup) {
-  const std::vector<int> group{0, 0, 1, 1};
-  std::vector<int> pivots{1};
-  repair({{{0, 1.6}, {1, 1}, {2, 3}, {3, 0.5}}}, pivots, group, kGathered);
-  EXPECT_THAT(pivots, ElementsAre(1));  // nothing has grown to more than it may
-  repair({{{0, 1.6}, {1, 1}, {2, 3}, {3, 0.5}}}, pivots, group, kFlat);
-  EXPECT_THAT(pivots, ElementsAre(2));
-  pivots = {1};
-  repair({{{0, 1.6}, {1, 1}, {2, 5}, {3, 0.5}}}, pivots, group, kGathered);
-  EXPECT_THAT(pivots, ElementsAre(0));
-  pivots = {1};
-  repair({{{0, 1.2}, {1, 1}, {2, 5}, {3, 0.5}}}, pivots, group, kGathered);
-  EXPECT_THAT(pivots, ElementsAre(2));  // 5/1.2 would be too large again
+  const Grouped columns{{0, 0, 1, 1}, std::vector<char>(4)};
+  const auto repaired = [&](std::vector<double> entries, double most) {
+    SparseEntries vector;
+    for (int k = 0; k < 4; ++k) vector.emplace_back(k, entries[static_cast<std::size_t>(k)]);
+    std::vector<int> pivots{1};
+    repair({vector}, pivots, columns, most);
+    return pivots.front();
+  };
+  EXPECT_EQ(repaired({1.6, 1, 3, 0.5}, 3), 1);    // nothing has grown to more than it may
+  EXPECT_EQ(repaired({1.6, 1, 3, 0.5}, 1.5), 0);  // of the own group
+  EXPECT_EQ(repaired({1.6, 1, 9, 0.5}, 3), 0);
+  EXPECT_EQ(repaired({1.2, 1, 9, 0.5}, 3), 2);  // 9/1.2 would be too large again
 }
 
 }  // namespace

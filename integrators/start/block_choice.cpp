@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/index.h"
-#include "integrators/start/aside_weights.h"
+#include "integrators/start/grouped_rows.h"
 #include "linsolve/column_dependencies.h"
 
 namespace poinsot {
@@ -15,13 +15,17 @@ namespace {
 // Coefficient at which rows are chosen anew, and as large as it may become. Two directions at right angles of which one
 // is set aside have the coefficient cot α when the redundant one is α from the row that is kept in its place. Of two
 // bodies that turn against one another α changes by kTurnsMost what each turns; as a rule much less: after a look by no
-// more than kTurnsMore times what it changed by since the one before, but by kTurnsLittle.
-constexpr double kWorn = 6, kWorst = 20;
-constexpr double kTurnsMost = 2, kTurnsLittle = 1, kTurnsMore = 3;
+// more than kTurnsMore times what it changed by since the one before, but by kTurnsLittle. Error control sees what its
+// long steps do to rows whose coefficients are large; in large blocks an exchange costs more than that.
+constexpr double kWorn = 12, kWornForLong = 4, kWorst = 40;
+constexpr double kLongStep = 0.05;  // rad
+constexpr std::size_t kFew = 20;    // rows set aside
+constexpr double kTurnsMost = 2, kTurnsLittle = 0.5, kTurnsMore = 3;
 // Long steps turn bodies by as much as wears a choice out at once: what it changed by in the last one, and somewhat
 // more, is left to it before the next, and a few times that to a new choice.
 constexpr double kSooner = 1.3, kStays = 2.5;
-constexpr double kNothing = 1e-12;  // of a coefficient beside the row set aside
+constexpr double kLeastTurn = 0.05;  // rad, between two looks
+constexpr double kNothing = 1e-12;   // of a coefficient beside the row set aside
 constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
 constexpr double kGain = 2;       // times better is a choice of clearest rows that is worth an exchange
@@ -52,10 +56,9 @@ BlockChoice::BlockChoice(const Model& model, const RowSpace& space, std::vector<
   for (int k = 0; k < static_cast<int>(rows_.size()); ++k) {
     const int row = row_of(space, k);
     of_model.push_back(row);
-    group_.push_back(model.rows[index(row)].group);
     if (std::ranges::binary_search(aside, row)) left_out.push_back(k);
   }
-  weight_ = aside_weights(model, of_model);
+  grouped_ = grouped_rows(model, of_model);
   keep_others(left_out);
 }
 
@@ -78,13 +81,16 @@ void BlockChoice::keep_others(const std::vector<int>& left_out) {
 }
 
 // C_ for the rows kept; false, and 0, where these are not independent.
-bool BlockChoice::find_coefficients() {
+bool BlockChoice::find_coefficients(int refinements) {
   if (small()) {
-    if (small_.find(rows_, kept_, left_out_, C_)) return true;
+    if (small_.find(rows_, kept_, left_out_, C_)) {
+      for (int r = 0; r < refinements; ++r) small_.refine(rows_, kept_, left_out_, C_);
+      return true;
+    }
   } else if (sparse_->factor(rows_)) {
     Eigen::MatrixXd F = Eigen::MatrixXd::Zero(rows_.variables(), static_cast<Eigen::Index>(left_out_.size()));
     for (std::size_t d = 0; d < left_out_.size(); ++d) rows_.add(1, left_out_[d], F.col(static_cast<Eigen::Index>(d)));
-    C_ = sparse_->find(rows_, F, 1);
+    C_ = sparse_->find(rows_, F, refinements);
     if (C_.allFinite()) return true;
   }
   C_.setZero(static_cast<Eigen::Index>(kept_.size()), static_cast<Eigen::Index>(left_out_.size()));
@@ -106,12 +112,15 @@ std::vector<SparseEntries> BlockChoice::unit_null_vectors() const {
 
 double BlockChoice::worst() {
   if (!small()) return estimate(rows_, *sparse_, left_out_);
-  return find_coefficients() ? C_.cwiseAbs().maxCoeff() : HUGE_VAL;
+  return find_coefficients(0) ? C_.cwiseAbs().maxCoeff() : HUGE_VAL;
 }
 
 double BlockChoice::turn_until_worst(double rate) const {
-  constexpr double kLeast = 0.05;
-  return std::max((angle(worst_) - angle(kWorst / kWorn * worn_)) / rate, kLeast);
+  return std::max((angle(worst_) - angle(kWorst / kWorn * worn_)) / rate, kLeastTurn);
+}
+
+double BlockChoice::turn_until_worn() const {
+  return std::max((angle(worst_) - angle(worn_)) / (kSooner * fastest_), kLeastTurn);
 }
 
 void BlockChoice::look(const RowSpace& space) {
@@ -127,38 +136,32 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead) {
   const double before = angle(worst_);
   look(space);
   const double change = turned > 0 ? (before - angle(worst_)) / turned : 0, soon = std::max(change, 0.0) * ahead;
+  fastest_ = std::max(fastest_, change);
+  const double limit = ahead > kLongStep && left_out_.size() <= kFew ? kWornForLong : kWorn;
+  worn_ = std::max(limit, given_);
   const bool will_be = has_coefficients() && angle(worst_) - kSooner * soon < angle(worn_);
   if (!worn() && !will_be) {
     const double rate = kTurnsMore * std::abs(change);
-    worn_ = std::max(kWorn, std::min(worn_, kGrowth * worst_));
+    given_ = std::min(given_, kGrowth * worst_);
     good_for_ = turn_until_worst(std::clamp(rate, kTurnsLittle, kTurnsMost));
+    if (limit < kWorn) good_for_ = std::min(good_for_, turn_until_worn());
     return false;
   }
-  const double lasts = std::min(angle(kWorn) + kStays * soon, angle(kFlat));
+  const double lasts = std::min(angle(limit) + kStays * soon, angle(kFlat));
   const double most = std::min(1 / std::tan(lasts), kGathered);
   const bool exchanged = has_coefficients() && std::isfinite(worst_) ? exchange(most) : choose_clearest(space);
-  worn_ = std::isfinite(worst_) ? std::max(kWorn, kGrowth * worst_) : kWorn;
+  given_ = std::isfinite(worst_) ? kGrowth * worst_ : 0;
+  worn_ = std::max(limit, given_);
   good_for_ = turn_until_worst(kTurnsMost);
   return exchanged;
 }
 
 bool BlockChoice::exchange(double most) {
-  const std::vector<int> before = left_out_;
-  for (const bool weighted : {true, false}) {
-    if (small())
-      small_.refine(rows_, kept_, left_out_, C_);
-    else
-      find_coefficients();
-    std::vector<SparseEntries> vectors = unit_null_vectors();
-    for (std::size_t d = 0; weighted && d < vectors.size(); ++d)
-      for (auto& [k, value] : vectors[d]) value *= weight_[index(k)] / weight_[index(left_out_[d])];
-    std::vector<int> chosen = left_out_;
-    repair(std::move(vectors), chosen, group_, most);
-    std::ranges::sort(chosen);
-    if (chosen != left_out_ && !take(chosen, HUGE_VAL)) break;
-    if (worst_ <= kWorn) break;  // rows that are rather not set aside have no coefficient that is too large
-  }
-  return left_out_ != before;
+  if (!small()) find_coefficients(0);
+  std::vector<int> chosen = left_out_;
+  repair(unit_null_vectors(), chosen, grouped_, most);
+  std::ranges::sort(chosen);
+  return chosen != left_out_ && take(chosen, HUGE_VAL);
 }
 
 bool BlockChoice::choose_clearest(const RowSpace& space) {
@@ -201,8 +204,7 @@ void BlockChoice::carry_over(const RowSpace& space, std::span<double> lambda) {
 void BlockChoice::add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors) {
   if (!watched_ || !has_coefficients()) return;
   rows_.stand(space);
-  if (!find_coefficients()) return;
-  if (small()) small_.refine(rows_, kept_, left_out_, C_);
+  if (!find_coefficients(1)) return;
   for (SparseEntries& z : unit_null_vectors()) {
     for (auto& [k, value] : z) {
       value /= space.lengths()[index(rows_.place_in_space(k))];

@@ -61,7 +61,8 @@ class BlockChoice {
   bool has_coefficients() const;
   double worst();
   double turn_until_worst(double rate) const;
-  bool find_coefficients();
+  double turn_until_worn() const;
+  bool find_coefficients(int refinements);
   void keep_others(const std::vector<int>& left_out);
   bool exchange(double most);
   bool choose_clearest(const RowSpace& space);
@@ -70,15 +71,16 @@ class BlockChoice {
 
   BlockRows rows_;  // all that follow by their places here
   bool watched_;
-  std::vector<int> group_;      // by row
-  std::vector<double> weight_;  // by row (aside_weights.h)
+  Grouped grouped_;
   std::vector<int> kept_, left_out_;
   SmallCoefficients small_;
   std::unique_ptr<SparseCoefficients> sparse_;  // of blocks that are not small
   Eigen::MatrixXd C_;                           // kept × left out
   double worst_ = 0;                            // the largest coefficient where last looked at, or what stands for it
   double worn_;                                 // from here on a choice is worn out
+  double given_ = 0;                            // what it is allowed to be, where others were no better
   double good_for_ = 0;
+  double fastest_ = 0.3;  // that the angle of the largest coefficient has changed by a turn; to begin with a guess
 };
 
 }  // namespace poinsot

@@ -31,6 +31,15 @@ class BlockRows {
         for (const int l : of_body_[body]) function(l);
   }
   double dot(int k, int l) const;
+  // Calls function(k, l, product) for what each body has to g_k · g_l, every pair of rows on it once.
+  template <typename Function>
+  void for_each_product(Function&& function) const {
+    for (int body = 0; body < of_body_.size(); ++body) {
+      const std::span<const int> rows = of_body_[body];
+      for (auto k = rows.begin(); k != rows.end(); ++k)
+        for (auto l = k; l != rows.end(); ++l) function(*k, *l, part(*k, body).dot(part(*l, body)));
+    }
+  }
   // f ← f + factor g_k
   void add(double factor, int k, Eigen::Ref<Eigen::VectorXd> f) const;
   // g_k · f
@@ -41,10 +50,15 @@ class BlockRows {
  private:
   int place_of_body(int body) const;
 
+  using Part = Eigen::Matrix<double, 6, 1>;
   struct Parts {
     int body[2] = {-1, -1};  // place of it, −1: none
-    Eigen::Matrix<double, 6, 1> part[2];
+    Part part[2];
   };
+  const Part& part(int k, int body) const {
+    const Parts& of = parts_[static_cast<std::size_t>(k)];
+    return of.part[of.body[0] == body ? 0 : 1];
+  }
   std::vector<int> rows_;    // of the space
   std::vector<int> bodies_;  // ascending
   Lists of_body_;            // rows

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/index.h"
-#include "integrators/start/aside_weights.h"
 #include "integrators/start/block_choice.h"
+#include "integrators/start/grouped_rows.h"
 #include "integrators/start/row_blocks.h"
 #include "linsolve/separation.h"
 
@@ -23,12 +23,7 @@ class Choice {
       : model_(model), rows_(rows), columns_(columns), blocks_(row_blocks(model, rows)) {}
 
   std::vector<int> at_once(std::vector<SparseEntries>&& vectors) const {
-    std::vector<double> weight(rows_.size());
-    for (int b = 0; b < blocks_.size(); ++b) {
-      const std::vector<double> of_block = aside_weights(model_, rows_of(blocks_[b]));
-      for (std::size_t k = 0; k < of_block.size(); ++k) weight[index(blocks_[b][k])] = of_block[k];
-    }
-    return gathered(std::move(vectors), weight, rows_);
+    return gather(std::move(vectors), grouped_rows(model_, rows_));
   }
 
   // `dependent`: as many as are to be found.
@@ -49,8 +44,7 @@ class Choice {
   void choose(std::span<const int> block, double tolerance, std::vector<int>& dependent) const {
     NullSpace null = few_null_vectors(columns_of(block), tolerance);
     if (null.vectors.size() != dependent.size()) return;
-    const std::vector<int> of_model = rows_of(block);
-    dependent = gathered(std::move(null.vectors), aside_weights(model_, of_model), of_model);
+    dependent = gather(std::move(null.vectors), grouped_rows(model_, rows_of(block)));
     for (int& k : dependent) k = block[index(k)];
   }
 
@@ -69,16 +63,6 @@ class Choice {
     Sparse part(static_cast<Eigen::Index>(touched.size()), static_cast<Eigen::Index>(block.size()));
     part.setFromTriplets(entries.begin(), entries.end());
     return part;
-  }
-
-  // `rows`: of the model, by what vectors refer to.
-  std::vector<int> gathered(std::vector<SparseEntries>&& vectors, const std::vector<double>& weight,
-                            std::span<const int> rows) const {
-    std::vector<int> group;
-    for (const int row : rows) group.push_back(model_.rows[index(row)].group);
-    for (SparseEntries& z : vectors)
-      for (auto& [k, value] : z) value *= weight[index(k)];
-    return gather(std::move(vectors), group);
   }
 
   std::vector<int> rows_of(std::span<const int> block) const {

@@ -1,6 +1,5 @@
 // Which of the rows of loops to set aside where some are combinations of others: as many as depend on others, of as
-// few joints as keeps the rows left nearly as independent as any choice would (linsolve/separation.h), and from each
-// loop rather those that stay redundant as it turns (aside_weights.h).
+// few joints as keeps the rows left nearly as independent as any choice would (grouped_rows.h).
 #pragma once
 
 #include <Eigen/SparseCore>

@@ -39,6 +39,8 @@ OverConstrained::OverConstrained(const OverConstrained& other)
       kept_(other.kept_->clone()),
       t_(other.t_),
       accepted_at_(other.accepted_at_),
+      way_(other.way_),
+      ahead_(other.ahead_),
       now_(other.now_) {
   watch();
 }
@@ -109,10 +111,13 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
   }
   kept_->to_bodies(a, now_);
   if (Status status = measure(t); !status.ok()) return status;
-  const double turn = turned(), h = std::max(t - std::exchange(accepted_at_, t), 0.0),
-               ahead = h * kept_->fastest_turn();
-  if (turn + ahead < std::min(choice_->rows.good_for(), kLookedAgain)) return {};
-  const bool others = choice_->rows.renew(t, now_, turn, ahead);
+  const double h = std::max(t - std::exchange(accepted_at_, t), 0.0), ahead = h * kept_->fastest_turn();
+  const double good_for = std::min(choice_->rows.good_for(), kLookedAgain);
+  way_ += std::max(ahead, std::exchange(ahead_, ahead));
+  if (way_ + ahead < good_for) return {};
+  way_ = turned();
+  if (way_ + ahead < good_for) return {};
+  const bool others = choice_->rows.renew(t, now_, std::exchange(way_, 0.0), ahead);
   choice_->at = now_;
   if (!others) return {};
   rewritten = true;

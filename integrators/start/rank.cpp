@@ -43,7 +43,7 @@ class Examination {
     }
     here_ = few_null_vectors(space_->columns(), kIndependent);
     if (here_.columns.empty()) return std::move(result_);
-    without_ = chosen(here_);
+    without_ = here_.from <= kDependent ? gathered(space_->columns(), here_, kDependent) : chosen(here_);
     look_beside();
     return std::move(result_);
   }
@@ -53,6 +53,10 @@ class Examination {
   std::vector<int> chosen(NullSpace null) const { return of_model(choose(std::move(null))); }
   static std::vector<int> choose(NullSpace null) {
     return many(null) ? std::move(null.columns) : separate(std::move(null.vectors));
+  }
+  // The same of few joints, of which runs set rows aside: systems of their structure are then known already.
+  std::vector<int> gathered(const Sparse& columns, const NullSpace& null, double tolerance) const {
+    return of_model(rows_of_few_groups(*model_, space_->rows(), columns, null, tolerance));
   }
   std::vector<int> of_model(std::vector<int> columns) const {
     for (int& column : columns) column = space_->rows()[index(column)];
@@ -127,8 +131,12 @@ class Examination {
     }
     tell_undetermined(columns, null);
     // Beside rows that are barely independent nothing of the others' independence is to be given away.
-    result_.aside = result_.doubt > 0 ? chosen(null)
-                                      : of_model(rows_of_few_groups(*model_, space_->rows(), columns, null, tolerance));
+    if (result_.doubt > 0) {
+      result_.aside = chosen(null);
+    } else {
+      const bool known = here_.from <= kDependent && tolerance == kDependent;
+      result_.aside = known ? without_ : gathered(columns, null, tolerance);
+    }
     result_.aside_here = result_.aside;
     result_.rank = static_cast<int>(model_->rows.size() - result_.aside.size());
     result_.rank_here = result_.rank;

@@ -1,5 +1,6 @@
 #include "integrators/start/small_coefficients.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/index.h"
@@ -7,41 +8,38 @@
 namespace poinsot {
 namespace {
 
-// Cholesky's factor of a Gram matrix of some dozens of rows, L of A = L Lᵀ in the place of A's lower triangle; false
-// where A is not positive definite. The zeros of such matrices, whose rows act on two bodies each, are passed over.
+// Cholesky's factor of a Gram matrix of some dozens of rows, L of A = L Lᵀ in the place of A's lower triangle, and
+// B L⁻ᵀ in the place of the rows B below A; false where A is not positive definite. The zeros of such matrices, whose
+// rows act on two bodies each, are passed over.
 bool small_cholesky(Eigen::MatrixXd& A) {
-  const Eigen::Index n = A.cols();
+  const Eigen::Index n = A.cols(), rows = A.rows();
   for (Eigen::Index j = 0; j < n; ++j) {
     double* column = &A(j, j);
     for (Eigen::Index k = 0; k < j; ++k) {
       const double factor = A(j, k);
       if (factor == 0) continue;
       const double* other = &A(j, k);
-      for (Eigen::Index i = 0; i < n - j; ++i) column[i] -= factor * other[i];
+      for (Eigen::Index i = 0; i < rows - j; ++i) column[i] -= factor * other[i];
     }
     if (!(column[0] > 0)) return false;
     const double by = 1 / std::sqrt(column[0]);
-    for (Eigen::Index i = 0; i < n - j; ++i) column[i] *= by;
+    for (Eigen::Index i = 0; i < rows - j; ++i) column[i] *= by;
   }
   return true;
 }
 
-// X ← L⁻ᵀ L⁻¹ X.
-void small_cholesky_solve(const Eigen::MatrixXd& L, Eigen::MatrixXd& X) {
+// x ← L⁻¹ x and x ← L⁻ᵀ x, L being the first rows of what small_cholesky() made.
+void forward(const Eigen::MatrixXd& L, Eigen::Ref<Eigen::VectorXd> x) {
   const Eigen::Index n = L.cols();
-  for (Eigen::Index c = 0; c < X.cols(); ++c) {
-    double* x = X.col(c).data();
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const double* column = L.col(j).data();
-      x[j] /= column[j];
-      if (x[j] == 0) continue;
-      for (Eigen::Index i = j + 1; i < n; ++i) x[i] -= x[j] * column[i];
-    }
-    for (Eigen::Index j = n; j-- > 0;) {
-      const auto below = n - j - 1;
-      x[j] = (x[j] - L.col(j).tail(below).dot(X.col(c).tail(below))) / L(j, j);
-    }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    x[j] /= L(j, j);
+    if (x[j] != 0) x.tail(n - j - 1) -= x[j] * L.col(j).segment(j + 1, n - j - 1);
   }
+}
+void backward(const Eigen::MatrixXd& L, Eigen::Ref<Eigen::VectorXd> x) {
+  const Eigen::Index n = L.cols();
+  for (Eigen::Index j = n; j-- > 0;)
+    x[j] = (x[j] - L.col(j).segment(j + 1, n - j - 1).dot(x.tail(n - j - 1))) / L(j, j);
 }
 
 }  // namespace
@@ -49,37 +47,34 @@ void small_cholesky_solve(const Eigen::MatrixXd& L, Eigen::MatrixXd& X) {
 bool SmallCoefficients::find(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out,
                              Eigen::MatrixXd& C) {
   const auto n = static_cast<Eigen::Index>(kept.size()), m = static_cast<Eigen::Index>(left_out.size());
-  place_.assign(rows.size(), -1);
-  for (Eigen::Index j = 0; j < n; ++j) place_[index(kept[index(j)])] = static_cast<int>(j);
-  gram_.resize(n, n), C.setZero(n, m);
-  const auto fill = [&](int k, Eigen::Index from, auto&& column) {
-    rows.for_each_beside(k, [&](int l) {
-      const int place = place_[index(l)];
-      if (place >= from) column[place] = rows.dot(k, l);
-    });
-  };
-  for (Eigen::Index j = 0; j < n; ++j) {
-    gram_.col(j).tail(n - j).setZero();
-    fill(kept[index(j)], j, gram_.col(j));
+  place_.resize(rows.size());
+  for (Eigen::Index j = 0; j < n; ++j) place_[index(kept[index(j)])] = j;
+  for (Eigen::Index d = 0; d < m; ++d) place_[index(left_out[index(d)])] = n + d;
+  L_.setZero(n + m, n), C.setZero(n, m);
+  rows.for_each_product([&](int k, int l, double product) {
+    const auto [j, i] = std::minmax(place_[index(k)], place_[index(l)]);
+    if (j < n) L_(i, j) += product;
+  });
+  if (!small_cholesky(L_)) return false;
+  for (Eigen::Index d = 0; d < m; ++d) {
+    C.col(d) = L_.row(n + d).transpose();
+    backward(L_, C.col(d));
   }
-  for (Eigen::Index d = 0; d < m; ++d) fill(left_out[index(d)], 0, C.col(d));
-  if (!small_cholesky(gram_)) return false;
-  small_cholesky_solve(gram_, C);
   return C.allFinite();
 }
 
 void SmallCoefficients::refine(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out,
                                Eigen::MatrixXd& C) const {
-  Eigen::MatrixXd change(C.rows(), C.cols());
-  Eigen::VectorXd left(rows.variables());
+  Eigen::VectorXd left(rows.variables()), change(C.rows());
   for (Eigen::Index d = 0; d < C.cols(); ++d) {
     left.setZero();
     rows.add(1, left_out[index(d)], left);
     for (Eigen::Index k = 0; k < C.rows(); ++k) rows.add(-C(k, d), kept[index(k)], left);
-    for (Eigen::Index k = 0; k < C.rows(); ++k) change(k, d) = rows.share(kept[index(k)], left);
+    for (Eigen::Index k = 0; k < C.rows(); ++k) change[k] = rows.share(kept[index(k)], left);
+    forward(L_, change);
+    backward(L_, change);
+    C.col(d) += change;
   }
-  small_cholesky_solve(gram_, change);
-  C += change;
 }
 
 }  // namespace poinsot

@@ -11,7 +11,7 @@ namespace poinsot {
 
 class SmallCoefficients {
  public:
-  static constexpr std::size_t kMost = 120;  // rows kept; with more, sparse matrices are faster
+  static constexpr std::size_t kMost = 50;  // rows kept; with more, sparse matrices are faster
 
   // C, kept × left out, where `rows` stand; false where the rows kept are not independent.
   bool find(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out, Eigen::MatrixXd& C);
@@ -20,8 +20,8 @@ class SmallCoefficients {
               Eigen::MatrixXd& C) const;
 
  private:
-  std::vector<int> place_;  // by row: among those kept, −1 where it is not
-  Eigen::MatrixXd gram_;    // the lower triangle's Cholesky factor
+  std::vector<Eigen::Index> place_;  // by row: among those kept, then those left out
+  Eigen::MatrixXd L_;                // of G_K G_Kᵀ = L Lᵀ, and below it (L⁻¹ G_K g_d)ᵀ by row left out
 };
 
 }  // namespace poinsot

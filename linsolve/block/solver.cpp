@@ -9,7 +9,7 @@
 //   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
 //
 // Where the fresh one left more than rounding, solutions are looked at, too: all of them where it left much, else all
-// until they turn out good without refinement. After a few that did not, pivot blocks are inverted no more (pivots.h).
+// until they turn out good without refinement. Where too many did not, pivot blocks are inverted no more (pivots.h).
 //
 // Where this does not lead to a trustworthy answer the same values are handed over to klu, whose word counts, singular
 // included; so are all matrices without a saddle point's symmetric structure (kinematics). Each is counted, and
@@ -49,10 +49,12 @@ constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not a
 // another order may do without; at the second no more than 6, of which refinement may converge to anything.
 constexpr double kCancelled = 1e-6, kRounding = 1e-10;
 // Solutions along a motion are like one another. Where the residuals of random right sides are within what is accepted
-// and those of so many solutions in a row were good, one in so many is looked at; both steps of two Newton iterations
-// come by turns, the second number being odd.
-constexpr int kCalm = 8, kSeldom = 7;
-constexpr int kOften = 8;        // so many solutions that needed refinement: inverses of pivot blocks may be the cause
+// and those of so many solutions in a row were good, one in so many is looked at, and fewer later; both steps of two
+// Newton iterations come by turns, these numbers being odd.
+constexpr int kCalm = 8, kSeldom = 7, kLongCalm = 15 * kSeldom, kRarely = 3 * kSeldom;
+// Where so many solutions needed refinement, and of those looked at one in so many, inverses of pivot blocks may be the
+// cause; to factor these in their place costs about as much as that refinement.
+constexpr int kOften = 8, kShare = 10;
 constexpr int kRefinements = 3;  // each gains three digits or more of kFairResidual; beyond, they do not converge
 constexpr int kRepairs = 8;      // each fuses all that is bad at the time and costs an analysis
 constexpr int kPatience = 3;     // times in a row that klu has to help before it takes over
@@ -96,7 +98,7 @@ class Solver final : public LinearSolver {
 
   LinearStatus do_factor() override {
     if (answer_ == Answer::handed_over) return factor_by_klu();
-    if (refined_ >= kOften) factor_.drop_inverses();
+    if (refined_ >= kOften && refined_ * kShare > looked_at_) factor_.drop_inverses();
     const bool examined = answer_ == Answer::trusted || answer_ == Answer::sampled || answer_ == Answer::checked;
     const Drift drift = factor_.factor(*schedule_, values_, examined);
     if (!examined || !within(drift, kFar)) return factor_fresh();
@@ -215,7 +217,7 @@ class Solver final : public LinearSolver {
 
   LinearStatus do_solve(std::span<double> b) override {
     if (answer_ == Answer::helped || answer_ == Answer::handed_over) return klu_->solve(b);
-    if (answer_ == Answer::trusted || (answer_ == Answer::sampled && good_ >= kCalm && good_ % kSeldom != 0)) {
+    if (answer_ == Answer::trusted || (answer_ == Answer::sampled && passes_unseen())) {
       ++good_;
       factor_.solve(*schedule_, b);
       return {};
@@ -223,6 +225,7 @@ class Solver final : public LinearSolver {
     b_.assign(b.begin(), b.end());
     factor_.solve(*schedule_, b);
     const double size = residual(b_, b);
+    ++looked_at_;
     ++good_;
     if (size <= kGoodResidual) return {};
     good_ = 0;
@@ -237,6 +240,8 @@ class Solver final : public LinearSolver {
     if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
     return klu_->solve(b);
   }
+
+  bool passes_unseen() const { return good_ >= kCalm && good_ % (good_ < kLongCalm ? kSeldom : kRarely) != 0; }
 
   // Corrects x, whose residual for b_ was found, until the residual is small, a few times at most; the residual.
   double refine(std::span<double> x, std::int64_t& corrections) {
@@ -289,8 +294,8 @@ class Solver final : public LinearSolver {
   Answer answer_ = Answer::open;
   Answer near_ = Answer::trusted;  // with pivots near those of the last fresh factorization, by what that one left
   std::int64_t good_ = 0;          // solutions since one was not, as far as was looked
-  int refined_ = 0;                // solutions that needed it, of whatever pattern
-  int helped_ = 0;                 // by klu, times in a row
+  std::int64_t looked_at_ = 0, refined_ = 0;  // solutions of whatever pattern, and those that needed refinement
+  int helped_ = 0;                            // by klu, times in a row
 };
 
 }  // namespace
