@@ -23,13 +23,14 @@ constexpr std::size_t kFew = 20;    // rows set aside
 constexpr double kTurnsMost = 2, kTurnsLittle = 0.5, kTurnsMore = 3;
 // Long steps turn bodies by as much as wears a choice out at once: what it changed by in the last one, and somewhat
 // more, is left to it before the next, and a few times that to a new choice.
-constexpr double kSooner = 1.3, kStays = 2.5;
+constexpr double kSooner = 1.6, kStays = 2.5;
 constexpr double kLeastTurn = 0.05;  // rad, between two looks
 constexpr double kNothing = 1e-12;   // of a coefficient beside the row set aside
 constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
 constexpr double kGain = 2;       // times better is a choice of clearest rows that is worth an exchange
-constexpr double kGrowth = 1.25;  // of a worn choice that is the best one found: then others are looked for again
+constexpr double kForgotten = 0.8;  // of how fast a choice has worn before
+constexpr double kGrowth = 1.5;  // of a worn choice that is the best one found: then others are looked for again
 
 double angle(double coefficient) {
   return std::atan(1 / coefficient);
@@ -136,7 +137,7 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead) {
   const double before = angle(worst_);
   look(space);
   const double change = turned > 0 ? (before - angle(worst_)) / turned : 0, soon = std::max(change, 0.0) * ahead;
-  fastest_ = std::max(fastest_, change);
+  fastest_ = std::max(kForgotten * fastest_, change);
   const double limit = ahead > kLongStep && left_out_.size() <= kFew ? kWornForLong : kWorn;
   worn_ = std::max(limit, given_);
   const bool will_be = has_coefficients() && angle(worst_) - kSooner * soon < angle(worn_);
