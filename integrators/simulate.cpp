@@ -15,6 +15,7 @@
 #include "formulations/registry.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/settings_reader.h"
+#include "integrators/settings_table.h"
 #include "integrators/signals.h"
 #include "integrators/start/driven_pose.h"
 #include "integrators/start/first_state.h"
@@ -120,7 +121,8 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
 
   std::unique_ptr<Problem> problem = formulation.make(model, start.rank.aside);
   if (!start.rank.aside.empty())
-    problem = std::make_unique<OverConstrained>(std::move(problem), model, start.rank.aside, start.bodies);
+    problem = std::make_unique<OverConstrained>(std::move(problem), model, start.rank.aside, start.bodies,
+                                                chooses_steps(settings) ? Steps::error_controlled : Steps::fixed);
   if (settings.analysis == Analysis::kinematics) refuse_free_motion(*problem);
   State state(*problem);
   outcome.status = find_first_state(start, settings, *problem, state);

@@ -16,10 +16,9 @@ namespace {
 // is set aside have the coefficient cot α when the redundant one is α from the row that is kept in its place. Of two
 // bodies that turn against one another α changes by kTurnsMost what each turns; as a rule much less: after a look by no
 // more than kTurnsMore times what it changed by since the one before, but by kTurnsLittle. Error control sees what its
-// long steps do to rows whose coefficients are large; in large blocks an exchange costs more than that.
-constexpr double kWorn = 12, kWornForLong = 4, kWorst = 40;
-constexpr double kLongStep = 0.05;  // rad
-constexpr std::size_t kFew = 20;    // rows set aside
+// steps leave of rows whose coefficients are large; in large blocks an exchange costs more than that.
+constexpr double kWorn = 12, kWornForControl = 4, kWorst = 40;
+constexpr std::size_t kFew = 20;  // rows set aside
 constexpr double kTurnsMost = 2, kTurnsLittle = 0.5, kTurnsMore = 3;
 // Long steps turn bodies by as much as wears a choice out at once: what it changed by in the last one, and somewhat
 // more, is left to it before the next, and a few times that to a new choice.
@@ -28,9 +27,9 @@ constexpr double kLeastTurn = 0.05;  // rad, between two looks
 constexpr double kNothing = 1e-12;   // of a coefficient beside the row set aside
 constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
-constexpr double kGain = 2;       // times better is a choice of clearest rows that is worth an exchange
+constexpr double kGain = 2;         // times better is a choice of clearest rows that is worth an exchange
 constexpr double kForgotten = 0.8;  // of how fast a choice has worn before
-constexpr double kGrowth = 1.5;  // of a worn choice that is the best one found: then others are looked for again
+constexpr double kGrowth = 1.5;     // of a worn choice that is the best one found: then others are looked for again
 
 double angle(double coefficient) {
   return std::atan(1 / coefficient);
@@ -51,8 +50,8 @@ double estimate(const BlockRows& rows, SparseCoefficients& kept, const std::vect
 }  // namespace
 
 BlockChoice::BlockChoice(const Model& model, const RowSpace& space, std::vector<int> rows,
-                         const std::vector<int>& aside)
-    : rows_(space, std::move(rows)), watched_(rows_.products() <= kMostProducts), worn_(kWorn) {
+                         const std::vector<int>& aside, Steps steps)
+    : rows_(space, std::move(rows)), watched_(rows_.products() <= kMostProducts), steps_(steps), worn_(kWorn) {
   std::vector<int> left_out, of_model;
   for (int k = 0; k < static_cast<int>(rows_.size()); ++k) {
     const int row = row_of(space, k);
@@ -138,7 +137,7 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead) {
   look(space);
   const double change = turned > 0 ? (before - angle(worst_)) / turned : 0, soon = std::max(change, 0.0) * ahead;
   fastest_ = std::max(kForgotten * fastest_, change);
-  const double limit = ahead > kLongStep && left_out_.size() <= kFew ? kWornForLong : kWorn;
+  const double limit = steps_ == Steps::error_controlled && left_out_.size() <= kFew ? kWornForControl : kWorn;
   worn_ = std::max(limit, given_);
   const bool will_be = has_coefficients() && angle(worst_) - kSooner * soon < angle(worn_);
   if (!worn() && !will_be) {

@@ -33,12 +33,16 @@
 
 namespace poinsot {
 
+// Who goes along the motion.
+enum class Steps { fixed, error_controlled };
+
 class BlockChoice {
  public:
   static constexpr std::size_t kMost = 200;  // rows set aside that have coefficients
 
   // `rows`: places in `space`; `aside`: rows of the model among them without which they are independent.
-  BlockChoice(const Model& model, const RowSpace& space, std::vector<int> rows, const std::vector<int>& aside);
+  BlockChoice(const Model& model, const RowSpace& space, std::vector<int> rows, const std::vector<int>& aside,
+              Steps steps);
 
   // Each where `space` stands. look() judges the choice.
   void look(const RowSpace& space);
@@ -71,6 +75,7 @@ class BlockChoice {
 
   BlockRows rows_;  // all that follow by their places here
   bool watched_;
+  Steps steps_;
   Grouped grouped_;
   std::vector<int> kept_, left_out_;
   SmallCoefficients small_;

@@ -18,9 +18,9 @@ constexpr double kLost = 1e-5;      // of a body's size: far above what steps le
 }  // namespace
 
 OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model,
-                                 std::vector<int> aside, std::span<const BodyState> states)
-    : choice_(std::make_shared<Choice>(
-          Choice{RowChoice(model, loop_rows(model, 0, states), std::move(aside)), 0, {states.begin(), states.end()}})),
+                                 std::vector<int> aside, std::span<const BodyState> states, Steps steps)
+    : choice_(std::make_shared<Choice>(Choice{
+          RowChoice(model, loop_rows(model, 0, states), std::move(aside), steps), 0, {states.begin(), states.end()}})),
       kept_(std::move(kept)),
       now_(states.begin(), states.end()) {
   choice_->rows.look(0, states);
@@ -57,8 +57,8 @@ void OverConstrained::keep() {
 
 void OverConstrained::watch() {
   aside_.emplace(model(), choice_->rows.aside());
-  allowed_.clear();
-  for (const int row : aside_->rows()) allowed_.push_back(kLost * choice_->rows.size_of(row));
+  by_allowed_.clear();
+  for (const int row : aside_->rows()) by_allowed_.push_back(1 / (kLost * choice_->rows.size_of(row)));
 }
 
 void OverConstrained::set_position(double t, std::span<const double> q) {
@@ -84,15 +84,15 @@ Problem::LeftOut OverConstrained::left_out() const {
 Status OverConstrained::measure(double t) {
   const std::span<const double> residual = aside_->position_residual(t, now_);
   std::size_t worst = 0;
-  for (std::size_t k = 1; k < allowed_.size(); ++k)
-    if (std::abs(residual[k]) / allowed_[k] > std::abs(residual[worst]) / allowed_[worst]) worst = k;
-  const double off = std::abs(residual[worst]);
-  if (!(off > allowed_[worst])) return {};
+  double most = 0;
+  for (std::size_t k = 0; k < by_allowed_.size(); ++k)
+    if (const double part = std::abs(residual[k]) * by_allowed_[k]; part > most) most = part, worst = k;
+  if (most <= 1) return {};
   return {Failure::constraint_lost, t,
           fmt::format("at t = {:.9g} s {} is violated by {:.3g}: it followed from the other constraints where the run "
                       "began and was set aside, and does not hold with them any more; the constraints contradict one "
                       "another here, or the step is too large to keep them",
-                      t, describe_row(model(), aside_->rows()[worst]), off)};
+                      t, describe_row(model(), aside_->rows()[worst]), std::abs(residual[worst]))};
 }
 
 // Since the choice was looked at, rad: by the body that has turned most.

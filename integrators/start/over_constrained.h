@@ -24,7 +24,7 @@ class OverConstrained final : public Problem {
  public:
   // `kept` is the model's problem without the rows `aside`, which are redundant at `states`.
   OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model, std::vector<int> aside,
-                  std::span<const BodyState> states);
+                  std::span<const BodyState> states, Steps steps);
 
   std::unique_ptr<Problem> clone() const override;
   std::unique_ptr<Problem> clone_without(std::span<const int> dropped) const override {
@@ -101,10 +101,10 @@ class OverConstrained final : public Problem {
   int kept_revision_ = 0;
   std::unique_ptr<Problem> kept_;
   mutable std::optional<RowsAside> aside_;
-  std::vector<double> allowed_;  // of |Φ|, by row set aside
-  double t_ = 0;                 // where the problem stands
-  double accepted_at_ = 0;       // the last step's end
-  double way_ = 0, ahead_ = 0;   // rad, at least what any body has turned by since the last look; the last step's part
+  std::vector<double> by_allowed_;  // 1 over what is allowed of |Φ|, by row set aside
+  double t_ = 0;                    // where the problem stands
+  double accepted_at_ = 0;          // the last step's end
+  double way_ = 0, ahead_ = 0;  // rad, at least what any body has turned by since the last look; the last step's part
   mutable std::vector<BodyState> now_;
 };
 

@@ -15,7 +15,8 @@ namespace poinsot {
 class RowChoice {
  public:
   // `rows`: those of loops (loop_rows.h); `aside`: rows of the model among them without which they are independent.
-  RowChoice(std::shared_ptr<const Model> model, std::vector<int> rows, std::vector<int> aside);
+  RowChoice(std::shared_ptr<const Model> model, std::vector<int> rows, std::vector<int> aside,
+            Steps steps = Steps::fixed);
 
   const std::vector<int>& aside() const { return aside_; }
   void look(double t, std::span<const BodyState> states);
