@@ -33,7 +33,7 @@
 
 namespace poinsot {
 
-// Who goes along the motion.
+// Who goes along the motion: error control sees more of a worn choice.
 enum class Steps { fixed, error_controlled };
 
 class BlockChoice {

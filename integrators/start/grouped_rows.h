@@ -1,8 +1,8 @@
 // Rows by their joint or constraint, of which as few as possible give rows to be set aside (linsolve/separation.h).
 //
-// A loop is opened where rows are set aside, and eliminated from there on both sides. On the ground, where all of it is
-// one long side, that is dearer: a loop of eight links takes 1.2 to 1.8 times the time to factorize of one that is
-// opened in its middle.
+// A loop is opened where rows are set aside. The Newton matrix of a loop of four to eight links on the ground (implicit
+// Euler, rA) takes 0.64 to 0.92 times as long to factorize as without redundancy where that is between two links, 0.70
+// to 1.05 times at its two joints on the ground; systems [M Gᵀ; G 0] hardly differ.
 #pragma once
 
 #include <span>
