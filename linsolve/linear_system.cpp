@@ -1,6 +1,7 @@
 #include "linsolve/linear_system.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace poinsot {
 namespace {
@@ -49,11 +50,11 @@ LinearSystem::LinearSystem(const LinearChoice& choice, Workload workload)
 
 LinearStatus LinearSystem::analyze(const Pattern& pattern) {
   constexpr int kSmall = 20'000;  // unknowns
-  factored_ = false;
-  if (pattern.n > 0 && pattern == pattern_) return {};
+  const bool served = std::exchange(factored_, false) && !(whole_ && whole_->helper().solver);
+  if (served && pattern == pattern_) return {};
   let_go();
   LinearStatus status = analyze_anew(pattern);
-  if (status.ok() && pattern.n <= kSmall) pattern_ = pattern;
+  if (jacobian_ || (status.ok() && pattern.n <= kSmall)) pattern_ = pattern;
   return status;
 }
 
@@ -61,7 +62,6 @@ LinearStatus LinearSystem::analyze_anew(const Pattern& pattern) {
   if (may_reduce_ && SquareJacobian::fits(pattern)) {
     auto jacobian = std::make_unique<SquareJacobian>(solver_->make());
     if (jacobian->analyze(pattern)) {
-      pattern_ = pattern;
       jacobian_ = std::move(jacobian);
       return {};
     }

@@ -41,8 +41,9 @@ class LinearSystem {
   // Throws InputError where a name of the choice is not in its registry.
   explicit LinearSystem(const LinearChoice& choice, Workload workload = Workload::factorizations);
 
-  // Where the pattern is that of before, what was found out of it and of its last values stays: pivots are examined
-  // anew only where the next values need others. Of small systems; others would keep their patterns for nothing.
+  // Where the pattern is that of before and the solver factored its last values by itself, what it found out stays:
+  // pivots are examined anew only where the next values need others. Of small systems; others would keep their patterns
+  // for nothing.
   LinearStatus analyze(const Pattern& pattern);
   LinearStatus factor();
   LinearStatus solve(std::span<double> b) { return by_jacobian_ ? jacobian_->solve(b) : whole_->solve(b); }

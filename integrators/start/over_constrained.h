@@ -104,7 +104,7 @@ class OverConstrained final : public Problem {
   std::vector<double> by_allowed_;  // 1 over what is allowed of |Φ|, by row set aside
   double t_ = 0;                    // where the problem stands
   double accepted_at_ = 0;          // the last step's end
-  double way_ = 0, ahead_ = 0;  // rad, at least what any body has turned by since the last look; the last step's part
+  double way_ = 0, ahead_ = 0;  // rad, what the fastest body has turned by since the last look, about; its last part
   mutable std::vector<BodyState> now_;
 };
 
