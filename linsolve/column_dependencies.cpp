@@ -116,12 +116,14 @@ struct Echelon {
   std::vector<int> dependent;  // instead, where the vectors are not needed or would be too long
   bool complete = true;
   double from = 0;  // the least tolerance that comes to the same
+  std::size_t stretched = 0;
 
   // Vectors are not needed where there are more than `most`.
   Echelon(const Sparse& A, double tolerance, std::size_t most, std::size_t enough) {
     const auto [count, wide, left_out] = WideRows(A);
     FrontQr qr = decomposed(A, left_out, tolerance, count > 0, most, enough);
     from = qr.choice() == FrontQr::Choice::by_order ? qr.left() : tolerance;
+    stretched = qr.stretched();
     const double work = static_cast<double>(qr.dependent().size()) * count * count;
     if (count > 0 && qr.dependent().size() > most && work < kMostWork) {
       complete = false;
@@ -188,7 +190,7 @@ std::vector<int> dependent_columns(const Sparse& A, double tolerance, std::size_
 
 NullSpace null_space(const Sparse& A, double tolerance, std::size_t most) {
   Echelon space(A, tolerance, most, SIZE_MAX);
-  NullSpace found{std::move(space.dependent), {}, space.from};
+  NullSpace found{std::move(space.dependent), {}, space.from, space.stretched};
   for (auto& [column, z] : space.by_last) found.vectors.push_back(std::move(z));
   return found;
 }

@@ -15,8 +15,10 @@
 namespace poinsot {
 namespace {
 
-constexpr double kNothing = 1e-13;  // of a coefficient, or of what is left of a column, beside a column of unit length
-constexpr double kClear = 0.2;      // of a column of unit length: it need not wait
+constexpr double kNothing = 1e-13;   // of a coefficient, or of what is left of a column, beside a column of unit length
+constexpr double kClear = 0.2;       // of a column of unit length: it need not wait
+constexpr double kLeansOn = 1e-3;    // of a column of unit length
+constexpr double kFar = 100;         // |y| that a few bodies do not come to
 constexpr Eigen::Index kMostWait = 16;  // columns of a front
 
 }  // namespace
@@ -28,6 +30,7 @@ FrontQr::FrontQr(const Sparse& A, const std::vector<char>& left_out, double tole
       column_(index(A.cols())),
       place_(column_.size()),
       known_(column_.size()),
+      grown_(column_.size()),
       local_(2 * column_.size()) {
   std::mt19937 random(1);
   for (double& b : known_) b = random() % 2 == 0 ? 1 : -1;
@@ -162,11 +165,15 @@ void FrontQr::take(Front& front, Eigen::Index k, double norm) {
     for (Eigen::Index j = 0; j < left.cols(); ++j) {
       if (left(0, j) == 0) continue;
       known_[index(column_at(j))] -= left(0, j) * y;
+      if (std::abs(left(0, j)) > kLeansOn)
+        grown_[index(column_at(j))] = std::max(grown_[index(column_at(j))], std::abs(y));
       if (has_R_) R_.push_back({row, column_at(j), left(0, j)});
     }
     ++front.top;
   } else {
     most_left_ = std::max(most_left_, norm);
+    const double grown = grown_[index(order_.back())];
+    if (grown > kFar && norm > kNothing) ++stretched_;
     dependent_.push_back(column_at(k));
     if (dependent_.size() > most_) std::vector<Entry>().swap(R_), has_R_ = false;
   }

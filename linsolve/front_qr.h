@@ -41,6 +41,9 @@ class FrontQr {
   // column. It grows with the length of a mechanism; where columns of which little is left are kept one after the other
   // it is their product.
   double growth() const { return growth_; }
+  // Dependent columns of which more is left than rounding makes of what they lean on, where that has grown far: little
+  // is left of some row of every long mechanism, wherever it stands, for loads can change so slowly along it.
+  std::size_t stretched() const { return stretched_; }
   // A z = 0 up to the tolerance, for a dependent column: 1 there, and columns that are independent, sorted.
   SparseEntries null_vector(int column);
   // b z for the null vectors z of the dependent columns, in their order; b has a column for each of A. Without the
@@ -77,7 +80,9 @@ class FrontQr {
   std::vector<int> dependent_;
   double most_left_ = 0;
   double growth_ = 0;
+  std::size_t stretched_ = 0;
   std::vector<double> known_;  // by column: b less what the rows of R so far take off
+  std::vector<double> grown_;  // by column: the largest |y| of these rows
   std::vector<int> local_;     // place within the front being assembled
   std::vector<double> work_;   // by place, zero between calls
   Eigen::VectorXd reflected_;

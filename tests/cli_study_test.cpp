@@ -108,14 +108,22 @@ TEST_F(CliStudy, RanksGiveTheSameBytes) {
   if (shell("mpirun --version > .said.mpi 2>&1") != 0)
     GTEST_SKIP() << "mpirun was not found: studies across processes are not looked at";
   const std::string expected = reference();
-  const std::string run = fmt::format(  // MPI itself leaves memory behind
-      "ASAN_OPTIONS=detect_leaks=0 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 mpirun --oversubscribe -n "
-      "{{}} '{}' study study.json "
-      "--quiet --out {{}} 2> .said.mpi",
-      POINSOT_PROGRAM);
+  // MPI itself leaves memory behind, and mpirun of Open MPI 4.1 can wait for one of its own threads for good once all
+  // ranks have ended: it is then started again.
+  const auto run = [&](int ranks, const std::string& out) {
+    int status = 0;
+    for (int tries = 0; tries < 3; ++tries) {
+      status = shell(
+          fmt::format("ASAN_OPTIONS=detect_leaks=0 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                      "timeout 120 mpirun --oversubscribe -n {} '{}' study study.json --quiet --out {} 2> .said.mpi",
+                      ranks, POINSOT_PROGRAM, out));
+      if (status != 124) break;
+    }
+    return status;
+  };
   for (const int ranks : {1, 4}) {
     const std::string out = fmt::format("ranks_{}", ranks);
-    const int status = shell(fmt::vformat(run, fmt::make_format_args(ranks, out)));
+    const int status = run(ranks, out);
     const std::string said = read(".said.mpi");
     if (said.find("built without MPI") != std::string::npos) GTEST_SKIP() << said;
     ASSERT_EQ(status, 0) << said;
@@ -123,9 +131,9 @@ TEST_F(CliStudy, RanksGiveTheSameBytes) {
   }
   // Wrong input ends all of them.
   write("study.json", "{}");
-  const int ranks = 3;
-  const std::string out = "wrong";
-  EXPECT_NE(shell(fmt::vformat(run, fmt::make_format_args(ranks, out))), 0);
+  const int status = run(3, "wrong");
+  EXPECT_NE(status, 0);
+  EXPECT_NE(status, 124);
   EXPECT_NE(read(".said.mpi").find("study.json: /study: found nothing"), std::string::npos);
 }
 

@@ -42,6 +42,9 @@ class Examination {
       space_->stand(0, states_);
     }
     here_ = few_null_vectors(space_->columns(), kIndependent);
+    surely_ = here_.from <= kDependent ? here_ : few_null_vectors(space_->columns(), kDependent);
+    // Rows that are barely independent by the length of the mechanism are so wherever it stands: not singular here.
+    if (surely_.columns.size() + here_.stretched >= here_.columns.size()) here_ = surely_;
     if (here_.columns.empty()) return std::move(result_);
     without_ = here_.from <= kDependent ? gathered(space_->columns(), here_, kDependent) : chosen(here_);
     look_beside();
@@ -67,8 +70,7 @@ class Examination {
   void look_beside() {
     const Sparse columns = space_->columns();
     const std::size_t suspects = here_.columns.size();  // how many rows may be dependent
-    const NullSpace surely_null = here_.from <= kDependent ? here_ : few_null_vectors(columns, kDependent);
-    const std::vector<int>& surely = surely_null.columns;
+    const std::vector<int>& surely = surely_.columns;
     beside_.emplace(model_, states_, *space_, suspects);
     Trial trial = beside_->begin(without_);
     if (trial.regular) find_conflicts(trial, without_);
@@ -98,7 +100,7 @@ class Examination {
       if (along) result_.time_beside = along->t;
     } else {
       if (surely.size() < suspects) tell_doubt(columns, surely);
-      tell_redundant(columns, kDependent, surely_null);
+      tell_redundant(columns, kDependent, surely_);
       if (along && !along->holds && surely.size() == suspects)
         result_.conflicts.push_back({along->worst, Conflict::Level::later, along->off, along->t});
     }
@@ -204,7 +206,8 @@ class Examination {
   RankNames names_;
   std::optional<RowSpace> space_;
   std::optional<Beside> beside_;
-  NullSpace here_;            // of the rows at the given position, at kIndependent
+  NullSpace here_;            // of the rows at the given position, at kIndependent but for the length of the mechanism
+  NullSpace surely_;          // at kDependent
   std::vector<int> without_;  // model rows: the others are independent at the given position
   RankAnalysis result_;
 };
