@@ -47,9 +47,8 @@ std::vector<int> clearest_dependent_columns(const Eigen::SparseMatrix<double>& A
 struct NullSpace {
   std::vector<int> columns;
   std::vector<SparseEntries> vectors;
-  double from = 0;  // the least tolerance at which it is the same
-  std::size_t stretched =
-      0;  // columns that are as good as dependent by the length of the mechanism: FrontQr::stretched
+  double from = 0;            // the least tolerance at which it is the same
+  std::size_t stretched = 0;  // as good as dependent by the length of the mechanism: FrontQr::stretched
 };
 NullSpace null_space(const Eigen::SparseMatrix<double>& A, double tolerance, std::size_t most);
 

@@ -14,6 +14,7 @@ namespace {
 constexpr double kNegligible = 1e-9;              // of a coefficient beside the largest of its vector
 constexpr std::size_t kMostCombined = 2'000'000;  // entries: a second's work
 constexpr double kGood = 0.1;                     // the least entry that a group's pivot is worth
+constexpr double kBetter = 1.2;                   // of another pivot of the group, beside the one it has
 constexpr int kPasses = 20;
 
 class Separation {
@@ -43,35 +44,29 @@ class Separation {
       return std::abs(best.second) > limit ? best : kNone;
     });
   }
-  // Those of the pivot's own group above `own`, and others above `limit`, to which those of the own group are
-  // preferred.
+  // Vectors with entries above `own` take better pivots of their group, those with entries above `limit` that none of
+  // the group is good for take others.
   void flatten(double own, double limit, std::span<const int> group) {
     flatten([&](std::size_t k) {
       const auto best = largest_of(k), other = largest_of(k, group, group[index(pivots_[k])]);
       const double size = std::abs(best.second);
-      if (std::abs(other.second) > (size > limit ? std::max(1.0, size / limit) : own)) return other;
-      return size > limit ? best : kNone;
+      if (size > own && std::abs(other.second) > kBetter) return other;
+      return size > std::max(own, limit) ? best : kNone;
     });
   }
 
-  // Pivots by groups, in the order of how many these could have by themselves, and how good ones.
+  // Pivots by groups, in the order of how many these could have by themselves.
   void gather(const Grouped& grouped) {
     std::map<int, std::vector<int>> columns;  // by group
     for (const auto& [column, vectors] : having_) columns[grouped.group[index(column)]].push_back(column);
     struct Worth {
-      int pivots;
-      char last;
-      double volume;
-      int group;
+      int pivots, turn, group;
     };
     std::vector<Worth> order;
-    for (const auto& [g, of] : columns) {
-      const auto [pivots, volume] = worth(of);
-      if (pivots > 0) order.push_back({pivots, grouped.last[index(of.front())], volume, g});
-    }
+    for (const auto& [g, of] : columns)
+      if (const int pivots = worth(of); pivots > 0) order.push_back({pivots, grouped.turn[index(of.front())], g});
     std::ranges::stable_sort(order, [](const Worth& a, const Worth& b) {
-      if (a.pivots != b.pivots) return a.pivots > b.pivots;
-      return a.last != b.last ? a.last < b.last : 0.999 * a.volume > b.volume;
+      return a.pivots != b.pivots ? a.pivots > b.pivots : a.turn < b.turn;
     });
     std::vector<char> settled(vectors_.size(), 0);
     std::size_t left = vectors_.size();
@@ -128,8 +123,8 @@ class Separation {
     return best;
   }
 
-  // How many pivots above kGood the columns have, and their product, by elimination with complete pivoting.
-  std::pair<int, double> worth(const std::vector<int>& columns) const {
+  // How many pivots above kGood the columns have, by elimination with complete pivoting.
+  int worth(const std::vector<int>& columns) const {
     std::vector<std::size_t> with;
     for (const int column : columns) {
       const std::vector<std::size_t>& of = having_.at(column);
@@ -142,16 +137,13 @@ class Separation {
       for (Eigen::Index i = 0; i < part.rows(); ++i)
         part(i, k) = find(vectors_[with[static_cast<std::size_t>(k)]], columns[static_cast<std::size_t>(i)]);
     int pivots = 0;
-    double volume = 1;
     for (; pivots < std::min(part.rows(), part.cols()); ++pivots) {
       Eigen::Index i = 0, k = 0;
-      const double size = part.cwiseAbs().maxCoeff(&i, &k);
-      if (!(size > kGood)) break;
-      volume *= size;
+      if (!(part.cwiseAbs().maxCoeff(&i, &k) > kGood)) break;
       const Eigen::VectorXd column = part.col(k);
       part -= column * (part.row(i) / column[i]).eval();
     }
-    return {pivots, volume};
+    return pivots;
   }
 
   void pivot_on(std::size_t k, std::pair<int, double> entry) {
@@ -160,9 +152,9 @@ class Separation {
     for (const std::size_t other : std::vector<std::size_t>(having_[column])) {
       const double factor = other == k ? 0 : find(vectors_[other], column);
       if (factor == 0) continue;
-      vectors_[other] = subtract(vectors_[other], factor, vectors_[k], column);
       for (const auto& [c, v] : vectors_[k])
-        if (c != column) having_[c].push_back(other);
+        if (find(vectors_[other], c) == 0) having_[c].push_back(other);
+      vectors_[other] = subtract(vectors_[other], factor, vectors_[k], column);
     }
     having_[column] = {k};
     pivots_[k] = column;

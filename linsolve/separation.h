@@ -19,10 +19,9 @@ inline constexpr double kFlat = 1.5, kGathered = 6;
 // No entry is above kFlat. Returns the pivots, by vector.
 std::vector<int> separate(std::vector<SparseEntries>&& vectors);
 
-// By column: its group, and whether that is to be among the last of those that could have as many pivots.
+// By column: its group, and the turn of that among those that could have as many pivots.
 struct Grouped {
-  std::vector<int> group;
-  std::vector<char> last;
+  std::vector<int> group, turn;
 };
 
 // Pivots of as few groups as are enough: no entry is above kGathered.

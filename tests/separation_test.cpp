@@ -31,25 +31,25 @@ TEST(Separation, KeepsEntriesSmall) {
   std::normal_distribution<double> normal;
   for (int k = 0; k < 50; ++k) {
     const Eigen::MatrixXd Z = Eigen::MatrixXd::NullaryExpr(30, 6, [&] { return normal(random); });
-    Grouped columns{std::vector<int>(30), std::vector<char>(30)};
+    Grouped columns{std::vector<int>(30), std::vector<int>(30)};
     for (std::size_t i = 0; i < 30; ++i) columns.group[i] = static_cast<int>(i) / 5;
     EXPECT_LE(largest_entry(Z, separate(vectors_of(Z))), kFlat + 1e-9);
     EXPECT_LE(largest_entry(Z, gather(vectors_of(Z), columns)), kGathered + 1e-9);
   }
 }
 
-// Three groups of three columns could each have both pivots; the second has the best ones.
+// Three groups of three columns could each have both pivots.
 TEST(Separation, GathersInOneGroup) {
   Eigen::MatrixXd Z(9, 2);
   Z << 0.9, 0.3, 0.2, 0.7, 0.5, 0.1, /**/ 1, 0, 0.2, 1, 0.3, 0.1, /**/ 0.4, 0.8, 0.9, 0.2, 0.1, 0.3;
-  Grouped columns{{0, 0, 0, 1, 1, 1, 2, 2, 2}, std::vector<char>(9)};
+  Grouped columns{{0, 0, 0, 1, 1, 1, 2, 2, 2}, {2, 2, 2, 1, 1, 1, 3, 3, 3}};
   EXPECT_THAT(gather(vectors_of(Z), columns), UnorderedElementsAre(3, 4));
-  columns.last = {0, 0, 0, 1, 1, 1, 0, 0, 0};  // the next best
+  columns.turn = {2, 2, 2, 3, 3, 3, 1, 1, 1};
   EXPECT_THAT(gather(vectors_of(Z), columns), UnorderedElementsAre(6, 7));
 }
 
 TEST(Separation, RepairsWithinTheGroup) {
-  const Grouped columns{{0, 0, 1, 1}, std::vector<char>(4)};
+  const Grouped columns{{0, 0, 1, 1}, std::vector<int>(4)};
   const auto repaired = [&](std::vector<double> entries, double most) {
     SparseEntries vector;
     for (int k = 0; k < 4; ++k) vector.emplace_back(k, entries[static_cast<std::size_t>(k)]);

@@ -50,7 +50,7 @@ double estimate(const BlockRows& rows, SparseCoefficients& kept, const std::vect
 }  // namespace
 
 BlockChoice::BlockChoice(const Model& model, const RowSpace& space, std::vector<int> rows,
-                         const std::vector<int>& aside, Steps steps)
+                         const std::vector<int>& aside, std::span<const int> turns, Steps steps)
     : rows_(space, std::move(rows)), watched_(rows_.products() <= kMostProducts), steps_(steps), worn_(kWorn) {
   std::vector<int> left_out, of_model;
   for (int k = 0; k < static_cast<int>(rows_.size()); ++k) {
@@ -58,7 +58,7 @@ BlockChoice::BlockChoice(const Model& model, const RowSpace& space, std::vector<
     of_model.push_back(row);
     if (std::ranges::binary_search(aside, row)) left_out.push_back(k);
   }
-  grouped_ = grouped_rows(model, of_model);
+  grouped_ = grouped_rows(model, turns, of_model);
   keep_others(left_out);
 }
 

@@ -40,9 +40,10 @@ class BlockChoice {
  public:
   static constexpr std::size_t kMost = 200;  // rows set aside that have coefficients
 
-  // `rows`: places in `space`; `aside`: rows of the model among them without which they are independent.
+  // `rows`: places in `space`; `aside`: rows of the model among them without which they are independent;
+  // `turns`: of the groups (grouped_rows.h).
   BlockChoice(const Model& model, const RowSpace& space, std::vector<int> rows, const std::vector<int>& aside,
-              Steps steps);
+              std::span<const int> turns, Steps steps);
 
   // Each where `space` stands. look() judges the choice.
   void look(const RowSpace& space);

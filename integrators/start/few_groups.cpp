@@ -20,10 +20,10 @@ constexpr std::size_t kMostChosen = BlockChoice::kMost;  // dependent rows: the 
 class Choice {
  public:
   Choice(const Model& model, std::span<const int> rows, const Sparse& columns)
-      : model_(model), rows_(rows), columns_(columns), blocks_(row_blocks(model, rows)) {}
+      : model_(model), rows_(rows), columns_(columns), blocks_(row_blocks(model, rows)), turns_(opening_turns(model)) {}
 
   std::vector<int> at_once(std::vector<SparseEntries>&& vectors) const {
-    return gather(std::move(vectors), grouped_rows(model_, rows_));
+    return gather(std::move(vectors), grouped_rows(model_, turns_, rows_));
   }
 
   // `dependent`: as many as are to be found.
@@ -44,7 +44,7 @@ class Choice {
   void choose(std::span<const int> block, double tolerance, std::vector<int>& dependent) const {
     NullSpace null = few_null_vectors(columns_of(block), tolerance);
     if (null.vectors.size() != dependent.size()) return;
-    dependent = gather(std::move(null.vectors), grouped_rows(model_, rows_of(block)));
+    dependent = gather(std::move(null.vectors), grouped_rows(model_, turns_, rows_of(block)));
     for (int& k : dependent) k = block[index(k)];
   }
 
@@ -75,6 +75,7 @@ class Choice {
   std::span<const int> rows_;
   const Sparse& columns_;
   Lists blocks_;
+  std::vector<int> turns_;
 };
 
 }  // namespace

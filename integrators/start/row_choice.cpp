@@ -5,17 +5,19 @@
 #include <utility>
 
 #include "core/index.h"
+#include "integrators/start/grouped_rows.h"
 #include "integrators/start/row_blocks.h"
 
 namespace poinsot {
 
 RowChoice::RowChoice(std::shared_ptr<const Model> model, std::vector<int> rows, std::vector<int> aside, Steps steps)
     : space_(model, std::move(rows)), aside_(std::move(aside)) {
+  const std::vector<int> turns = opening_turns(*model);
   const Lists blocks = row_blocks(*model, space_.rows());
   for (int b = 0; b < blocks.size(); ++b) {
     const auto is_aside = [&](int k) { return std::ranges::binary_search(aside_, space_.rows()[index(k)]); };
     if (std::ranges::any_of(blocks[b], is_aside))
-      blocks_.emplace_back(*model, space_, std::vector<int>(blocks[b].begin(), blocks[b].end()), aside_, steps);
+      blocks_.emplace_back(*model, space_, std::vector<int>(blocks[b].begin(), blocks[b].end()), aside_, turns, steps);
   }
   renewed_.assign(blocks_.size(), 0);
 }

@@ -1,0 +1,70 @@
+#include "integrators/start/grouped_rows.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include "core/index.h"
+#include "linsolve/lists.h"
+
+namespace poinsot {
+namespace {
+
+// By body.
+std::vector<int> joint_counts(const Model& model) {
+  std::vector<int> count(model.bodies.size(), 0);
+  for (const Group& group : model.groups)
+    for (const int body : {group.i, group.j})
+      if (body != kGround) ++count[index(body)];
+  return count;
+}
+
+// By body: joints on the way to the ground, 0 where there is none.
+std::vector<int> distances_from_ground(const Model& model) {
+  const Lists beside = Lists::collect(static_cast<int>(model.bodies.size()), [&](auto&& emit) {
+    for (const Group& group : model.groups)
+      if (group.i != kGround && group.j != kGround) emit(group.i, group.j), emit(group.j, group.i);
+  });
+  std::vector<int> distance(model.bodies.size(), 0), reached;
+  const auto reach = [&](int body, int at) {
+    if (body == kGround || distance[index(body)] > 0) return;
+    distance[index(body)] = at;
+    reached.push_back(body);
+  };
+  for (const Group& group : model.groups)
+    if (group.i == kGround || group.j == kGround) reach(group.i == kGround ? group.j : group.i, 1);
+  for (std::size_t k = 0; k < reached.size(); ++k)
+    for (const int body : beside[reached[k]]) reach(body, distance[index(reached[k])] + 1);
+  return distance;
+}
+
+}  // namespace
+
+std::vector<int> opening_turns(const Model& model) {
+  const std::vector<int> joints = joint_counts(model), distance = distances_from_ground(model);
+  std::vector<std::tuple<bool, int, int>> key;
+  for (const Group& group : model.groups) {
+    const bool on_ground = group.i == kGround || group.j == kGround;
+    const auto both = [&](const std::vector<int>& of) {
+      return on_ground ? 0 : of[index(group.i)] + of[index(group.j)];
+    };
+    key.emplace_back(on_ground, -both(joints), -both(distance));
+  }
+  std::vector<int> order(key.size()), turn(key.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](int group) { return key[index(group)]; });
+  for (std::size_t k = 0; k < order.size(); ++k) turn[index(order[k])] = static_cast<int>(k);
+  return turn;
+}
+
+Grouped grouped_rows(const Model& model, std::span<const int> turns, std::span<const int> rows) {
+  Grouped columns;
+  for (const int k : rows) {
+    const int group = model.rows[index(k)].group;
+    columns.group.push_back(group);
+    columns.turn.push_back(turns[index(group)]);
+  }
+  return columns;
+}
+
+}  // namespace poinsot
