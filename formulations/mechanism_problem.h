@@ -86,6 +86,16 @@ class MechanismProblem final : public Problem {
     }
   }
 
+  void poses(std::span<const int> bodies, std::span<double> out) const override {
+    expect(out, 12 * static_cast<int>(bodies.size()));
+    double* pose = out.data();
+    for (const int b : bodies) {
+      Eigen::Map<Vector3>{pose} = mechanism_.c.r(b);
+      Eigen::Map<Matrix3>{pose + 3} = mechanism_.c.at[static_cast<std::size_t>(b)].A;
+      pose += 12;
+    }
+  }
+
   void retract(std::span<const double> q, std::span<const double> dq, std::span<double> q_out) const override {
     expect(q, nq_), expect(dq, nv_), expect(q_out, nq_);
     M::retract(q.data(), dq.data(), q_out.data(), bodies_);

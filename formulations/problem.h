@@ -73,6 +73,8 @@ class Problem {
   virtual Status from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const = 0;
   // Of the first bodies, as many as there are states. Needs position and velocity set; `a` as solved.
   virtual void to_bodies(std::span<const double> a, std::span<BodyState> states) const = 0;
+  // Where some of them stand: by body r and A by columns, as intrinsic_formulation() has them in q.
+  virtual void poses(std::span<const int> bodies, std::span<double> out) const = 0;
 
   virtual void retract(std::span<const double> q, std::span<const double> dq, std::span<double> q_out) const = 0;
 

@@ -63,7 +63,7 @@ TEST_P(ManyLoops, RejectNoStepsForTheirRows) {
       EXPECT_GT(with.exchanges, 0);
     };
     for (const int count : {1, 3}) compare(&Carried::four_bars, count, 5, 0);
-    compare(&Carried::four_bars, 69, 0.6, 0);  // 207 redundant rows: chosen loop by loop
+    compare(&Carried::four_bars, 69, 0.6, 0);  // loop by loop
     compare(&Carried::ladder, 5, 1.5, 1);      // whose own motion has steps rejected: one more or less
   }
 }

@@ -202,7 +202,7 @@ void BlockChoice::carry_over(const RowSpace& space, std::span<double> lambda) {
 }
 
 void BlockChoice::add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors) {
-  if (!watched_ || !has_coefficients()) return;
+  if (!watched_ || left_out_.size() > kMostNull || !has_coefficients()) return;
   rows_.stand(space);
   if (!find_coefficients(1)) return;
   for (SparseEntries& z : unit_null_vectors()) {

@@ -38,7 +38,8 @@ enum class Steps { fixed, error_controlled };
 
 class BlockChoice {
  public:
-  static constexpr std::size_t kMost = 200;  // rows set aside that have coefficients
+  static constexpr std::size_t kMost = 500;      // rows set aside that have coefficients
+  static constexpr std::size_t kMostNull = 200;  // and whose null vectors are found, at every output time
 
   // `rows`: places in `space`; `aside`: rows of the model among them without which they are independent;
   // `turns`: of the groups (grouped_rows.h).

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
+#include <utility>
 
 #include "core/index.h"
 #include "linsolve/lists.h"
@@ -42,13 +42,18 @@ std::vector<int> distances_from_ground(const Model& model) {
 
 std::vector<int> opening_turns(const Model& model) {
   const std::vector<int> joints = joint_counts(model), distance = distances_from_ground(model);
-  std::vector<std::tuple<bool, int, int>> key;
+  std::vector<std::pair<int, int>> key;
   for (const Group& group : model.groups) {
-    const bool on_ground = group.i == kGround || group.j == kGround;
     const auto both = [&](const std::vector<int>& of) {
-      return on_ground ? 0 : of[index(group.i)] + of[index(group.j)];
+      int sum = 0;
+      for (const int body : {group.i, group.j})
+        if (body != kGround) sum += of[index(body)];
+      return sum;
     };
-    key.emplace_back(on_ground, -both(joints), -both(distance));
+    if (group.i == kGround || group.j == kGround)
+      key.emplace_back(0, 0);
+    else
+      key.emplace_back(-both(joints), -both(distance));
   }
   std::vector<int> order(key.size()), turn(key.size());
   std::iota(order.begin(), order.end(), 0);

@@ -73,16 +73,16 @@ Problem::LeftOut OverConstrained::left_out() const {
     for (const double off : residual) most = std::max(most, std::abs(off));
     return most;
   };
-  kept_->to_bodies(std::vector<double>(index(nv_)), now_);
   LeftOut most;
-  most.position = largest(aside_->position_residual(t_, now_));
-  most.velocity = largest(aside_->velocity_residual());
+  most.position = largest(aside_->position_residual(t_, *kept_));
+  kept_->to_bodies(std::vector<double>(index(nv_)), now_);
+  most.velocity = largest(aside_->velocity_residual(now_));
   return most;
 }
 
-// The rows set aside, with the bodies as in now_.
+// The rows set aside, where the kept problem stands.
 Status OverConstrained::measure(double t) {
-  const std::span<const double> residual = aside_->position_residual(t, now_);
+  const std::span<const double> residual = aside_->position_residual(t, *kept_);
   std::size_t worst = 0;
   double most = 0;
   for (std::size_t k = 0; k < by_allowed_.size(); ++k)
@@ -109,12 +109,12 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
     kept_->set_position(t, q);
     kept_->set_velocity(v);
   }
-  kept_->to_bodies(a, now_);
   if (Status status = measure(t); !status.ok()) return status;
   const double h = std::max(t - std::exchange(accepted_at_, t), 0.0), ahead = h * kept_->fastest_turn();
   const double good_for = std::min(choice_->rows.good_for(), kLookedAgain);
   way_ += std::max(ahead, std::exchange(ahead_, ahead));
   if (way_ + ahead < good_for) return {};
+  kept_->to_bodies(a, now_);
   way_ = turned();
   if (way_ + ahead < good_for) return {};
   const bool others = choice_->rows.renew(t, now_, std::exchange(way_, 0.0), ahead);

@@ -39,6 +39,7 @@ class OverConstrained final : public Problem {
     return kept_->from_bodies(states, q, v);
   }
   void to_bodies(std::span<const double> a, std::span<BodyState> states) const override { kept_->to_bodies(a, states); }
+  void poses(std::span<const int> bodies, std::span<double> out) const override { kept_->poses(bodies, out); }
   void retract(std::span<const double> q, std::span<const double> dq, std::span<double> q_out) const override {
     kept_->retract(q, dq, q_out);
   }

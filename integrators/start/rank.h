@@ -6,9 +6,9 @@
 // and put back onto the independent rows. A row that has become independent there, or does not hold any more, is
 // singular here: its gradient is a combination of the others' (or vanishes) at the given position only.
 //
-// Long mechanisms have rows of which as little is left beside the others as in a singular position, wherever they stand:
-// loads may change slowly from one end to the other. Such rows lean on what has grown along the mechanism, and are taken
-// as independent (FrontQr::stretched).
+// Long mechanisms have rows of which as little is left beside the others as in a singular position, wherever they
+// stand: loads may change slowly from one end to the other. Such rows lean on what has grown along the mechanism, and
+// are taken as independent (FrontQr::stretched).
 //
 // Rank is decided on unit vectors in lengths of bodies (integrators/start/row_space.h), and among the rows of loops
 // only (loop_rows.h). The cost grows with the number of rows (linsolve/column_dependencies.h).

@@ -12,7 +12,7 @@
 //
 // Where no null vector loads a joint its reaction is the only one (integrators/start/rank.h says which). The cost grows
 // linearly with the mechanism for a given number of redundant rows in a loop; of loops that hang together with more
-// than BlockChoice::kMost of them the reactions of the rows kept are given.
+// than BlockChoice::kMostNull of them the reactions of the rows kept are given.
 #pragma once
 
 #include <memory>

@@ -32,7 +32,7 @@ class RowChoice {
   // What Φ of a row is where the bodies are off it by their own size, at the position last looked at.
   double size_of(int row) const;
   // Null vectors of Gᵀ by row of the model: one for each row set aside, but for loops that hang together and have more
-  // than BlockChoice::kMost of them, and where the kept rows are not independent.
+  // than BlockChoice::kMostNull of them, and where the kept rows are not independent.
   std::vector<SparseEntries> null_vectors(double t, std::span<const BodyState> states);
 
  private:

@@ -30,15 +30,16 @@ RowsAside::RowsAside(const Model& model, std::vector<int> rows) : rows_(std::mov
   q_.resize(index(problem_->nq())), v_.resize(index(problem_->nv())), residual_.resize(rows_.size());
 }
 
-std::span<const double> RowsAside::position_residual(double t, std::span<const BodyState> states) {
-  for (std::size_t k = 0; k < body_.size(); ++k) states_[k] = states[index(body_[k])];
-  check(problem_->from_bodies(states_, q_, v_).ok(), "rA represents every orientation");
+std::span<const double> RowsAside::position_residual(double t, const Problem& of_model) {
+  of_model.poses(body_, q_);
   problem_->set_position(t, q_);
   problem_->position_residual(residual_);
   return residual_;
 }
 
-std::span<const double> RowsAside::velocity_residual() {
+std::span<const double> RowsAside::velocity_residual(std::span<const BodyState> of_model) {
+  for (std::size_t k = 0; k < body_.size(); ++k) states_[k] = of_model[index(body_[k])];
+  check(problem_->from_bodies(states_, q_, v_).ok(), "rA represents every orientation");
   problem_->set_velocity(v_);
   problem_->velocity_residual(residual_);
   return residual_;

@@ -17,9 +17,9 @@ class RowsAside {
   RowsAside(const Model& model, std::vector<int> rows);
 
   const std::vector<int>& rows() const { return rows_; }
-  // By row, of the model's bodies at time t; the rate where Φ was asked for last.
-  std::span<const double> position_residual(double t, std::span<const BodyState> states);
-  std::span<const double> velocity_residual();
+  // By row, where the model's bodies stand in a problem of theirs; the rate where Φ was asked for last.
+  std::span<const double> position_residual(double t, const Problem& of_model);
+  std::span<const double> velocity_residual(std::span<const BodyState> of_model);
 
  private:
   std::vector<int> rows_, body_;  // of the model
