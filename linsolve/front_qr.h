@@ -41,8 +41,8 @@ class FrontQr {
   // column. It grows with the length of a mechanism; where columns of which little is left are kept one after the other
   // it is their product.
   double growth() const { return growth_; }
-  // Dependent columns of which more is left than rounding makes of what they lean on, where that has grown far: little
-  // is left of some row of every long mechanism, wherever it stands, for loads can change so slowly along it.
+  // Dependent columns of which something is left, and which lean on what has grown far: little is left of some row of
+  // every long mechanism, wherever it stands, for loads can change so slowly along it.
   std::size_t stretched() const { return stretched_; }
   // A z = 0 up to the tolerance, for a dependent column: 1 there, and columns that are independent, sorted.
   SparseEntries null_vector(int column);
