@@ -15,10 +15,10 @@
 namespace poinsot {
 namespace {
 
-constexpr double kNothing = 1e-13;   // of a coefficient, or of what is left of a column, beside a column of unit length
-constexpr double kClear = 0.2;       // of a column of unit length: it need not wait
-constexpr double kLeansOn = 1e-3;    // of a column of unit length
-constexpr double kFar = 100;         // |y| that a few bodies do not come to
+constexpr double kNothing = 1e-13;  // of a coefficient, or of what is left of a column, beside a column of unit length
+constexpr double kClear = 0.2;      // of a column of unit length: it need not wait
+constexpr double kLeansOn = 1e-3;   // of a column of unit length
+constexpr double kFar = 100;        // |y| that a few bodies do not come to
 constexpr Eigen::Index kMostWait = 16;  // columns of a front
 
 }  // namespace
