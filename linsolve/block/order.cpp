@@ -78,8 +78,8 @@ class MinimumDegree {
   bool mark(int a) { return std::exchange(atoms_[index(a)].mark, stamp_) != stamp_; }
 
   void push(int a) {
-    const int count = degree(a) + (eliminated_.is_early(a) ? early_ : 0);
-    if (std::exchange(atoms_[index(a)].degree, count) != count) queue_.push(entry(count, a));
+    atoms_[index(a)].degree = degree(a) + (eliminated_.is_early(a) ? early_ : 0);
+    queue_.push(entry(atoms_[index(a)].degree, a));
   }
 
   // Unknowns outside a that its elimination couples. Exact while a sees little, else an upper bound; hubs come
