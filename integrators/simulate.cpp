@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/flush_subnormals.h"
 #include "core/index.h"
 #include "core/input_error.h"
 #include "core/model_faults.h"
@@ -138,9 +139,12 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   tell_of_switches(*model, integrator, settings, notice);
   const Eigen::VectorXd q_start = state.q;
   const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
-  outcome.status =
-      integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, notice,
-                              rotation.senseless, start.rank.singular_position() ? start.rank.time_beside : 0});
+  {
+    const FlushSubnormals flush;
+    outcome.status =
+        integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, notice,
+                                rotation.senseless, start.rank.singular_position() ? start.rank.time_beside : 0});
+  }
   explain(outcome.status, *problem);
   const double largest = outcome.statistics.largest_rotation;
   if (outcome.status.ok() && largest > rotation.wrong) {

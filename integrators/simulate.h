@@ -13,6 +13,8 @@
 //   });
 //   if (!outcome.status.ok()) std::puts(outcome.status.message.c_str());
 //
+// Numbers below 2.2e-308 are zero to whatever is called from within the run (core/flush_subnormals.h).
+//
 // Reactions are in integrators/start/reactions.h; kinematics finds them where Settings::reactions asks. Energies, joint
 // coordinates, efforts of drivers and forces of springs are in integrators/signals.h, where Settings::signals asks.
 #pragma once

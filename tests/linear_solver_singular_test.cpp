@@ -83,6 +83,30 @@ TEST_P(LinearSolvers, NeverPassesAMatrixThatBecomesSingular) {
   }
 }
 
+// As beside a singular position that a run looks at from ever nearer, and from afar: what one matrix was scaled by is
+// not the beginning for the next.
+TEST_P(LinearSolvers, PassOverSingularMatricesAgainAndAgain) {
+  std::mt19937_64 random(7);
+  const Redundant r = redundant(8, random, false);
+  const auto solver = make();
+  ASSERT_TRUE(prepare(*solver, r.regular).ok());
+  for (int k = 0; k < 300; ++k) {
+    SampleSystem between = r.regular;
+    const double apart = std::pow(10.0, -1 - k % 13);
+    for (std::size_t v = 0; v < between.values.size(); ++v)
+      between.values[v] = apart * r.regular.values[v] + (1 - apart) * r.singular.values[v];
+    write(between, *solver);
+    if (!solver->factor().ok()) {
+      EXPECT_LT(apart, 1e-8) << "round " << k;
+      continue;
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_solves(*solver, between, random)) << "round " << k << ", " << apart;
+  }
+  write(r.regular, *solver);
+  ASSERT_TRUE(solver->factor().ok());
+  expect_solves(*solver, r.regular, random);
+}
+
 TEST_P(LinearSolvers, NeverPassesARedundantLoop) {
   // The rows of a closing joint are combinations of the rows of the other two joints of a triangle of bodies.
   for (unsigned seed = 1; seed <= 40; ++seed) {
