@@ -1,8 +1,8 @@
 #include "integrators/start/grouped_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
-#include <utility>
 
 #include "core/index.h"
 #include "linsolve/lists.h"
@@ -41,8 +41,9 @@ std::vector<int> distances_from_ground(const Model& model) {
 }  // namespace
 
 std::vector<int> opening_turns(const Model& model) {
+  constexpr int kInAChain = 4;  // joints that the bodies of one have
   const std::vector<int> joints = joint_counts(model), distance = distances_from_ground(model);
-  std::vector<std::pair<int, int>> key;
+  std::vector<std::array<int, 3>> key;
   for (const Group& group : model.groups) {
     const auto both = [&](const std::vector<int>& of) {
       int sum = 0;
@@ -51,9 +52,11 @@ std::vector<int> opening_turns(const Model& model) {
       return sum;
     };
     if (group.i == kGround || group.j == kGround)
-      key.emplace_back(0, 0);
+      key.push_back({0, 0, 0});
+    else if (both(joints) > kInAChain)
+      key.push_back({-both(joints), -both(distance), 0});
     else
-      key.emplace_back(-both(joints), -both(distance));
+      key.push_back({-both(joints), both(distance), -static_cast<int>(key.size())});
   }
   std::vector<int> order(key.size()), turn(key.size());
   std::iota(order.begin(), order.end(), 0);

@@ -1,7 +1,8 @@
 #include "linsolve/block/schedules.h"
 
 #include <algorithm>
-#include <array>
+#include <deque>
+#include <numeric>
 #include <vector>
 
 #include "linsolve/block/order.h"
@@ -9,9 +10,10 @@
 namespace poinsot::block {
 namespace {
 
-// Unknowns of a matrix that is kept: some forty bodies. Three formulations of a scene have three patterns each.
-constexpr int kSmall = 500;
+// Three formulations of a scene have three patterns each.
 constexpr std::size_t kKept = 9;
+// Unknowns of those kept in all: some 2000 bodies, and a few megabytes.
+constexpr int kMostUnknowns = 20'000;
 
 struct Known {
   std::vector<int> start, row, node, fused;
@@ -34,16 +36,16 @@ std::shared_ptr<const Schedule> make(const CscLayout& layout, std::span<const in
 
 std::shared_ptr<const Schedule> schedule_of(const CscLayout& layout, std::span<const int> node,
                                             std::span<const int> fused) {
-  if (layout.n > kSmall) return make(layout, node, fused);
-  thread_local std::array<Known, kKept> known;
-  thread_local std::size_t next = 0;  // to be replaced
+  if (layout.n > kMostUnknowns) return make(layout, node, fused);
+  thread_local std::deque<Known> known;  // the newest last
   for (const Known& one : known)
-    if (one.schedule && one.is_of(layout, node, fused)) return one.schedule;
+    if (one.is_of(layout, node, fused)) return one.schedule;
   std::shared_ptr<const Schedule> schedule = make(layout, node, fused);
-  if (schedule) {
-    known[next] = {layout.start, layout.row, {node.begin(), node.end()}, {fused.begin(), fused.end()}, schedule};
-    next = (next + 1) % kKept;
-  }
+  if (!schedule) return schedule;
+  known.push_back({layout.start, layout.row, {node.begin(), node.end()}, {fused.begin(), fused.end()}, schedule});
+  const auto unknowns = [](std::size_t sum, const Known& one) { return sum + one.node.size(); };
+  while (known.size() > kKept || std::accumulate(known.begin(), known.end(), std::size_t{0}, unknowns) > kMostUnknowns)
+    known.pop_front();
   return schedule;
 }
 

@@ -2,8 +2,8 @@
 //
 // A run has several systems of few patterns, and the cases of a study have those of one mechanism over and over; of a
 // pendulum's ten steps the order of elimination takes more than a quarter of the instructions. A schedule is a function
-// of its pattern alone, so nothing depends on whether it was known. Each thread keeps a few small ones; a large one
-// lives as long as those who solve by it.
+// of its pattern alone, so nothing depends on whether it was known. Each thread keeps the newest few, as long as they
+// are not of thousands of bodies; those live as long as those who solve by them.
 #pragma once
 
 #include <memory>
