@@ -63,7 +63,7 @@ TEST_P(ManyLoops, RejectNoStepsForTheirRows) {
       EXPECT_GT(with.exchanges, 0);
     };
     for (const int count : {1, 3}) compare(&Carried::four_bars, count, 5, 0);
-    compare(&Carried::four_bars, 170, 0.6, 0);  // 510 redundant rows: chosen loop by loop
+    compare(&Carried::four_bars, 335, 0.6, 0);  // 1005 redundant rows: chosen loop by loop
     compare(&Carried::ladder, 5, 1.5, 1);       // whose own motion has steps rejected: one more or less
   }
 }
@@ -76,8 +76,8 @@ TEST_P(ManyLoops, MoveAsWithoutRedundancy) {
     settings.rtol = 1e-8;
     for (const auto make : {&Carried::four_bars, &Carried::ladder}) {
       SCOPED_TRACE(fmt::format("{} {} {}", make == &Carried::ladder ? "ladder" : "four-bars", name, GetParam()));
-      // 510 redundant rows are chosen anew as a whole, 207 one by one.
-      const int cells = name == kFixedSteps && make == &Carried::ladder ? 170 : 69;
+      // 870 redundant rows are chosen anew as a whole, 207 one by one.
+      const int cells = name == kFixedSteps && make == &Carried::ladder ? 290 : 69;
       const CarriedMotion with = carry(make(cells, true), settings), without = carry(make(cells, false), settings);
       ASSERT_TRUE(with.outcome.status.ok()) << with.outcome.status.message;
       ASSERT_TRUE(without.outcome.status.ok()) << without.outcome.status.message;

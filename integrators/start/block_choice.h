@@ -38,7 +38,7 @@ enum class Steps { fixed, error_controlled };
 
 class BlockChoice {
  public:
-  static constexpr std::size_t kMost = 500;      // rows set aside that have coefficients
+  static constexpr std::size_t kMost = 1000;     // rows set aside that have coefficients
   static constexpr std::size_t kMostNull = 200;  // and whose null vectors are found, at every output time
 
   // `rows`: places in `space`; `aside`: rows of the model among them without which they are independent;
@@ -73,7 +73,7 @@ class BlockChoice {
   bool exchange(double most);
   bool choose_clearest(const RowSpace& space);
   bool take(const std::vector<int>& chosen, double limit);
-  std::vector<SparseEntries> unit_null_vectors() const;
+  std::vector<SparseEntries> unit_null_vectors(double nothing) const;
 
   BlockRows rows_;  // all that follow by their places here
   bool watched_;

@@ -19,11 +19,15 @@ class SparseCoefficients {
   bool factor(const BlockRows& rows);
   // Coefficients of the rows kept, a column for each column of F: argmin ‖G_Kᵀ c − f‖, refined as often as asked for.
   Eigen::MatrixXd find(const BlockRows& rows, const Eigen::MatrixXd& F, int refinements) const;
+  // The same of F = G_Dᵀ, D the rows left out.
+  Eigen::MatrixXd find(const BlockRows& rows, std::span<const int> left_out, int refinements) const;
 
  private:
+  void refine(const BlockRows& rows, Eigen::MatrixXd& left, Eigen::MatrixXd& C) const;
   Eigen::MatrixXd shares(const BlockRows& rows, const Eigen::MatrixXd& F) const;
+  void solve(Eigen::MatrixXd& B) const;
 
-  std::vector<int> kept_;
+  std::vector<int> kept_, place_;     // place_: by row, −1 of rows not kept
   Eigen::SparseMatrix<double> gram_;  // lower triangle
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factored_;
 };
