@@ -2,9 +2,9 @@
 //
 // What moves in a plane is kept there by Newton's method: what is off shrinks with every step, by rounding alone to
 // fractions of itself, until it is subnormal, and it stays there: the smallest subnormal number times anything above
-// one half is itself. Processors take a hundred times as long to compute with such numbers: steps of planar loops took
-// up to three times as long. x86-64 only, where the unit is set by flags (FTZ and DAZ of MXCSR: Intel 64 and IA-32
-// Architectures Software Developer's Manual, vol. 1, 10.2.3); elsewhere nothing is done.
+// one half is itself. Processors compute with such numbers many times slower: runs of planar loops took up to three
+// times as long, of the delta robot twice. x86-64 only, where the unit is set by flags (FTZ and DAZ of MXCSR: Intel 64
+// and IA-32 Architectures Software Developer's Manual, vol. 1, 10.2.3); elsewhere nothing is done.
 #pragma once
 
 #if defined(__x86_64__)

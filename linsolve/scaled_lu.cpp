@@ -54,7 +54,7 @@ LinearStatus ScaledLu::factor_fresh() {
   }
   if (LinearStatus status = factor_scaled(); !status.ok()) return status;
   if (examined_ && smallest_ >= doubtful_) return {};
-  if (scaling_known_) {  // improved for earlier values: improved again and again it leaves the range of numbers
+  if (scaling_known_) {  // of earlier values
     scaling_known_ = false;
     return factor_fresh();
   }

@@ -2,8 +2,10 @@
 //
 // The back end factorizes D_r A D_c in compressed sparse columns. The first fresh factorization, and later ones with a
 // pivot that is much smaller than before, are judged by Bauer's condition (condition.h); where a small pivot could come
-// from a bad scaling, the scaling is improved and the matrix factorized once more. Others pass by their pivots: entries
-// are of size one, pivoting lets them grow little, and all that is left of some pivot of a singular matrix is rounding.
+// from a bad scaling, the matrix gets one of its own, which is improved, and is factorized once more. Scalings of
+// matrices before are never improved on: again and again that would leave the range of numbers. Others pass by their
+// pivots: entries are of size one, pivoting lets them grow little, and all that is left of some pivot of a singular
+// matrix is rounding.
 #pragma once
 
 #include <span>

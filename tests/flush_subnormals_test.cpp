@@ -1,4 +1,4 @@
-// Subnormal numbers do not slow a run down, and what calls it keeps its own arithmetic.
+// Subnormal numbers are zero in a run, and what calls it keeps its own arithmetic, however the run ends.
 #include "core/flush_subnormals.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,6 @@ TEST(FlushSubnormals, WhileItLives) {
   EXPECT_GT(halved(kLeast), 0);
 }
 
-// What is out of a loop's plane decays there.
 TEST(FlushSubnormals, InARun) {
 #if !defined(__x86_64__)
   GTEST_SKIP() << "nothing is done on this architecture";

@@ -25,7 +25,6 @@ constexpr double kTurnsMost = 2, kTurnsLittle = 0.5, kTurnsMore = 3;
 constexpr double kSooner = 1.6, kStays = 2.5;
 constexpr double kLeastTurn = 0.05;  // rad, between two looks
 constexpr double kNothing = 1e-12;   // of a coefficient beside the row set aside
-constexpr double kNothingToChoose = 1e-9;
 constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
 constexpr double kGain = 2;         // times better is a choice of clearest rows that is worth an exchange
@@ -96,12 +95,12 @@ bool BlockChoice::find_coefficients(int refinements) {
   return false;
 }
 
-std::vector<SparseEntries> BlockChoice::unit_null_vectors(double nothing) const {
+std::vector<SparseEntries> BlockChoice::unit_null_vectors() const {
   std::vector<SparseEntries> vectors(left_out_.size());
   for (std::size_t d = 0; d < left_out_.size(); ++d) {
     for (std::size_t k = 0; k < kept_.size(); ++k) {
       const double c = C_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(d));
-      if (std::abs(c) > nothing) vectors[d].emplace_back(kept_[k], -c);
+      if (std::abs(c) > kNothing) vectors[d].emplace_back(kept_[k], -c);
     }
     vectors[d].emplace_back(left_out_[d], 1.0);
     std::ranges::sort(vectors[d]);
@@ -158,7 +157,9 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead) {
 bool BlockChoice::exchange(double most) {
   if (!small()) find_coefficients(0);
   std::vector<int> chosen = left_out_;
-  repair(unit_null_vectors(kNothingToChoose), chosen, grouped_, most);
+  std::vector<SparseEntries> vectors = unit_null_vectors();
+  for (SparseEntries& z : vectors) drop_nothing(z);  // what rounding leaves of coefficients far away
+  repair(std::move(vectors), chosen, grouped_, most);
   std::ranges::sort(chosen);
   return chosen != left_out_ && take(chosen, HUGE_VAL);
 }
@@ -204,7 +205,7 @@ void BlockChoice::add_null_vectors(const RowSpace& space, std::vector<SparseEntr
   if (!watched_ || left_out_.size() > kMostNull || !has_coefficients()) return;
   rows_.stand(space);
   if (!find_coefficients(1)) return;
-  for (SparseEntries& z : unit_null_vectors(kNothing)) {
+  for (SparseEntries& z : unit_null_vectors()) {
     for (auto& [k, value] : z) {
       value /= space.lengths()[index(rows_.place_in_space(k))];
       k = row_of(space, k);

@@ -73,7 +73,7 @@ class BlockChoice {
   bool exchange(double most);
   bool choose_clearest(const RowSpace& space);
   bool take(const std::vector<int>& chosen, double limit);
-  std::vector<SparseEntries> unit_null_vectors(double nothing) const;
+  std::vector<SparseEntries> unit_null_vectors() const;
 
   BlockRows rows_;  // all that follow by their places here
   bool watched_;

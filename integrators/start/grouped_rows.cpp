@@ -41,7 +41,7 @@ std::vector<int> distances_from_ground(const Model& model) {
 }  // namespace
 
 std::vector<int> opening_turns(const Model& model) {
-  constexpr int kInAChain = 4;  // joints that the bodies of one have
+  constexpr int kInAChain = 4;  // two at either body of a joint, itself counted twice
   const std::vector<int> joints = joint_counts(model), distance = distances_from_ground(model);
   std::vector<std::array<int, 3>> key;
   for (const Group& group : model.groups) {

@@ -7,9 +7,9 @@
 // eight links beside those without redundancy: carried, [M Gᵀ; G 0] takes 0.63 to 0.69 times as long opened at the body
 // that carries them, 0.77 to 1.05 elsewhere. Of a carried ladder of 30 cells the Newton matrix of implicit Euler takes
 // 0.70, [M Gᵀ; G 0] 0.99, chosen by coefficients alone 1.09 and 1.11. Whole runs of loops of four, six and eight links
-// on the ground, beside those without redundancy: implicit Euler takes 0.85 to 0.91 opened at the joint taken, 0.86 to
-// 0.99 at others off the ground, 1.08 at the first joint on the ground; half-implicit Euler, RATTLE, dopri5 and dop853
-// 1.01 to 1.10, 1.03 to 1.16 and 1.08 to 1.22.
+// on the ground, beside those without redundancy (these by another processor, integrators/README.md): implicit Euler
+// takes 0.85 to 0.91 opened at the joint taken, 0.86 to 0.99 at others off the ground, 1.08 at the first joint on the
+// ground; half-implicit Euler, RATTLE, dopri5 and dop853 1.01 to 1.10, 1.03 to 1.16 and 1.08 to 1.22.
 #pragma once
 
 #include <span>

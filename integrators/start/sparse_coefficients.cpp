@@ -45,10 +45,7 @@ Eigen::MatrixXd SparseCoefficients::shares(const BlockRows& rows, const Eigen::M
 Eigen::MatrixXd SparseCoefficients::find(const BlockRows& rows, const Eigen::MatrixXd& F, int refinements) const {
   Eigen::MatrixXd C = shares(rows, F);
   solve(C);
-  for (int r = 0; r < refinements; ++r) {
-    Eigen::MatrixXd left = F;
-    refine(rows, left, C);
-  }
+  for (int r = 0; r < refinements; ++r) refine(rows, F, C);
   return C;
 }
 
@@ -60,19 +57,18 @@ Eigen::MatrixXd SparseCoefficients::find(const BlockRows& rows, std::span<const 
       if (place_[index(l)] >= 0) C(place_[index(l)], d) = rows.dot(l, left_out[index(d)]);
     });
   solve(C);
-  for (int r = 0; r < refinements; ++r) {
-    Eigen::MatrixXd left = Eigen::MatrixXd::Zero(rows.variables(), m);
-    for (Eigen::Index d = 0; d < m; ++d) rows.add(1, left_out[index(d)], left.col(d));
-    refine(rows, left, C);
-  }
+  if (refinements == 0) return C;
+  Eigen::MatrixXd F = Eigen::MatrixXd::Zero(rows.variables(), m);
+  for (Eigen::Index d = 0; d < m; ++d) rows.add(1, left_out[index(d)], F.col(d));
+  for (int r = 0; r < refinements; ++r) refine(rows, F, C);
   return C;
 }
 
-// `left` is F, and what C leaves of it afterwards.
-void SparseCoefficients::refine(const BlockRows& rows, Eigen::MatrixXd& left, Eigen::MatrixXd& C) const {
+// C is corrected by what it leaves of F.
+void SparseCoefficients::refine(const BlockRows& rows, Eigen::MatrixXd F, Eigen::MatrixXd& C) const {
   for (Eigen::Index c = 0; c < C.cols(); ++c)
-    for (std::size_t k = 0; k < kept_.size(); ++k) rows.add(-C(static_cast<Eigen::Index>(k), c), kept_[k], left.col(c));
-  Eigen::MatrixXd change = shares(rows, left);
+    for (std::size_t k = 0; k < kept_.size(); ++k) rows.add(-C(static_cast<Eigen::Index>(k), c), kept_[k], F.col(c));
+  Eigen::MatrixXd change = shares(rows, F);
   solve(change);
   C += change;
 }

@@ -23,7 +23,7 @@ class SparseCoefficients {
   Eigen::MatrixXd find(const BlockRows& rows, std::span<const int> left_out, int refinements) const;
 
  private:
-  void refine(const BlockRows& rows, Eigen::MatrixXd& left, Eigen::MatrixXd& C) const;
+  void refine(const BlockRows& rows, Eigen::MatrixXd F, Eigen::MatrixXd& C) const;
   Eigen::MatrixXd shares(const BlockRows& rows, const Eigen::MatrixXd& F) const;
   void solve(Eigen::MatrixXd& B) const;
 
