@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/large_pages.h"
 #include "app/signals.h"
 #include "app/terminal.h"
 #include "bench/study/output_file.h"
@@ -137,6 +138,7 @@ int run_program(CLI::App& app, int argc, char** argv, const int& status) {
 
 int main(int argc, char** argv) {
   using namespace poinsot::app;
+  begin_in_large_pages(argv);
   hold_standard_descriptors();
   catch_signals();
   std::set_terminate(end_at_once);

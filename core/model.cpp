@@ -28,6 +28,11 @@ class Compiler {
       body.inertia = (0.5 * body.inertia + 0.5 * body.inertia.transpose()).eval();
       body.orientation = nearest_rotation(body.orientation);
     }
+    constexpr std::size_t kMostRows = 6;  // of a joint
+    const std::size_t joints = scene_.joints.size(), others = scene_.constraints.size() + scene_.drivers.size();
+    model_.rows.reserve(kMostRows * joints + others);
+    model_.groups.reserve(joints + others);
+    model_.joints.reserve(joints);
     for (const Constraint& c : scene_.constraints) constraint(c);
     for (const Joint& j : scene_.joints) joint(j);
     for (const Driver& d : scene_.drivers) driver(d);

@@ -74,13 +74,22 @@ std::string name_of(const Scene& scene, std::string_view section, std::size_t k)
   return given_name(scene.forces.at(k));
 }
 
-// `inside`, in the parentheses that follow at `at`, or in ones of its own.
-void insert(std::string& text, std::size_t at, const std::string& inside) {
-  if (text.compare(at, 2, " (") == 0)
-    text.insert(at + 2, inside + "; ");
-  else
-    text.insert(at, fmt::format(" ({})", inside));
-}
+// A text with insertions; these come in ascending order.
+class Inserted {
+ public:
+  explicit Inserted(std::string_view text) : text_(text) {}
+
+  void at(std::size_t place, std::string_view inside) {
+    result_.append(text_.substr(done_, place - done_)).append(inside);
+    done_ = place;
+  }
+  std::string whole() && { return std::move(result_.append(text_.substr(done_))); }
+
+ private:
+  std::string_view text_;
+  std::string result_;
+  std::size_t done_ = 0;  // so much of the text is in the result
+};
 
 }  // namespace
 
@@ -111,12 +120,12 @@ void with_names_of_errors(const Scene& scene, const std::function<void()>& check
 }
 
 std::string with_key_paths(std::string_view message, const Scene& scene) {
-  std::string text(message);
-  if (text.starts_with('/')) return text;  // it begins with the one it is about
+  if (message.starts_with('/')) return std::string(message);  // it begins with the one it is about
+  Inserted text(message);
   std::optional<Elements> elements;
   std::set<std::string> told;
-  for (std::size_t at = text.find(" '"); at != text.npos; at = text.find(" '", at + 1)) {
-    const std::string_view before = std::string_view(text).substr(0, at);
+  for (std::size_t at = message.find(" '"); at != message.npos; at = message.find(" '", at + 1)) {
+    const std::string_view before = message.substr(0, at);
     for (std::size_t kind = 0; kind < std::size(kKinds); ++kind) {
       const std::string_view word = kKinds[kind].second;
       if (!before.ends_with(word) ||
@@ -124,34 +133,38 @@ std::string with_key_paths(std::string_view message, const Scene& scene) {
            std::string_view(" (\n").find(before[before.size() - word.size() - 1]) == std::string_view::npos))
         continue;
       if (!elements) elements.emplace(scene);
-      const auto [path, end] = elements->at(kind, text, at + 2);
+      const auto [path, end] = elements->at(kind, message, at + 2);
       if (path.empty() || !told.insert(path).second) continue;
-      const std::string there = fmt::format(" ({}", path);  // of a sentence that was given them before
-      if (text.compare(end + 1, there.size(), there) != 0 ||
-          text.find_first_of(",;)", end + 1) != end + 1 + there.size())
-        insert(text, end + 1, path);
+      const std::string there = fmt::format(" ({}", path);
+      const std::string_view after = message.substr(end + 1);
+      if (after.starts_with(there) && after.find_first_of(",;)") == there.size()) break;  // it was given them before
+      if (after.starts_with(" ("))
+        text.at(end + 3, path + "; ");
+      else
+        text.at(end + 1, there + ")");
       break;
     }
   }
-  return text;
+  return std::move(text).whole();
 }
 
 std::string with_lines(std::string_view message, std::string_view text) {
-  std::string result(message);
-  std::vector<std::pair<std::size_t, std::string>> found;  // where they end
+  std::vector<std::size_t> ends;
   std::vector<std::string> paths;
-  for (std::size_t at = result.find(" (/"); at != result.npos; at = result.find(" (/", at + 1)) {
-    const std::size_t begin = at + 2, end = result.find_first_of(");,", begin);
-    const std::string path = result.substr(begin, end == result.npos ? end : end - begin);
-    if (end == result.npos || result[end] == ',' || element_of(path).first != path) continue;
-    found.emplace_back(end, path);
-    paths.push_back(path);
+  for (std::size_t at = message.find(" (/"); at != message.npos; at = message.find(" (/", at + 1)) {
+    const std::size_t begin = at + 2, end = message.find_first_of(");,", begin);
+    if (end == message.npos || message[end] == ',') continue;
+    std::string path(message.substr(begin, end - begin));
+    if (element_of(path).first != path) continue;
+    ends.push_back(end);
+    paths.push_back(std::move(path));
   }
-  if (found.empty()) return result;
+  if (paths.empty()) return std::string(message);
   const LineSearch search(text, paths);
-  for (auto one = found.rbegin(); one != found.rend(); ++one)
-    if (const int line = search.line(one->second); line > 0) result.insert(one->first, fmt::format(", line {}", line));
-  return result;
+  Inserted result(message);
+  for (std::size_t k = 0; k < paths.size(); ++k)
+    if (const int line = search.line(paths[k]); line > 0) result.at(ends[k], fmt::format(", line {}", line));
+  return std::move(result).whole();
 }
 
 }  // namespace poinsot

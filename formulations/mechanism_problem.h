@@ -153,6 +153,7 @@ class MechanismProblem final : public Problem {
     Pattern pattern;
     const bool rows_only = kind == MatrixKind::kinematic || kind == MatrixKind::rates;
     pattern.n = rows_only ? std::max(nv_, nc_) : nv_ + nc_;
+    pattern.blocks.reserve(static_cast<std::size_t>(12 * bodies_ + 6 * nc_));  // about as many as joints come to
     Blocks blocks{&pattern.blocks, nullptr, nullptr};
     Matrix(*mechanism_.c.elements).write(scratch.c, kind, {1, 1, 1}, nullptr, zeros.data(), zeros.data(), blocks);
     for (int k = 0; k < pattern.n; ++k) pattern.node.push_back(node_of(k));

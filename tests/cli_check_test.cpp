@@ -52,6 +52,17 @@ TEST_F(Check, SoundScenes) {
   }
 }
 
+// The program begins anew for it (app/large_pages.h), with the same arguments and in the same folder.
+TEST_F(Check, ALargeFile) {
+  write("rod.json", rod("") + std::string(5 << 20, ' '));
+  const Result result = poinsot({"check", "rod.json"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  write("small.json", rod(""));
+  EXPECT_EQ(result.out, poinsot({"check", "small.json"}).out);
+  EXPECT_NE(result.out, "");
+}
+
 TEST_F(Check, ADerivativeThatIsNotFinite) {
   write("root.json", rod(R"({"type": "DP1", "name": "root", "bodies": ["ground", "rod"], "a_i": [1,0,0], "a_j": [0,1,0],
                              "f": "t^1.5"})"));

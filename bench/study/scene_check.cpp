@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <utility>
 
 #include "core/check.h"
 #include "core/input_error.h"
@@ -47,12 +49,13 @@ void measure(SceneCheck& result) {
   result.extent = box.sizes();
 }
 
-// Where the rows are looked at: a pose that is no more than a guess is closed first.
-std::vector<BodyState> pose_meant(const SceneCheck& result, std::vector<BodyState> given) {
+// Where the rows are looked at in place of the given pose, which is no more than a guess: where it closes.
+std::optional<std::vector<BodyState>> pose_meant(const SceneCheck& result, const std::vector<BodyState>& given) {
   if (result.violation.position <= kSatisfied || !std::ranges::any_of(result.model->groups, &Group::body_fixed))
-    return given;
+    return {};
   ClosedPose pose = close_mechanism(*result.model, given);
-  return pose.closed ? std::move(pose.states) : given;
+  if (!pose.closed) return {};
+  return std::move(pose.states);
 }
 
 }  // namespace
@@ -86,10 +89,11 @@ SceneCheck checked(const Scene& scene) {
   measure(result);
   const std::vector<BodyState> given = given_state(*result.model);
   result.violation = violation(result.model, given);
-  result.rank = analyze_rank(result.model, pose_meant(result, given), RankNames::all);
+  const std::optional<std::vector<BodyState>> meant = pose_meant(result, given);
+  result.rank = analyze_rank(result.model, meant ? *meant : given, RankNames::all);
   if (!result.rank.conflicts.empty()) return result;
   try {
-    result.start = find_initial_state(result.model, Settings{});
+    result.start = find_initial_state(result.model, Settings{}, meant ? nullptr : &result.rank);
   } catch (const InputError& refused) {
     result.refusal = refused.what();
     return result;

@@ -40,8 +40,8 @@ double size_of(const std::vector<BodyState>& states) {
 
 class Assembler {
  public:
-  Assembler(const std::shared_ptr<const Model>& model, const Settings& settings)
-      : model_(model), settings_(settings), given_(given_state(*model)) {}
+  Assembler(const std::shared_ptr<const Model>& model, const Settings& settings, const RankAnalysis* rank)
+      : model_(model), settings_(settings), known_(rank), given_(given_state(*model)) {}
 
   InitialState run() {
     tell_far_joints(*model_, result_.notices);
@@ -50,7 +50,7 @@ class Assembler {
     close_from_afar();
     refuse_any();
     result_.bodies = given_;
-    result_.rank = analyze_rank(model_, given_, RankNames::none);
+    result_.rank = known_ && !closed_ ? *known_ : analyze_rank(model_, given_, RankNames::none);
     refuse_conflicts();
     tell_rank();
     if (result_.rank.singular_position() && !result_.rank.moves_on) {
@@ -258,6 +258,7 @@ class Assembler {
 
   std::shared_ptr<const Model> model_;
   const Settings& settings_;
+  const RankAnalysis* known_;     // null where it is not; of the given state
   std::vector<BodyState> given_;  // or what a pose far from the constraints was closed to
   bool closed_ = false;
   Violation before_;
@@ -266,9 +267,10 @@ class Assembler {
 
 }  // namespace
 
-InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings) {
+InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings,
+                                const RankAnalysis* rank) {
   if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) return {no_value(0, fault), {}, {}, {}};
-  return Assembler(model, settings).run();
+  return Assembler(model, settings, rank).run();
 }
 
 }  // namespace poinsot

@@ -54,19 +54,24 @@ RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
       lengths_(rows_.size()) {
   check(layout_.build(problem_->pattern(MatrixKind::kinematic)).ok(), "an assembled matrix fits 32-bit indices");
   values_.resize(index(layout_.nonzeros()));
-  std::vector<Eigen::Triplet<double>> entries;
+  const int nc = problem_->nc();
   const auto visit = [&](auto&& entry) {
     for (int j = 0; j < problem_->nv(); ++j)
       for (int k = layout_.start[index(j)]; k < layout_.start[index(j + 1)]; ++k)
-        if (layout_.row[index(k)] < problem_->nc()) entry(k, layout_.row[index(k)], j);
+        if (layout_.row[index(k)] < nc) entry(k, layout_.row[index(k)], j);
   };
-  visit([&](int, int row, int j) { entries.emplace_back(j, row, 1.0); });
-  Gt_.resize(problem_->nv(), problem_->nc());
-  Gt_.setFromTriplets(entries.begin(), entries.end());
+  // Columns j are visited ascending, and so are the entries of a row of G in its column of Gᵀ.
+  Gt_.resize(problem_->nv(), nc);
+  std::vector<int> next(index(nc) + 1, 0);
+  visit([&](int, int row, int) { ++next[index(row) + 1]; });
+  std::partial_sum(next.begin(), next.end(), Gt_.outerIndexPtr());
+  Gt_.resizeNonZeros(Gt_.outerIndexPtr()[nc]);
+  std::copy_n(Gt_.outerIndexPtr(), next.size(), next.begin());
   place_.assign(values_.size(), -1);
-  // Columns j are visited ascending: the entries of a row of G come in the order of its column of Gᵀ.
-  std::vector<int> next(Gt_.outerIndexPtr(), Gt_.outerIndexPtr() + Gt_.cols());
-  visit([&](int k, int row, int) { place_[index(k)] = next[index(row)]++; });
+  visit([&](int k, int row, int j) {
+    place_[index(k)] = next[index(row)]++;
+    Gt_.innerIndexPtr()[place_[index(k)]] = j;
+  });
 }
 
 void RowSpace::stand(double t, std::span<const BodyState> states) {
