@@ -152,8 +152,9 @@ class Mechanism {
       if constexpr (has_r) force -= lambda[g.row] * g.g;
       moment -= lambda[g.row] * g.ej.template head<3>();
     };
-    Rows<F, T>::holonomic(c, add);
-    Rows<F, T>::velocity(c, add);
+    const RowRange near{first - 2, first + count};  // the three of a coincidence may be of as many groups
+    Rows<F, T>::holonomic(c, add, near);
+    Rows<F, T>::velocity(c, add, near);
   }
 
   T energy() const {

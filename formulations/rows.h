@@ -6,11 +6,20 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
+#include <span>
+#include <vector>
 
 #include "core/index.h"
 #include "formulations/configuration.h"
 
 namespace poinsot {
+
+// Rows of the problem from `first` to before `end`, those of coincidences by their first; as it stands, all.
+struct RowRange {
+  int first = 0, end = std::numeric_limits<int>::max();
+  bool whole() const { return end == std::numeric_limits<int>::max(); }
+};
 
 template <class F, class T>
 class Rows {
@@ -26,9 +35,9 @@ class Rows {
 
   // visit(gradient, has_r, Phi): every holonomic row, kind by kind.
   template <class Visit>
-  static void holonomic(const C& c, Visit&& visit) {
-    scalar(c, visit);
-    for (const CoincidenceRows& k : c.elements->coincidences) {
+  static void holonomic(const C& c, Visit&& visit, RowRange range = {}) {
+    scalar(c, visit, range);
+    for (const CoincidenceRows& k : of(c.elements->coincidences, range)) {
       const Vec3<T> d = c.span(k.i, k.j, k.p, k.q);
       for (int l = 0; l < 3; ++l) {
         Gradient g = along(k, c.s[index(k.p)], c.s[index(k.q)], Vec3<T>(Vec3<T>::Unit(l)));
@@ -40,28 +49,28 @@ class Rows {
 
   // The same without the rows of coincidences. The order is the order of assembly.
   template <class Visit>
-  static void scalar(const C& c, Visit&& visit) {
+  static void scalar(const C& c, Visit&& visit, RowRange range = {}) {
     const Elements& e = *c.elements;
     const auto s = [&](int k) -> const Vec3<T>& { return c.s[index(k)]; };
-    for (const DP1Row& k : c.dp1) {
+    for (const DP1Row& k : of(c.dp1, range)) {
       const Vec3<T>&u = s(k.u), &v = s(k.v);
       visit(direction_pair(k, u, v), std::false_type(), T(u.dot(v) - c.f[index(k.f)].f));
     }
-    for (const AngleRow& k : e.angle) {
+    for (const AngleRow& k : of(e.angle, range)) {
       const Vec3<T> u = driven(c, k), v = s(k.v);
       visit(direction_pair(k, u, v), std::false_type(), T(u.dot(v)));
     }
-    for (const DP2Row& k : e.dp2) {
+    for (const DP2Row& k : of(e.dp2, range)) {
       const Vec3<T>& a = s(k.a);
       const Vec3<T> d = c.span(k.i, k.j, k.p, k.q);
       visit(Gradient{k.row, k.i, k.j, C::Et_times(a, d) - C::Et_times(s(k.p), a), C::Et_times(s(k.q), a), a},
             std::true_type(), T(a.dot(d) - c.f[index(k.f)].f));
     }
-    for (const DRow& k : e.d) {
+    for (const DRow& k : of(e.d, range)) {
       const Vec3<T> d = c.span(k.i, k.j, k.p, k.q);
       visit(along(k, s(k.p), s(k.q), Vec3<T>(T(2) * d)), std::true_type(), T(d.dot(d) - c.f[index(k.f)].f));
     }
-    for (const CDRow& k : e.cd) {
+    for (const CDRow& k : of(e.cd, range)) {
       const Vec3<T> n = k.c.template cast<T>();
       visit(along(k, s(k.p), s(k.q), n), std::true_type(), T(n.dot(c.span(k.i, k.j, k.p, k.q)) - c.f[index(k.f)].f));
     }
@@ -69,12 +78,20 @@ class Rows {
 
   // visit(gradient, has_r, Ψv − f): the velocity rows; needs compute_s_dot.
   template <class Visit>
-  static void velocity(const C& c, Visit&& visit) {
-    for (const PfaffianRow& k : c.elements->pfaffian) {
+  static void velocity(const C& c, Visit&& visit, RowRange range = {}) {
+    for (const PfaffianRow& k : of(c.elements->pfaffian, range)) {
       const Vec3<T>& a = c.s[index(k.a)];
       visit(along(k, c.s[index(k.p)], c.s[index(k.q)], a), std::true_type(),
             T(a.dot(c.span_rate(k.i, k.j, k.p, k.q)) - c.f[index(k.f)].f));
     }
+  }
+
+  // Of rows of one kind, which ascend, those in the range.
+  template <class Row>
+  static std::span<const Row> of(const std::vector<Row>& rows, RowRange range) {
+    if (range.whole()) return rows;
+    const auto first = std::ranges::lower_bound(rows, range.first, {}, &RowBase::row);
+    return {first, std::ranges::lower_bound(first, rows.end(), range.end, {}, &RowBase::row)};
   }
 
   // ν by row: ∂Φ/∂t with the opposite sign; f of a velocity row.

@@ -1,4 +1,5 @@
 // The formulations against one another, and against Newton's and Euler's equations written out.
+#include "integrators/start/violation.h"
 #include "tests/scale.h"
 #include "tests/support/row_definitions.h"
 #include "tests/support/standing.h"
@@ -91,6 +92,36 @@ TEST(Formulations, ReactionsAreWhatNewtonAndEulerAsk) {
         EXPECT_LT((model.bodies[b].mass * s.rdd - force).norm(), 1e-10 * scale);
         EXPECT_LT((J * s.wd + s.w.cross(J * s.w) - s.A.transpose() * moment).norm(), 1e-10 * scale);
       }
+    }
+  }
+}
+
+// Three constraints that hold a point along one axis each are evaluated as one, but each has its own reaction.
+TEST(Formulations, ReactionsOfAPointHeldByThreeConstraints) {
+  Scene scene;
+  scene.gravity = {1, -2, 3};
+  Body& body = scene.bodies.emplace_back();
+  body.name = "body";
+  body.mass = 2;
+  body.inertia = Vector3(0.1, 0.2, 0.25).asDiagonal();
+  for (int k = 0; k < 3; ++k) {
+    Constraint& held = scene.constraints.emplace_back();
+    held.type = ConstraintType::CD;
+    held.i = kGround, held.j = 0;
+    held.c = Vector3::Unit(k);
+  }
+  const Model model = compile(scene);
+  for (const FormulationEntry& entry : formulations()) {
+    SCOPED_TRACE(entry.name);
+    std::vector<BodyState> states = given_state(model);
+    states[0].A = Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+    Standing at(entry.name, model, states, 0);
+    at.solve();
+    for (int k = 0; k < 3; ++k) {
+      Vector3 force, moment;
+      at.problem->reaction(k, view(at.lambda), force, moment);
+      EXPECT_LT((force + body.mass * scene.gravity[k] * Vector3::Unit(k)).norm(), 1e-14) << k;
+      EXPECT_LT(moment.norm(), 1e-14) << k;
     }
   }
 }
