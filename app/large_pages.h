@@ -1,7 +1,7 @@
 // Memory in large pages for large scenes.
 //
 // A scene of 100 000 bodies takes some gigabytes, most of it once: in pages of 4 kB half of the time to the first step
-// is the system's, which hands them out one by one, and that of the processor's search for them (figures in
+// can be the system's, which hands them out one by one, and that of the processor's search for them (figures in
 // bench/README.md). glibc asks for pages of 2 MB only where its environment says so when a program begins.
 #pragma once
 
