@@ -134,7 +134,9 @@ std::string with_key_paths(std::string_view message, const Scene& scene) {
         continue;
       if (!elements) elements.emplace(scene);
       const auto [path, end] = elements->at(kind, message, at + 2);
-      if (path.empty() || !told.insert(path).second) continue;
+      if (path.empty()) continue;
+      at = end;  // what stands in the name names nothing
+      if (!told.insert(path).second) break;
       const std::string there = fmt::format(" ({}", path);
       const std::string_view after = message.substr(end + 1);
       if (after.starts_with(there) && after.find_first_of(",;)") == there.size()) break;  // it was given them before

@@ -308,7 +308,8 @@ TEST(SceneValidation, names_are_given_key_paths_and_lines) {
 "joints": [{"type": "spherical", "bodies": ["ground", "it's"], "point": [0, 0, 0]},
   {"type": "spherical", "name": "b",
    "bodies": ["ground", "b"], "point": [0, 0, 0]}],
-"forces": [{"type": "torque", "name": "motor", "body": "b", "torque": [0, 0, 1]}
+"forces": [{"type": "torque", "name": "motor", "body": "b", "torque": [0, 0, 1]},
+  {"type": "torque", "name": "on body 'b'", "body": "b", "torque": [0, 0, 1]}
 ]})j";
   const Scene scene = parse_scene(text, "two.json");
   const auto placed = [&](const char* message) { return with_lines(with_key_paths(message, scene), text); };
@@ -318,6 +319,8 @@ TEST(SceneValidation, names_are_given_key_paths_and_lines) {
             "'spherical1'");
   EXPECT_EQ(placed("at t = 1 s force 'motor', component y: '1/t' is not finite"),
             "at t = 1 s force 'motor' (/forces/0, line 7), component y: '1/t' is not finite");
+  EXPECT_EQ(placed("force 'on body 'b'' turns body 'b'"),
+            "force 'on body 'b'' (/forces/1, line 8) turns body 'b' (/bodies/1, line 3)");
   EXPECT_EQ(placed(with_key_paths("of joint 'b'; its row", scene).c_str()),
             "of joint 'b' (/joints/1, line 5); its row");
   EXPECT_EQ(placed("joint 'none', antibody 'b' and '/tmp (/x)'"), "joint 'none', antibody 'b' and '/tmp (/x)'");
