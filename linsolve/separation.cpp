@@ -149,14 +149,16 @@ class Separation {
   void pivot_on(std::size_t k, std::pair<int, double> entry) {
     const auto [column, value] = entry;
     for (auto& one : vectors_[k]) one.second /= value;
-    for (const std::size_t other : std::vector<std::size_t>(having_[column])) {
+    for (const std::size_t other : std::exchange(having_[column], {k})) {
       const double factor = other == k ? 0 : find(vectors_[other], column);
       if (factor == 0) continue;
-      for (const auto& [c, v] : vectors_[k])
-        if (find(vectors_[other], c) == 0) having_[c].push_back(other);
+      auto has = vectors_[other].begin();
+      for (const auto& [c, v] : vectors_[k]) {
+        while (has != vectors_[other].end() && has->first < c) ++has;
+        if (has == vectors_[other].end() || has->first != c) having_[c].push_back(other);
+      }
       vectors_[other] = subtract(vectors_[other], factor, vectors_[k], column);
     }
-    having_[column] = {k};
     pivots_[k] = column;
   }
 
@@ -192,6 +194,7 @@ void drop_nothing(SparseEntries& z) {
 
 SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntries& y, int gone) {
   SparseEntries sum;
+  sum.reserve(x.size() + y.size());
   auto a = x.begin();
   auto b = y.begin();
   while (a != x.end() || b != y.end()) {
@@ -202,8 +205,8 @@ SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntrie
       if (a != x.end() && a->first == b->first) sum.back().second += (a++)->second;
       ++b;
     }
+    if (sum.back().first == gone) sum.pop_back();
   }
-  std::erase_if(sum, [&](const auto& entry) { return entry.first == gone; });
   drop_nothing(sum);
   return sum;
 }

@@ -18,6 +18,9 @@ namespace {
 constexpr double kMove = 1e-3;        // of a body's size
 constexpr double kShortWhile = 1e-3;  // s, where nothing moves yet
 constexpr double kPulledBack = 0.3;   // of the move that has to be left after the projection
+// Of a row that is free beside far more is left in sums with random coefficients, but for a chance of one in 1e10.
+constexpr double kFollows = 1e-8;
+constexpr int kSums = 3;
 
 }  // namespace
 
@@ -37,7 +40,7 @@ Beside::Beside(const std::shared_ptr<const Model>& model, std::span<const BodySt
 }
 
 Trial Beside::begin(const std::vector<int>& without) const {
-  Trial trial(intrinsic_formulation().make(unit_, without));
+  Trial trial(without, intrinsic_formulation().make(unit_, without));
   Place& start = trial.start;
   start.q.resize(index(trial.problem->nq())), start.v.resize(index(trial.problem->nv()));
   check(trial.problem->from_bodies(states_, start.q, start.v).ok(), "every orientation has coordinates");
@@ -101,7 +104,7 @@ std::optional<Place> Beside::settle(Trial& trial, Place place, std::span<const d
   const double moved = distance(place.q, start.q);
   if (!trial.put_back(place)) return {};
   if (must_move && distance(place.q, start.q) < kPulledBack * moved) return {};
-  look(*trial.problem, place);
+  look(trial, place);
   return place;
 }
 
@@ -122,10 +125,37 @@ std::span<const double> Beside::measure_start(Trial& trial) {
   return off_at_start_;
 }
 
-void Beside::look(Problem& problem, Place& place) {
-  stand(problem, place);
-  place.columns = space_.columns();
-  place.dependent = dependent_columns(place.columns, kFreeBeside, suspects_).size();
+// Whether the rows left out are combinations of the others where the trial was last put back: of sums of them with
+// random coefficients all is, M-orthogonally, in the span of G_Kᵀ. No decomposition is needed for that.
+bool Beside::all_follow(Trial& trial, double t) const {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> size(1, 2);
+  const std::size_t nv = trial.start.v.size(), nc = index(trial.problem->nc());
+  std::vector<double> b(nv + nc);
+  for (int k = 0; k < kSums; ++k) {
+    std::ranges::fill(b, 0.0);
+    const auto scaled = [&](std::size_t j) { return j % 6 < 3 ? 1 : sizes_[j / 6]; };
+    for (const int row : trial.without) {
+      const auto column = std::ranges::lower_bound(space_.rows(), row) - space_.rows().begin();
+      const double factor = (random() % 2 == 0 ? 1 : -1) * size(random);
+      for (Eigen::SparseMatrix<double>::InnerIterator it(space_.columns(), column); it; ++it)
+        b[index(it.row())] += factor * scaled(index(it.row())) * it.value();
+    }
+    if (!trial.consistent->solve(t, b).ok()) return false;
+    for (std::size_t j = 0; j < nv; ++j)
+      if (!(std::abs(scaled(j) * b[j]) < kFollows)) return false;
+  }
+  return true;
+}
+
+void Beside::look(Trial& trial, Place& place) {
+  stand(*trial.problem, place);
+  if (trial.without.size() == suspects_ && all_follow(trial, place.t)) {
+    place.dependent = suspects_;
+  } else {
+    place.columns = space_.columns();
+    place.dependent = dependent_columns(place.columns, kFreeBeside, suspects_).size();
+  }
   std::vector<double> off(space_.rows().size());
   space_.distances(off);
   place.holds = true;
@@ -143,10 +173,10 @@ bool Beside::leads_on(const Place& start, const Place& along, const std::vector<
   if (extent(start.v) == 0) return false;
   Place place = along;
   if (!along.holds) {
-    Trial trial(intrinsic_formulation().make(unit_, without));
+    Trial trial(without, intrinsic_formulation().make(unit_, without));
     if (!trial.put_back(place)) return false;
     if (distance(place.q, start.q) < kPulledBack * kMove) return false;
-    look(*trial.problem, place);
+    look(trial, place);
   }
   return place.holds && place.dependent == without.size();
 }

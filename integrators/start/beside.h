@@ -29,8 +29,8 @@ inline constexpr double kHolds = 1e-9;
 struct Place {
   double t = 0;
   std::vector<double> q, v;
-  Eigen::SparseMatrix<double> columns;
-  std::size_t dependent = 0;  // of them; all suspects where it is as many
+  Eigen::SparseMatrix<double> columns;  // where fewer are dependent than suspected
+  std::size_t dependent = 0;            // of them; all suspects where it is as many
   bool holds = false;
   int worst = -1;  // the row that is off most, of those left out
   double off = 0;  // m
@@ -38,13 +38,16 @@ struct Place {
 
 // The given state, put onto the rows of the model that are not left out.
 struct Trial {
+  std::vector<int> without;  // rows of the model
   std::unique_ptr<Problem> problem;
   std::unique_ptr<Consistent> consistent;
   Place start;
   bool regular = false;  // it could be put there
 
-  explicit Trial(std::unique_ptr<Problem> of)
-      : problem(std::move(of)), consistent(std::make_unique<Consistent>(*problem, LinearChoice{})) {}
+  Trial(std::vector<int> left_out, std::unique_ptr<Problem> of)
+      : without(std::move(left_out)),
+        problem(std::move(of)),
+        consistent(std::make_unique<Consistent>(*problem, LinearChoice{})) {}
   bool put_back(Place& place) { return consistent->project_position(place.t, place.q).ok(); }
 };
 
@@ -69,7 +72,8 @@ class Beside {
  private:
   std::optional<Place> settle(Trial& trial, Place place, std::span<const double> dq, bool must_move);
   void stand(Problem& problem, const Place& place);
-  void look(Problem& problem, Place& place);
+  void look(Trial& trial, Place& place);
+  bool all_follow(Trial& trial, double t) const;
   double distance(std::span<const double> q, std::span<const double> from) const;
 
   std::shared_ptr<const Model> model_, unit_;  // unit_: of bodies of unit mass

@@ -24,7 +24,6 @@ constexpr double kTurnsMost = 2, kTurnsLittle = 0.5, kTurnsMore = 3;
 // more, is left to it before the next, and a few times that to a new choice.
 constexpr double kSooner = 1.6, kStays = 2.5;
 constexpr double kLeastTurn = 0.05;  // rad, between two looks
-constexpr double kNothing = 1e-12;   // of a coefficient beside the row set aside
 constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
 constexpr double kGain = 2;         // times better is a choice of clearest rows that is worth an exchange
@@ -80,37 +79,28 @@ void BlockChoice::keep_others(const std::vector<int>& left_out) {
   if (watched_ && !small()) sparse_ = std::make_unique<SparseCoefficients>(rows_, kept_);
 }
 
-// C_ for the rows kept; false, and 0, where these are not independent.
-bool BlockChoice::find_coefficients(int refinements) {
-  if (small()) {
-    if (small_.find(rows_, kept_, left_out_, C_)) {
-      for (int r = 0; r < refinements; ++r) small_.refine(rows_, kept_, left_out_, C_);
-      return true;
-    }
-  } else if (sparse_->factor(rows_)) {
-    C_ = sparse_->find(rows_, left_out_, refinements);
-    if (C_.allFinite()) return true;
+// Of a small block: for the rows kept; false, and 0, where these are not independent.
+bool BlockChoice::find_small(int refinements) {
+  if (!small_.find(rows_, kept_, left_out_, C_)) {
+    C_.setZero(static_cast<Eigen::Index>(kept_.size()), static_cast<Eigen::Index>(left_out_.size()));
+    return false;
   }
-  C_.setZero(static_cast<Eigen::Index>(kept_.size()), static_cast<Eigen::Index>(left_out_.size()));
-  return false;
+  for (int r = 0; r < refinements; ++r) small_.refine(rows_, kept_, left_out_, C_);
+  return true;
 }
 
-std::vector<SparseEntries> BlockChoice::unit_null_vectors() const {
-  std::vector<SparseEntries> vectors(left_out_.size());
-  for (std::size_t d = 0; d < left_out_.size(); ++d) {
-    for (std::size_t k = 0; k < kept_.size(); ++k) {
-      const double c = C_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(d));
-      if (std::abs(c) > kNothing) vectors[d].emplace_back(kept_[k], -c);
-    }
-    vectors[d].emplace_back(left_out_[d], 1.0);
-    std::ranges::sort(vectors[d]);
-  }
+// One for each row left out, from the coefficients or the factors found last; none where there are none.
+std::vector<SparseEntries> BlockChoice::unit_null_vectors(int refinements) const {
+  if (!small()) return sparse_->null_vectors(rows_, left_out_, refinements);
+  std::vector<SparseEntries> vectors;
+  for (std::size_t d = 0; d < left_out_.size(); ++d)
+    vectors.push_back(unit_null_vector(kept_, C_.col(static_cast<Eigen::Index>(d)), left_out_[d]));
   return vectors;
 }
 
 double BlockChoice::worst() {
   if (!small()) return estimate(rows_, *sparse_, left_out_);
-  return find_coefficients(0) ? C_.cwiseAbs().maxCoeff() : HUGE_VAL;
+  return find_small(0) ? C_.cwiseAbs().maxCoeff() : HUGE_VAL;
 }
 
 double BlockChoice::turn_until_worst(double rate) const {
@@ -155,9 +145,9 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead) {
 }
 
 bool BlockChoice::exchange(double most) {
-  if (!small()) find_coefficients(0);
+  std::vector<SparseEntries> vectors = unit_null_vectors(0);
+  if (vectors.empty()) return false;
   std::vector<int> chosen = left_out_;
-  std::vector<SparseEntries> vectors = unit_null_vectors();
   for (SparseEntries& z : vectors) drop_nothing(z);  // what rounding leaves of coefficients far away
   repair(std::move(vectors), chosen, grouped_, most);
   std::ranges::sort(chosen);
@@ -204,8 +194,8 @@ void BlockChoice::carry_over(const RowSpace& space, std::span<double> lambda) {
 void BlockChoice::add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors) {
   if (!watched_ || left_out_.size() > kMostNull || !has_coefficients()) return;
   rows_.stand(space);
-  if (!find_coefficients(1)) return;
-  for (SparseEntries& z : unit_null_vectors()) {
+  if (small() ? !find_small(1) : !sparse_->factor(rows_)) return;
+  for (SparseEntries& z : unit_null_vectors(1)) {
     for (auto& [k, value] : z) {
       value /= space.lengths()[index(rows_.place_in_space(k))];
       k = row_of(space, k);

@@ -68,12 +68,12 @@ class BlockChoice {
   double worst();
   double turn_until_worst(double rate) const;
   double turn_until_worn() const;
-  bool find_coefficients(int refinements);
+  bool find_small(int refinements);
   void keep_others(const std::vector<int>& left_out);
   bool exchange(double most);
   bool choose_clearest(const RowSpace& space);
   bool take(const std::vector<int>& chosen, double limit);
-  std::vector<SparseEntries> unit_null_vectors() const;
+  std::vector<SparseEntries> unit_null_vectors(int refinements) const;
 
   BlockRows rows_;  // all that follow by their places here
   bool watched_;
@@ -82,7 +82,7 @@ class BlockChoice {
   std::vector<int> kept_, left_out_;
   SmallCoefficients small_;
   std::unique_ptr<SparseCoefficients> sparse_;  // of blocks that are not small
-  Eigen::MatrixXd C_;                           // kept × left out
+  Eigen::MatrixXd C_;                           // of blocks that are, kept × left out
   double worst_ = 0;                            // the largest coefficient where last looked at, or what stands for it
   double worn_;                                 // from here on a choice is worn out
   double given_ = 0;                            // what it is allowed to be, where others were no better

@@ -1,10 +1,27 @@
 #include "integrators/start/sparse_coefficients.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/index.h"
 
 namespace poinsot {
+namespace {
+
+constexpr int kColumns = 32;              // columns
+constexpr double kForgettable = 1e-15;    // of the largest number
+constexpr double kNoCoefficient = 1e-12;  // of a coefficient beside the row set aside
+
+}  // namespace
+
+SparseEntries unit_null_vector(std::span<const int> kept, const Eigen::Ref<const Eigen::VectorXd>& c, int left_out) {
+  SparseEntries z;
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    if (const double by = c[static_cast<Eigen::Index>(k)]; std::abs(by) > kNoCoefficient) z.emplace_back(kept[k], -by);
+  z.emplace_back(left_out, 1.0);
+  std::ranges::sort(z);
+  return z;
+}
 
 SparseCoefficients::SparseCoefficients(const BlockRows& rows, std::span<const int> kept)
     : kept_(kept.begin(), kept.end()) {
@@ -73,34 +90,57 @@ void SparseCoefficients::refine(const BlockRows& rows, Eigen::MatrixXd F, Eigen:
   C += change;
 }
 
-// B ← (G_K G_Kᵀ)⁻¹ B. Eigen takes one column after the other; here many go together, and those of rows left out next to
-// each other are 0 in most of the forward pass.
+std::vector<SparseEntries> SparseCoefficients::null_vectors(const BlockRows& rows, std::span<const int> left_out,
+                                                            int refinements) const {
+  std::vector<SparseEntries> vectors;
+  for (std::size_t first = 0; first < left_out.size(); first += kColumns) {
+    const auto some = left_out.subspan(first, std::min<std::size_t>(kColumns, left_out.size() - first));
+    const Eigen::MatrixXd C = find(rows, some, refinements);
+    if (!C.allFinite()) return {};
+    for (std::size_t d = 0; d < some.size(); ++d)
+      vectors.push_back(unit_null_vector(kept_, C.col(static_cast<Eigen::Index>(d)), some[d]));
+  }
+  return vectors;
+}
+
+// B ← (G_K G_Kᵀ)⁻¹ B. Eigen takes one column after the other.
 void SparseCoefficients::solve(Eigen::MatrixXd& B) const {
-  constexpr int kTogether = 32;
-  if (B.cols() < kTogether / 4) {
-    B = factored_.solve(B).eval();
-    return;
-  }
+  constexpr int kEstimated = 4;
+  if (B.cols() <= kEstimated) return solve_together<kEstimated>(B);
+  for (Eigen::Index first = 0; first < B.cols(); first += kColumns)
+    solve_together<kColumns>(B.middleCols(first, std::min<Eigen::Index>(kColumns, B.cols() - first)));
+}
+
+// Of rows left out next to each other most are 0 in the forward pass, and coefficients far from them are negligible.
+template <int N>
+void SparseCoefficients::solve_together(Eigen::Ref<Eigen::MatrixXd> B) const {
   const Eigen::SparseMatrix<double>& L = factored_.matrixL().nestedExpression();
-  const Eigen::VectorXd by_D = factored_.vectorD().cwiseInverse();
-  Eigen::Matrix<double, Eigen::Dynamic, kTogether, Eigen::RowMajor> x(B.rows(), kTogether);
-  for (Eigen::Index first = 0; first < B.cols(); first += kTogether) {
-    const Eigen::Index count = std::min<Eigen::Index>(kTogether, B.cols() - first);
-    auto some = B.middleCols(first, count);
-    x.setZero();
-    for (Eigen::Index k = 0; k < B.rows(); ++k) x.row(factored_.permutationP().indices()[k]).head(count) = some.row(k);
-    for (Eigen::Index j = 0; j < x.rows(); ++j) {
-      if (x.row(j).isZero(0)) continue;
-      for (Eigen::SparseMatrix<double>::InnerIterator it(L, j); it; ++it)
-        if (it.row() > j) x.row(it.row()) -= it.value() * x.row(j);
-    }
-    for (Eigen::Index j = x.rows(); j-- > 0;) {
-      x.row(j) *= by_D[j];
-      for (Eigen::SparseMatrix<double>::InnerIterator it(L, j); it; ++it)
-        if (it.row() > j) x.row(j) -= it.value() * x.row(it.row());
-    }
-    for (Eigen::Index k = 0; k < B.rows(); ++k) some.row(k) = x.row(factored_.permutationP().indices()[k]).head(count);
+  const Eigen::VectorXd D = factored_.vectorD();
+  const auto place = [&](Eigen::Index k) { return factored_.permutationP().indices()[k]; };
+  Eigen::Matrix<double, Eigen::Dynamic, N, Eigen::RowMajor> x(B.rows(), N);
+  x.setZero();
+  for (Eigen::Index k = 0; k < B.rows(); ++k) x.row(place(k)).head(B.cols()) = B.row(k);
+  std::vector<char> counts(index(B.rows()));
+  for (Eigen::Index j = 0; j < x.rows(); ++j) {
+    counts[index(j)] = !x.row(j).isZero(0);
+    if (!counts[index(j)]) continue;
+    for (Eigen::SparseMatrix<double>::InnerIterator it(L, j); it; ++it)
+      if (it.row() > j) x.row(it.row()) -= it.value() * x.row(j);
   }
+  const double negligible = kForgettable * x.cwiseAbs().maxCoeff();
+  for (Eigen::Index j = x.rows(); j-- > 0;) {
+    if (counts[index(j)]) x.row(j) /= D[j];
+    for (Eigen::SparseMatrix<double>::InnerIterator it(L, j); it; ++it)
+      if (it.row() > j && counts[index(it.row())]) {
+        x.row(j) -= it.value() * x.row(it.row());
+        counts[index(j)] = 1;
+      }
+    if (counts[index(j)] && x.row(j).cwiseAbs().maxCoeff() <= negligible) {
+      x.row(j).setZero();
+      counts[index(j)] = 0;
+    }
+  }
+  for (Eigen::Index k = 0; k < B.rows(); ++k) B.row(k) = x.row(place(k)).head(B.cols());
 }
 
 }  // namespace poinsot

@@ -31,7 +31,9 @@ class Square {
 
 // Eliminates p pivots of n and visits those that are cancelled. The pivots are those of factor_choosing().
 template <class Visit>
-void eliminate(Square& a, int p, int n, std::span<double> weight, double part, Visit&& cancelled) {
+void eliminate(Square& a, int p, int n, std::span<double> weight, double part, std::vector<double>& l,
+               Visit&& cancelled) {
+  l.resize(index(n));
   for (int k = 0; k < p; ++k) {
     int best = k;
     const auto candidate = [&](int i) { return std::abs(a(i, k).value) * weight[index(i)]; };
@@ -46,13 +48,15 @@ void eliminate(Square& a, int p, int n, std::span<double> weight, double part, V
       cancelled(k);
       pivot.value = pivot.size > 0 ? pivot.size : 1;
     }
-    for (int i = k + 1; i < n; ++i) {
-      const double l = a(i, k).value / pivot.value;
-      if (l == 0) continue;
-      for (int j = k + 1; j < n; ++j) {
-        const double change = l * a(k, j).value;
-        a(i, j).value -= change;
-        a(i, j).size += std::abs(change);
+    for (int i = k + 1; i < n; ++i) l[index(i)] = a(i, k).value / pivot.value;
+    for (int j = k + 1; j < n; ++j) {
+      const double u = a(k, j).value;
+      if (u == 0) continue;
+      Sized* column = &a(0, j);
+      for (int i = k + 1; i < n; ++i) {
+        const double change = l[index(i)] * u;
+        column[i].value -= change;
+        column[i].size += std::abs(change);
       }
     }
   }
@@ -66,7 +70,7 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
   std::vector<std::vector<Sized>> updates(s.fronts.size());  // m × m, until the parent takes them
   Square a;
   std::vector<int> places;
-  std::vector<double> units;
+  std::vector<double> units, multipliers;
   const Strip* strip = s.strips.data();
   const int* child = s.children.data();
   for (std::size_t k = 0; k < s.fronts.size(); ++k) {
@@ -102,7 +106,7 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
     }
     units.resize(index(p));
     for (int i = 0; i < p; ++i) units[index(i)] = weight[index(s.unknown[index(f.first + i)])];
-    eliminate(a, p, n, units, part, [&](int i) { bad.push_back(f.first + i); });
+    eliminate(a, p, n, units, part, multipliers, [&](int i) { bad.push_back(f.first + i); });
     updates[k].reserve(index(m) * index(m));
     for (int j = p; j < n; ++j)
       for (int i = p; i < n; ++i) updates[k].push_back(a(i, j));
