@@ -7,8 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include "integrators/start/loop_rows.h"
 #include "integrators/start/rank.h"
 #include "integrators/start/row_blocks.h"
+#include "integrators/start/row_choice.h"
+#include "integrators/start/row_space.h"
 #include "integrators/start/violation.h"
 #include "tests/support/carried.h"
 #include "tests/support/scene_transform.h"
@@ -119,6 +122,31 @@ TEST(Rank, OfACarriedLadder) {
       EXPECT_EQ(found.aside.size(), static_cast<std::size_t>(3 * cells));
       EXPECT_TRUE(found.singular.empty());
       EXPECT_EQ(found.doubt, 0);
+    }
+}
+
+// What redundant joints may add to one another's reactions loads no body, found by full and by sparse matrices, in one
+// loop and in a ladder that is longer than coefficients reach.
+TEST(RowChoice, NullVectorsLoadNoBody) {
+  for (const auto make : {&Carried::four_bars, &Carried::ladder})
+    for (const int count : {1, 4, 60}) {
+      SCOPED_TRACE(fmt::format("{} {}", make == &Carried::ladder ? "ladder" : "four-bars", count));
+      const auto model = std::make_shared<const Model>(compile(make(count, true)));
+      const std::vector<BodyState> states = given_state(*model);
+      RowChoice choice(model, loop_rows(model, 0, states), analyze_rank(model, states, RankNames::none).aside);
+      const std::vector<SparseEntries> vectors = choice.null_vectors(0, states);
+      EXPECT_EQ(vectors.size(), static_cast<std::size_t>(3 * count));
+      RowSpace all = all_rows(model, 0, states);
+      for (const SparseEntries& z : vectors) {
+        Eigen::VectorXd load = Eigen::VectorXd::Zero(all.columns().rows());
+        double largest = 0;
+        for (const auto& [row, value] : z) {
+          const double force = value * all.lengths()[static_cast<std::size_t>(row)];  // on a unit vector
+          load += force * all.columns().col(row);
+          largest = std::max(largest, std::abs(force));
+        }
+        EXPECT_LT(load.cwiseAbs().maxCoeff(), 1e-11 * largest);
+      }
     }
 }
 
