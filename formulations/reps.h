@@ -56,9 +56,10 @@ struct REPS {
   template <class T>
   static void position(const T* x, Position<T>& at) {
     using std::cos, std::sin;
-    at.sp = sin(x[0]), at.cp = cos(x[0]);
-    at.st = sin(x[1]), at.ct = cos(x[1]);
-    at.ss = sin(x[2]), at.cs = cos(x[2]);
+    const T phi = x[0], theta = x[1], psi = x[2];  // of values the compiler takes sine and cosine in one call
+    at.sp = sin(phi), at.cp = cos(phi);
+    at.st = sin(theta), at.ct = cos(theta);
+    at.ss = sin(psi), at.cs = cos(psi);
     at.chart = static_cast<int>(plain(x[3]));
     const T &sp = at.sp, &cp = at.cp, &st = at.st, &ct = at.ct, &ss = at.ss, &cs = at.cs;
     Mat3<T> R;
@@ -132,7 +133,7 @@ struct REPS {
   static X<T> inertia_residual(const Position<T>& at, const Velocity<T>& rate, const T* xd, const T* xdd,
                                const Mat3<T>& J) {
     const Mat3<T> Jc = EulerChart::inertia_to_chart(at.chart, J);
-    const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot(at, xd) * Eigen::Map<const Vec3<T>>(xd);
+    const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot_times(at, xd);
     return at.B.transpose() * (Jc * wd + rate.wc.cross(Jc * rate.wc));
   }
   template <class T>
@@ -143,11 +144,12 @@ struct REPS {
   template <class T>
   static XX<T> inertia_rate_variation(const Position<T>& at, const Velocity<T>& rate, const T* xd, const Mat3<T>& J) {
     const Mat3<T> Jc = EulerChart::inertia_to_chart(at.chart, J);
-    const Vec3<T> ed = Eigen::Map<const Vec3<T>>(xd);
     const Mat3<T> L = tilde<T>(rate.wc) * Jc - tilde<T>(Jc * rate.wc);
-    Mat3<T> inner = Jc * B_dot(at, xd) + L * at.B;
-    inner.col(1) += Jc * (B_partial(at, 1) * ed);
-    inner.col(2) += Jc * (B_partial(at, 2) * ed);
+    const Partials<T> d(at);
+    Mat3<T> inner = L * at.B;
+    inner.col(0) += Jc * (xd[1] * d.theta + xd[2] * d.psi0);
+    inner.col(1) += Jc * (xd[2] * d.psi1 + d.theta_times(xd));
+    inner.col(2) += Jc * d.psi_times(xd);
     return at.B.transpose() * inner;
   }
   static constexpr bool inertia_depends_on_position = true;
@@ -155,15 +157,20 @@ struct REPS {
   static XX<T> inertia_position_variation(const Position<T>& at, const Velocity<T>& rate, const T* xd, const T* xdd,
                                           const Mat3<T>& J) {
     const Mat3<T> Jc = EulerChart::inertia_to_chart(at.chart, J);
-    const Vec3<T> ed = Eigen::Map<const Vec3<T>>(xd), edd = Eigen::Map<const Vec3<T>>(xdd);
     const Mat3<T> L = tilde<T>(rate.wc) * Jc - tilde<T>(Jc * rate.wc);
-    const Vec3<T> u = Jc * (at.B * edd + B_dot(at, xd) * ed) + rate.wc.cross(Jc * rate.wc);
-    XX<T> v = XX<T>::Zero();
-    for (int k = 1; k < 3; ++k) {
-      const Mat3<T> Bk = B_partial(at, k);
-      const Mat3<T> Bkd = ed[1] * B_second_partial(at, k, 1) + ed[2] * B_second_partial(at, k, 2);
-      v.col(k) = Bk.transpose() * u + at.B.transpose() * (Jc * (Bk * edd + Bkd * ed) + L * (Bk * ed));
-    }
+    const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot_times(at, xd);
+    const Vec3<T> u = Jc * wd + rate.wc.cross(Jc * rate.wc);
+    const Partials<T> d(at);
+    // Of (∂B/∂θ)˙ and (∂B/∂ψ)˙ times ε̇.
+    const Vec3<T> theta_dot = (xd[1] * d.theta_theta() + xd[2] * d.theta_psi()) * xd[0];
+    const Vec3<T> psi_dot = (xd[1] * d.theta_psi() + xd[2] * d.psi_psi0()) * xd[0] + (xd[2] * xd[1]) * d.psi_psi1();
+    XX<T> v;
+    v.col(0).setZero();
+    v.col(1) = at.B.transpose() * (Jc * (d.theta_times(xdd) + theta_dot) + L * d.theta_times(xd));
+    v.col(2) = at.B.transpose() * (Jc * (d.psi_times(xdd) + psi_dot) + L * d.psi_times(xd));
+    v(0, 1) += d.theta.dot(u);
+    v(0, 2) += d.psi0.dot(u);
+    v(1, 2) += d.psi1.dot(u);
     return v;
   }
 
@@ -190,7 +197,7 @@ struct REPS {
   }
   template <class T>
   static Vec3<T> angular_acceleration(const Position<T>& at, const Velocity<T>&, const T* xd, const T* xdd) {
-    const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot(at, xd) * Eigen::Map<const Vec3<T>>(xd);
+    const Vec3<T> wd = at.B * Eigen::Map<const Vec3<T>>(xdd) + B_dot_times(at, xd);
     return EulerChart::vector_to_scene<T>(at.chart, wd);
   }
 
@@ -202,8 +209,7 @@ struct REPS {
     Position<double> there;
     position(x, there);
     rates_from(there, rate.w, xd);
-    const Vec3<double> bias =
-        EulerChart::vector_to_scene<double>(there.chart, B_dot(there, xd) * Eigen::Map<const Vec3<double>>(xd));
+    const Vec3<double> bias = EulerChart::vector_to_scene<double>(there.chart, B_dot_times(there, xd));
     rates_from<double>(there, wd - bias, xdd);
     return true;
   }
@@ -229,34 +235,29 @@ struct REPS {
     return first.cross(second.cross(s));
   }
 
-  // B depends on θ (k = 1) and ψ (k = 2) only.
+  // B depends on θ and ψ only: ∂B/∂θ has a first column, ∂B/∂ψ two, all else is 0. So with the second partials.
   template <class T>
-  static Mat3<T> B_partial(const Position<T>& at, int k) {
-    Mat3<T> b = Mat3<T>::Zero();
-    if (k == 1) {
-      b.col(0) << at.ct * at.ss, at.ct * at.cs, -at.st;
-    } else {
-      b.col(0) << at.st * at.cs, -at.st * at.ss, T(0);
-      b.col(1) << -at.ss, -at.cs, T(0);
-    }
-    return b;
-  }
+  struct Partials {
+    const Position<T>& at;
+    Vec3<T> theta, psi0, psi1;
+
+    explicit Partials(const Position<T>& where)
+        : at(where),
+          theta(at.ct * at.ss, at.ct * at.cs, -at.st),
+          psi0(at.st * at.cs, -at.st * at.ss, T(0)),
+          psi1(-at.ss, -at.cs, T(0)) {}
+    Vec3<T> theta_times(const T* x) const { return theta * x[0]; }
+    Vec3<T> psi_times(const T* x) const { return psi0 * x[0] + psi1 * x[1]; }
+    Vec3<T> theta_theta() const { return {-at.st * at.ss, -at.st * at.cs, -at.ct}; }
+    Vec3<T> theta_psi() const { return {at.ct * at.cs, -at.ct * at.ss, T(0)}; }
+    Vec3<T> psi_psi0() const { return {-at.st * at.ss, -at.st * at.cs, T(0)}; }
+    Vec3<T> psi_psi1() const { return {-at.cs, at.ss, T(0)}; }
+  };
+  // Ḃ ε̇
   template <class T>
-  static Mat3<T> B_second_partial(const Position<T>& at, int k, int l) {
-    Mat3<T> b = Mat3<T>::Zero();
-    if (k == 1 && l == 1) {
-      b.col(0) << -at.st * at.ss, -at.st * at.cs, -at.ct;
-    } else if (k == 2 && l == 2) {
-      b.col(0) << -at.st * at.ss, -at.st * at.cs, T(0);
-      b.col(1) << -at.cs, at.ss, T(0);
-    } else {
-      b.col(0) << at.ct * at.cs, -at.ct * at.ss, T(0);
-    }
-    return b;
-  }
-  template <class T>
-  static Mat3<T> B_dot(const Position<T>& at, const T* xd) {
-    return xd[1] * B_partial(at, 1) + xd[2] * B_partial(at, 2);
+  static Vec3<T> B_dot_times(const Position<T>& at, const T* xd) {
+    const Partials<T> d(at);
+    return xd[1] * d.theta_times(xd) + xd[2] * d.psi_times(xd);
   }
 };
 static_assert(Formulation<REPS>);
