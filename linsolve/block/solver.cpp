@@ -50,7 +50,9 @@ constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not a
 constexpr double kCancelled = 1e-6, kRounding = 1e-10;
 // Solutions along a motion are like one another. Where the residuals of random right sides are within what is accepted
 // and those of so many solutions in a row were good, one in so many is looked at, and fewer later; both steps of two
-// Newton iterations come by turns, these numbers being odd.
+// Newton iterations come by turns, these numbers being odd. So, too, where pivots have drifted, as long as they are not
+// kLike times farther away than where the last solution was seen to be good.
+constexpr double kLike = 2;
 constexpr int kCalm = 8, kSeldom = 7, kLongCalm = 15 * kSeldom, kRarely = 3 * kSeldom;
 // Where so many solutions needed refinement, and of those looked at one in so many, inverses of pivot blocks may be the
 // cause; to factor these in their place costs about as much as that refinement.
@@ -103,7 +105,10 @@ class Solver final : public LinearSolver {
     const Drift drift = factor_.factor(*schedule_, values_, examined);
     if (!examined || !within(drift, kFar)) return factor_fresh();
     ++statistics_.refactorizations;
-    answer_ = within(drift, kNear) ? near_ : Answer::checked;
+    drift_ = drift;
+    answer_ = within(drift, kNear)                               ? near_
+              : near_ != Answer::checked && like(drift, looked_) ? Answer::sampled
+                                                                 : Answer::checked;
     return {};
   }
 
@@ -112,6 +117,11 @@ class Solver final : public LinearSolver {
 
   static bool within(const Drift& drift, double range) {
     return drift.poison == 0 && drift.least * range >= 1 && drift.largest <= range;
+  }
+
+  // Pivots no farther from those examined than where a solution was seen to be good, give or take kLike.
+  static bool like(const Drift& drift, const Drift& seen) {
+    return drift.least * kLike >= seen.least && drift.largest <= kLike * seen.largest;
   }
 
   LinearStatus factor_fresh() {
@@ -132,6 +142,7 @@ class Solver final : public LinearSolver {
       return factor_by_klu();
     }
     answer_ = near_;
+    drift_ = looked_ = {};
     good_ = 0;
     helped_ = 0;
     return {};
@@ -227,7 +238,10 @@ class Solver final : public LinearSolver {
     const double size = residual(b_, b);
     ++looked_at_;
     ++good_;
-    if (size <= kGoodResidual) return {};
+    if (size <= kGoodResidual) {
+      looked_ = drift_;
+      return {};
+    }
     good_ = 0;
     if (size <= kLargeResidual) {  // factors that leave so little leave no more than rounding of a correction
       correct(b);
@@ -293,6 +307,7 @@ class Solver final : public LinearSolver {
   std::vector<double> weight_;  // of rows in the choice of pivots
   Answer answer_ = Answer::open;
   Answer near_ = Answer::trusted;  // with pivots near those of the last fresh factorization, by what that one left
+  Drift drift_, looked_;           // of the pivots at hand, and of those whose last solution was seen to be good
   std::int64_t good_ = 0;          // solutions since one was not, as far as was looked
   std::int64_t looked_at_ = 0, refined_ = 0;  // solutions of whatever pattern, and those that needed refinement
   int helped_ = 0;                            // by klu, times in a row
