@@ -8,7 +8,7 @@
 namespace poinsot {
 namespace {
 
-constexpr int kColumns = 32;              // columns
+constexpr int kColumns = 32;              // that are solved for together
 constexpr double kForgettable = 1e-15;    // of the largest number
 constexpr double kNoCoefficient = 1e-12;  // of a coefficient beside the row set aside
 
