@@ -18,6 +18,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "core/check.h"
 #include "core/index.h"
@@ -59,7 +60,8 @@ constexpr int kCalm = 8, kSeldom = 7, kLongCalm = 15 * kSeldom, kRarely = 3 * kS
 constexpr int kOften = 8, kShare = 10;
 constexpr int kRefinements = 3;  // each gains three digits or more of kFairResidual; beyond, they do not converge
 constexpr int kRepairs = 8;      // each fuses all that is bad at the time and costs an analysis
-constexpr int kPatience = 3;     // times in a row that klu has to help before it takes over
+constexpr std::size_t kMostTakenIn = 128;  // groups by one body: a front of some hundred unknowns
+constexpr int kPatience = 3;               // times in a row that klu has to help before it takes over
 
 // How solutions are made of the values at hand.
 enum class Answer {
@@ -69,6 +71,13 @@ enum class Answer {
   checked,      // the residual of each is looked at
   helped,       // by klu; the next values are tried here again
   handed_over,  // by klu, and all that follow
+};
+
+// What a fresh factorization is worth.
+enum class Pivots {
+  good,
+  doubtful,  // solutions are good once they are refined, but some pivots are mostly rounding
+  bad,       // or some are nothing else
 };
 
 class Solver final : public LinearSolver {
@@ -135,12 +144,20 @@ class Solver final : public LinearSolver {
     }
     answer_ = Answer::open;
     std::vector<int> bad;
-    for (int repairs = 0; !factored_well(bad); ++repairs) {
-      if (repairs == kRepairs || !fuse(bad)) return factor_by_klu();
-      if (order()) continue;
-      answer_ = Answer::handed_over;
-      return factor_by_klu();
+    const std::vector<int> fused = fused_;
+    const Pivots first = factor_looking(bad);
+    Pivots last = first;
+    for (int repairs = 0; last != Pivots::good; ++repairs) {
+      if (repairs == kRepairs || !fuse(bad) || !order()) break;
+      last = factor_looking(bad);
     }
+    if (last != Pivots::good && first == Pivots::doubtful) {  // repairs came to nothing better, and are undone
+      fused_ = fused;
+      if (order() && trustworthy()) last = Pivots::good;
+      near_ = Answer::checked;
+    }
+    if (!schedule_) answer_ = Answer::handed_over;
+    if (last != Pivots::good) return factor_by_klu();
     answer_ = near_;
     drift_ = looked_ = {};
     good_ = 0;
@@ -148,19 +165,20 @@ class Solver final : public LinearSolver {
     return {};
   }
 
-  // Factorizes; where that is not to be trusted, with the pivots that may be why.
-  bool factored_well(std::vector<int>& bad) {
+  // Factorizes, and finds the pivots that may be why the factors are not to be trusted.
+  Pivots factor_looking(std::vector<int>& bad) {
     const auto cancelled = [&](std::span<const double> weight, double part) {
       return cancelled_pivots(*schedule_, values_, weight, part);
     };
     if (!trustworthy()) {
       bad = cancelled(residual_.rows(), kCancelled);
-      return false;
+      return Pivots::bad;
     }
-    if (cancelled(weight_, kCancelled).empty()) return true;
+    if (cancelled(weight_, kCancelled).empty()) return Pivots::good;
     near_ = Answer::checked;
     bad = cancelled(weight_, kRounding);  // may still pass for pivots, in a system of very different masses
-    return bad.empty();
+    if (bad.empty()) return Pivots::good;
+    return cancelled(weight_, 1 / kSingularCondition).empty() ? Pivots::doubtful : Pivots::bad;
   }
 
   // Factorizes with pivots chosen in the units of the equilibrated matrix and, where that does not serve, in those the
@@ -199,30 +217,36 @@ class Solver final : public LinearSolver {
   }
 
   // A body that is not regular by itself takes in a group of its constraints; a group that was a pivot too early goes
-  // to the last of its bodies. `bad`: such pivots, by place. False where nothing is left to fuse.
+  // to the last of its bodies. `bad`: such pivots, by place. False where nothing is left to fuse, and where a body
+  // would take in more than share a front: its own six unknowns cannot be why all these are bad.
   bool fuse(const std::vector<int>& bad) {
     Incidence incidence;
     incidence.find(layout_, node_, fused_);
     std::vector<int> place(fused_.size(), 0);  // in the order of elimination, by node
     for (int k = 0; k < schedule_->n; ++k) place[index(node_[index(schedule_->unknown[index(k)])])] = k;
+    std::vector<int> fused = fused_;
     bool any = false;
     for (const int k : bad) {
       const int node = node_[index(schedule_->unknown[index(k)])];
-      if (fused_[index(node)] >= 0) continue;
+      if (fused[index(node)] >= 0) continue;
       if (incidence.is_group[index(node)]) {
         const std::span<const int> bodies = incidence.bodies[node];
         if (bodies.empty()) continue;
-        fused_[index(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[index(b)]; });
+        fused[index(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[index(b)]; });
         any = true;
         continue;
       }
       for (const int g : incidence.groups[node])
-        if (fused_[index(g)] < 0) {
-          fused_[index(g)] = node;
+        if (fused[index(g)] < 0) {
+          fused[index(g)] = node;
           any = true;
           break;
         }
     }
+    std::vector<std::size_t> taken_in(fused.size(), 0);  // groups, by node of a body
+    for (const int body : fused)
+      if (body >= 0 && ++taken_in[index(body)] > kMostTakenIn) return false;
+    fused_ = std::move(fused);
     return any;
   }
 

@@ -12,8 +12,9 @@
 namespace poinsot::test {
 
 // Round a hub on a hinge: arms that are hinged twice, arms hinged to their neighbours, too (so that all move as one, in
-// one plane or at different heights), four-bars. Or a coupler on parallel cranks, the hub; on hinges or on balls.
-enum class Hub { twice, triangles, flat_triangles, four_bars, cranks, ball_cranks };
+// one plane or at different heights, or kilometres away from their hinges), four-bars. Or a coupler on parallel cranks,
+// the hub; on hinges or on balls.
+enum class Hub { twice, triangles, flat_triangles, far_triangles, four_bars, cranks, ball_cranks };
 
 struct HubKind {
   Hub hub;
@@ -24,8 +25,13 @@ struct HubKind {
   }
 };
 inline constexpr HubKind kHubs[] = {
-    {Hub::twice, "hinged twice"},  {Hub::triangles, "triangles"}, {Hub::flat_triangles, "flat triangles"},
-    {Hub::four_bars, "four-bars"}, {Hub::cranks, "cranks"},       {Hub::ball_cranks, "cranks with balls"},
+    {Hub::twice, "hinged twice"},
+    {Hub::triangles, "triangles"},
+    {Hub::flat_triangles, "flat triangles"},
+    {Hub::far_triangles, "far triangles"},
+    {Hub::four_bars, "four-bars"},
+    {Hub::cranks, "cranks"},
+    {Hub::ball_cranks, "cranks with balls"},
 };
 
 inline Scene hub(Hub kind, int count) {
@@ -63,11 +69,13 @@ inline Scene hub(Hub kind, int count) {
   for (int k = 0; k < count; ++k) {
     const double angle = kind == Hub::four_bars ? 2 * std::numbers::pi * k / count : 0.1 * k;
     const double part = kind == Hub::four_bars ? 2.0 / count : 0.05;
-    const Vector3 height(0, 0, kind == Hub::flat_triangles ? 0.0 : 0.01 * k);
+    const double apart = kind == Hub::flat_triangles ? 0.0 : kind == Hub::far_triangles ? 8.0 : 0.01;
+    const Vector3 height(0, 0, apart * (kind == Hub::far_triangles ? k : k % 100));
     const int arm = body(polar(2, angle) + height);
+    if (kind == Hub::far_triangles) scene.bodies.back().inertia *= 1 + height.squaredNorm();
     join(centre, arm, polar(1, angle));
     if (kind == Hub::twice) join(centre, arm, polar(1, angle) + Vector3(0, 0, 0.5));
-    if ((kind == Hub::triangles || kind == Hub::flat_triangles) && k > 0) join(last, arm, polar(1.5, angle - part));
+    if (kind != Hub::twice && kind != Hub::four_bars && k > 0) join(last, arm, polar(1.5, angle - part));
     last = arm;
     if (kind == Hub::four_bars) {
       const int coupler = body(polar(2, angle + part / 2)), other = body(polar(1.5, angle + part));
