@@ -67,7 +67,9 @@ void refuse_free_motion(const Problem& problem) {
 // upon it.
 void explain(Status& status, const Problem& problem) {
   if (status.ok()) return;
-  if (const std::string fault = problem.fault(); !fault.empty()) {
+  std::string fault = problem.fault();
+  if (fault.empty()) fault = fault_of_functions(problem.model(), status.time);  // it may have gone back a step
+  if (!fault.empty()) {
     status = no_value(status.time, fault);
   } else if (const std::string why = overflowing(problem.model(), status.time); !why.empty()) {
     status = {Failure::not_finite, status.time,

@@ -177,13 +177,19 @@ TEST(AutoIntegrator, ExplicitMethodsSayThatAMotionIsStiff) {
   Settings settings;
   settings.end = settings.every = 0.02;
   settings.rtol = 1e-6;
-  for (const char* integrator : {"dopri5", "dop853"}) {
+  for (const auto& [integrator, formulation] : {std::pair("dopri5", "rA"),
+                                                {"dopri5", "rp"},
+                                                {"dopri5", "reps"},
+                                                {"dop853", "rA"},
+                                                {"dop853", "rp"},
+                                                {"dop853", "reps"}}) {
     settings.integrator = integrator;
+    settings.formulation = formulation;
     std::vector<std::string> told;
     const Outcome outcome =
         simulate(with_spring(1e8, 1e5), settings, {}, [&](const std::string& n) { told.push_back(n); });
     ASSERT_TRUE(outcome.status.ok()) << outcome.status.message;
-    ASSERT_EQ(outcome.notices.size(), 1u) << integrator;
+    ASSERT_EQ(outcome.notices.size(), 1u) << integrator << ' ' << formulation;
     EXPECT_EQ(told, outcome.notices);
     EXPECT_THAT(outcome.notices[0], HasSubstr("stiff"));
     EXPECT_THAT(outcome.notices[0], HasSubstr("radau5"));

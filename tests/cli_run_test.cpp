@@ -28,8 +28,8 @@ TEST_F(Run, PrintsASummaryWithoutAnOutputFile) {
     EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
   EXPECT_EQ(result.out.find("h ="), std::string::npos) << "there is none";
   const Result fixed = poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "0.1"});
-  for (const char* part :
-       {"pendulum: dynamics, rA, implicit_euler, auto, h = 0.001 s", "100 steps", "Newton iterations"})
+  for (const char* part : {"pendulum: dynamics, rA, implicit_euler, auto, h = 0.001 s", "100 steps",
+                           "Newton iterations", "\naccuracy: not estimated"})
     EXPECT_NE(fixed.out.find(part), std::string::npos) << part << "\n" << fixed.out;
   EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
 }
@@ -78,6 +78,16 @@ TEST_F(Run, TheCommandLineWinsOverTheConfiguration) {
   EXPECT_EQ(used["linear_solver"], Settings{}.linear_solver);
 }
 
+// A door on three hinges that hold it too often.
+TEST_F(Run, TheRecordSaysWhichReactionsAreNotDetermined) {
+  const std::string door = fmt::format("{}/models/door.json", POINSOT_SOURCE_DIR);
+  const Result result = poinsot({"run", door, "--end", "0.01", "--out", "door.csv", "--reactions", "r.csv"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json record = read_json("door.run.json");
+  EXPECT_EQ(record["reactions_undetermined"], true);
+  EXPECT_EQ(record["undetermined_reactions"], (std::vector<std::string>{"lower", "middle", "upper"}));
+}
+
 TEST_F(Run, TheRecordSaysWhereTheNumbersComeFrom) {
   const Result result = poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "0.1", "--out",
                                  "a.csv", "--reactions", "r.csv"});
@@ -88,6 +98,12 @@ TEST_F(Run, TheRecordSaysWhereTheNumbersComeFrom) {
   EXPECT_EQ(record["incomplete"], false);
   EXPECT_EQ(record["message"], "");
   EXPECT_EQ(record["accuracy"], "not estimated");
+  EXPECT_EQ(record["reactions_undetermined"], false);
+  EXPECT_EQ(record["undetermined_reactions"], nlohmann::json::array());
+  EXPECT_GT(record["statistics"]["largest_rotation"], 0);
+  EXPECT_EQ(record["statistics"]["acceleration_error"]["index"], 3);  // steps of 1 ms are long enough for that
+  EXPECT_GT(record["statistics"]["acceleration_error"]["acceleration"], 0);
+  EXPECT_GT(record["statistics"]["acceleration_error"]["multiplier"], 0);
   EXPECT_FALSE(record.contains("verify"));
   EXPECT_EQ(record["scene"], nlohmann::json::parse(kPendulum, nullptr, true, true));
   EXPECT_EQ(record["scene_file"], "pendulum.json");

@@ -10,6 +10,7 @@
 #include "integrators/jacobian_policy.h"
 #include "integrators/start/driven_pose.h"
 #include "integrators/start/singular_position.h"
+#include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/fixed_steps.h"
 #include "integrators/stepping/turning.h"
@@ -170,9 +171,10 @@ class Kinematics final : public FixedSteps {
       h = to - at;
       status = advance(at, to, std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), 1e-12)));
       if (status.ok() && certain(h, to)) {
-        at = to;
+        at = x_.t = to;
         h *= 2;
         examined = false;
+        if (status = bring_up_to_date(); !status.ok()) break;
         q_from_ = x_.q, v_from_ = x_.v;
         continue;
       }
@@ -189,6 +191,14 @@ class Kinematics final : public FixedSteps {
     careful_ = false;
     if (status.failure == Failure::not_finite) problem_.set_position(status.time, span(q_from_));  // where to look why
     return status;
+  }
+
+  // Charts and rows, in the parts of a step that may turn bodies by far more than serves them.
+  Status bring_up_to_date() {
+    if (!problem_.has_discrete_state()) return {};
+    bool rewritten = false;
+    if (Status status = poinsot::accept(problem_, x_, rewritten); !status.ok()) return status;
+    return rewritten ? resume() : Status{};
   }
 
   Status branching(double t, int row) const {

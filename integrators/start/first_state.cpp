@@ -1,5 +1,7 @@
 #include "integrators/start/first_state.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +14,9 @@
 
 namespace poinsot {
 namespace {
+
+// Of the largest velocity, by which the velocities of the branch may differ: rounding beside the position.
+constexpr double kOnBranch = 1e-5;
 
 // Accelerations and multipliers of a start in a singular position that the velocities lead through.
 //
@@ -27,9 +32,20 @@ Status limit_accelerations(Problem& problem, const RankAnalysis& rank, const Set
   State limit = state;
   const bool found = std::ranges::any_of(
       kFarther, [&](double farther) { return passage.limit(limit, state.v, farther * rank.time_beside, HUGE_VAL); });
+  const auto singular = [&] { return describe_row(problem.model(), rank.singular.front().row); };
   if (!found) {
     return {Failure::singular_position, state.t,
-            "the start is a singular position, and accelerations beside it have no limit there; start beside it"};
+            fmt::format("the initial pose is a singular position of the mechanism, and accelerations beside it have no "
+                        "limit there: singular here: {}; start beside it",
+                        singular())};
+  }
+  // The constraints leave more velocities free than the mechanism has on either side.
+  if (!(largest(span(limit.v = limit.v - state.v)) <= kOnBranch * largest(span(state.v)))) {
+    return {Failure::singular_position, state.t,
+            fmt::format("the initial pose is a singular position of the mechanism, and the initial velocities are on "
+                        "none of the branches that go through it: singular here: {}; start beside it, or with the "
+                        "velocities of one branch",
+                        singular())};
   }
   const Eigen::Index nv = state.v.size();
   state.z.setZero();

@@ -53,6 +53,10 @@ class Assembler {
     result_.rank = known_ && !closed_ ? *known_ : analyze_rank(model_, given_, RankNames::none);
     refuse_conflicts();
     tell_rank();
+    if (settings_.analysis == Analysis::kinematics && leaves_rates_open()) {
+      result_.status = open_to_kinematics();
+      return std::move(result_);
+    }
     if (result_.rank.singular_position() && !result_.rank.moves_on) {
       result_.status = stuck();
       return std::move(result_);
@@ -214,6 +218,23 @@ class Assembler {
                         rank.singular.front().others.empty() && rank.singular.size() == 1
                             ? "its gradient vanishes, so that it constrains nothing here"
                             : "what the constraints leave free here and what they leave free beside it differ")};
+  }
+
+  // Rates are found from the constraints alone, and are rounding where a row is all but dependent on the others.
+  bool leaves_rates_open() const {
+    constexpr double kOpen = 1e-6;
+    const RankAnalysis& rank = result_.rank;
+    return rank.singular_position() ||
+           (rank.doubtful >= 0 && rank.doubt <= kOpen &&
+            !std::ranges::all_of(model_->rows, [](const Row& row) { return row.f.is_constant(); }));
+  }
+  Status open_to_kinematics() const {
+    const RankAnalysis& rank = result_.rank;
+    return {Failure::singular_position, 0,
+            fmt::format("the initial pose is a singular position of the mechanism, where its drivers alone do not say "
+                        "how it moves on: singular here: {}; start beside it, or with analysis dynamics, which follows "
+                        "the branch that the initial velocities lead to",
+                        rank.singular_position() ? names(rank.singular) : describe_row(*model_, rank.doubtful))};
   }
 
   // Redundant rows must hold where the others do.

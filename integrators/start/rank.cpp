@@ -75,11 +75,13 @@ class Examination {
     Trial trial = beside_->begin(without_);
     if (trial.regular) find_conflicts(trial, without_);
     if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
-    if (!result_.conflicts.empty()) {  // told as a reader of the scene meets them: what contradicts rows before it
+    // Conflicts are told as a reader of the scene meets them: what contradicts rows before it.
+    const auto by_order = [&] { return of_model(null_space(columns, kIndependent, space_->rows().size()).columns); };
+    if (!result_.conflicts.empty()) {
       std::vector<Conflict> as_chosen = std::exchange(result_.conflicts, {});
-      const std::vector<int> by_order = of_model(null_space(columns, kIndependent, space_->rows().size()).columns);
-      Trial other = beside_->begin(by_order);
-      if (other.regular) find_conflicts(other, by_order);
+      const std::vector<int> without = by_order();
+      Trial other = beside_->begin(without);
+      if (other.regular) find_conflicts(other, without);
       if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
     }
     const Place& start = trial.start;
@@ -101,8 +103,13 @@ class Examination {
     } else {
       if (surely.size() < suspects) tell_doubt(columns, surely);
       tell_redundant(columns, kDependent, surely_);
-      if (along && !along->holds && surely.size() == suspects)
-        result_.conflicts.push_back({along->worst, Conflict::Level::later, along->off, along->t});
+      if (along && !along->holds && surely.size() == suspects) {
+        Trial other = beside_->begin(by_order());
+        std::optional<Place> place;
+        if (other.regular) place = beside_->along_velocities(other);
+        if (!place || place->holds) place = along;
+        result_.conflicts.push_back({place->worst, Conflict::Level::later, place->off, place->t});
+      }
     }
   }
 

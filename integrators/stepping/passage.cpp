@@ -18,6 +18,7 @@ constexpr std::array kFall{1.0, 1.0, 1.0, 0.4};
 // Part of its size by which a velocity or an acceleration interpolated by two pairs less may differ, and that from one
 // side from that from the other: else the motion is not smooth, as where a force is switched.
 constexpr double kSmooth = 3e-3;
+constexpr double kTooLittle = 1e-6;  // of the velocity, changed within τ
 
 }  // namespace
 
@@ -118,16 +119,19 @@ bool Passage::limit(State& at, const Eigen::VectorXd& along, double tau, double 
     for (std::size_t k = 0; k < kWeights.size(); ++k) all += kWeights[k] * mean(k, x);
     return all;
   };
-  const auto is_smooth = [&](Eigen::VectorXd Beside::*x, const Eigen::VectorXd& value) {
+  const auto is_smooth = [&](Eigen::VectorXd Beside::*x, const Eigen::VectorXd& value, double nothing) {
     const auto odd = [&](std::size_t k) { return work_->beside[k][0].*x - work_->beside[k][1].*x; };
-    const double most = kSmooth * std::max(largest(span(value)), largest(span(work_->beside[0][0].*x)));
+    const double most =
+        std::max(kSmooth * std::max(largest(span(value)), largest(span(work_->beside[0][0].*x))), nothing);
     work_->moved = (4 * mean(0, x) - mean(1, x)) / 3 - value;
     if (!(largest(span(work_->moved)) <= most)) return false;
     work_->moved = odd(0) - 0.5 * odd(1);  // half of a jump
     return largest(span(work_->moved)) <= most;
   };
   const Eigen::VectorXd c = sum(&Beside::c), v = sum(&Beside::v), a = sum(&Beside::a);
-  if (!is_smooth(&Beside::v, v) || !is_smooth(&Beside::a, a)) return false;
+  // Of a motion without accelerations they are nothing but rounding.
+  const double unseen = kTooLittle * largest(span(v)) / tau;
+  if (!is_smooth(&Beside::v, v, 0) || !is_smooth(&Beside::a, a, unseen)) return false;
   problem_.retract(span(at.q), {c.data(), static_cast<std::size_t>(c.size())}, span(work_->place.q));
   work_->moved_by << c, v - at.v;
   at.q = work_->place.q;
