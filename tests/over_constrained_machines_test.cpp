@@ -199,18 +199,15 @@ class Machines : public ::testing::TestWithParam<std::string> {};
 TEST_P(Machines, GrippersMoveAsWithoutRedundancy) {
   int compared = 0;
   each_integrator(GetParam(), 1, [&](const IntegratorEntry& integrator, const Settings& settings) {
-    for (const Base base : {Base::hinged, Base::free}) {
-      for (const Frames frames : {Frames::quarter_turns, Frames::random}) {
-        SCOPED_TRACE(fmt::format("{} {} {} frames {}", integrator.name, GetParam(),
-                                 base == Base::free ? "free" : "hinged", static_cast<int>(frames)));
-        const Pair pair = compare(integrator, settings, gripper(base, frames, true), gripper(base, frames, false));
-        EXPECT_GT(moved(pair.with, kUpperJaw, kLowerJaw), 0.02);
-        EXPECT_GT(pair.with.exchanges, 0);
-        ++compared;
-      }
+    for (const auto& [base, frames] : {std::pair(Base::hinged, Frames::quarter_turns), {Base::free, Frames::random}}) {
+      SCOPED_TRACE(fmt::format("{} {} {}", integrator.name, GetParam(), base == Base::free ? "free" : "hinged"));
+      const Pair pair = compare(integrator, settings, gripper(base, frames, true), gripper(base, frames, false));
+      EXPECT_GT(moved(pair.with, kUpperJaw, kLowerJaw), 0.02);
+      EXPECT_GT(pair.with.exchanges, 0);
+      ++compared;
     }
   });
-  EXPECT_GE(compared, 32);
+  EXPECT_GE(compared, 16);
 }
 
 TEST_P(Machines, LegsMoveAsWithoutRedundancy) {
@@ -242,19 +239,17 @@ TEST_P(Machines, LoopsOfFiveToEightLinksMoveAsWithoutRedundancy) {
   int compared = 0;
   each_integrator(GetParam(), 0.3, [&](const IntegratorEntry& integrator, const Settings& settings) {
     for (const int links : {5, 6, 7, 8}) {
-      for (const Frames frames : {Frames::quarter_turns, Frames::random}) {
-        for (const bool carried : {false, true}) {
-          SCOPED_TRACE(fmt::format("{} {} {} links, frames {}{}", integrator.name, GetParam(), links,
-                                   static_cast<int>(frames), carried ? ", carried" : ""));
-          const Pair pair = compare(integrator, settings, faster(loop({links, frames, carried, true})),
-                                    faster(loop({links, frames, carried, false})));
-          EXPECT_EQ(pair.with.exchanges > 0, carried);
-          ++compared;
-        }
+      for (const bool carried : {false, true}) {
+        const Frames frames = (links % 2 == 0) == carried ? Frames::quarter_turns : Frames::random;
+        SCOPED_TRACE(fmt::format("{} {} {} links{}", integrator.name, GetParam(), links, carried ? ", carried" : ""));
+        const Pair pair = compare(integrator, settings, faster(loop({links, frames, carried, true})),
+                                  faster(loop({links, frames, carried, false})));
+        EXPECT_EQ(pair.with.exchanges > 0, carried);
+        ++compared;
       }
     }
   });
-  EXPECT_GE(compared, 128);
+  EXPECT_GE(compared, 64);
 }
 
 TEST_P(Machines, SeveralLoopsOnOneBodyMoveAsWithoutRedundancy) {
