@@ -39,7 +39,7 @@ std::vector<Rates> rates(const Way& way, double t) {
   const std::vector<Planar> x[] = {way(t - 2 * e), way(t - e), way(t), way(t + e), way(t + 2 * e)};
   std::vector<Rates> all;
   for (std::size_t b = 0; b < x[2].size(); ++b) {
-    Rates& of = all.emplace_back(x[2][b], Planar{}, Planar{});
+    Rates& of = all.emplace_back(Rates{x[2][b], Planar{}, Planar{}});
     for (double Planar::*c : {&Planar::x, &Planar::y, &Planar::angle}) {
       of.rate.*c = (8 * (x[3][b].*c - x[1][b].*c) - (x[4][b].*c - x[0][b].*c)) / (12 * e);
       of.second.*c = (16 * (x[3][b].*c + x[1][b].*c) - (x[4][b].*c + x[0][b].*c) - 30 * x[2][b].*c) / (12 * e * e);
