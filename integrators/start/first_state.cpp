@@ -40,7 +40,8 @@ Status limit_accelerations(Problem& problem, const RankAnalysis& rank, const Set
                         singular())};
   }
   // The constraints leave more velocities free than the mechanism has on either side.
-  if (!(largest(span(limit.v = limit.v - state.v)) <= kOnBranch * largest(span(state.v)))) {
+  const Eigen::VectorXd off = limit.v - state.v;
+  if (!(largest(span(off)) <= kOnBranch * largest(span(state.v)))) {
     return {Failure::singular_position, state.t,
             fmt::format("the initial pose is a singular position of the mechanism, and the initial velocities are on "
                         "none of the branches that go through it: singular here: {}; start beside it, or with the "
