@@ -11,6 +11,7 @@
 #include "tests/support/every_way.h"
 #include "tests/support/loops.h"
 #include "tests/support/simulation.h"
+#include "tests/support/twice_driven.h"
 
 namespace poinsot::test {
 namespace {
@@ -283,21 +284,6 @@ TEST(OverConstrained, SaysWhichReactionsAreDetermined) {
   hinge.point = {5, 1, 0};
   const Outcome outcome = simulate(scene, dynamics("rA", 1e-3, 1e-3), {});
   EXPECT_THAT(outcome.undetermined_reactions, ::testing::ElementsAre("joint1", "joint2", "joint3", "joint4"));
-}
-
-// A pendulum with two drivers.
-Scene twice_driven(const char* first, const char* second) {
-  Scene scene = scene_of("single_pendulum_joints");
-  scene.drivers.clear();
-  for (const char* angle : {first, second}) {
-    Driver& driver = scene.drivers.emplace_back();
-    driver.name = angle;
-    driver.type = DriverType::angle;
-    driver.i = scene.joints[0].i, driver.j = scene.joints[0].j;
-    driver.axis = scene.joints[0].axis;
-    driver.value = Expression::parse(angle);
-  }
-  return scene;
 }
 
 // A driver set aside because it agrees with another one at the start, and later does not.

@@ -11,6 +11,7 @@
 #include "tests/support/loops.h"
 #include "tests/support/passages.h"
 #include "tests/support/simulation.h"
+#include "tests/support/twice_driven.h"
 
 namespace poinsot::test {
 namespace {
@@ -130,16 +131,7 @@ TEST(RankSaid, AConflictIsOneInMicronsAndBesideABodyFarAway) {
 
 // Two drivers of one hinge that agree in angle and speed where they start.
 TEST(RankSaid, DriversThatPartAfterTheStartContradict) {
-  Scene scene = scene_of("single_pendulum_joints");
-  scene.drivers.clear();
-  for (const char* angle : {"t", "t + 20*t^2"}) {
-    Driver& driver = scene.drivers.emplace_back();
-    driver.name = angle;
-    driver.type = DriverType::angle;
-    driver.i = scene.joints[0].i, driver.j = scene.joints[0].j;
-    driver.axis = scene.joints[0].axis;
-    driver.value = Expression::parse(angle);
-  }
+  const Scene scene = twice_driven("t", "t + 20*t^2");
   const study::SceneCheck found = study::check_scene(scene);
   ASSERT_EQ(found.rank.conflicts.size(), 1u);
   EXPECT_EQ(found.rank.conflicts[0].level, Conflict::Level::later);
