@@ -36,7 +36,7 @@ struct EqualSteps {
     problem = formulations().require(settings.formulation).make(model, start.rank.aside);
     stepper = make(*problem, systems, statistics, clock);
     State first(*problem);
-    check(find_first_state(start, settings, *problem, first).ok(), "the start is regular");
+    check(find_first_state(start, settings, *problem, first, [](const std::string&) {}).ok(), "the start is regular");
     check(stepper->prepare().ok(), "the pattern can be analysed");
     check(stepper->start(first).ok(), "the start is regular");
   }

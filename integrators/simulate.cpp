@@ -22,8 +22,8 @@
 #include "integrators/start/first_state.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
-#include "integrators/start/singular_position.h"
 #include "integrators/stepping/pulses.h"
+#include "integrators/stepping/singular_position.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
 #include "integrators/stopping_test.h"
@@ -128,7 +128,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
                                                 chooses_steps(settings) ? Steps::error_controlled : Steps::fixed);
   if (settings.analysis == Analysis::kinematics) refuse_free_motion(*problem);
   State state(*problem);
-  outcome.status = find_first_state(start, settings, *problem, state);
+  outcome.status = find_first_state(start, settings, *problem, state, notice);
   std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
   explain(outcome.status, *problem);
   if (!outcome.status.ok()) return outcome;

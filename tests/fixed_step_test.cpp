@@ -190,7 +190,7 @@ TEST_P(FixedStep, RefusesADividedStepThatJumps) {
     const InitialState start = find_initial_state(model, settings);
     const auto problem = formulations().require(GetParam()).make(model, start.rank.aside);
     State state(*problem);
-    ASSERT_TRUE(find_first_state(start, settings, *problem, state).ok());
+    ASSERT_TRUE(find_first_state(start, settings, *problem, state, [](const std::string&) {}).ok());
     LinearSystems systems(settings.linear());
     Statistics statistics;
     const Tell tell = [](const std::string&) {};

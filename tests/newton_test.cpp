@@ -263,7 +263,7 @@ TEST_P(Newton, StepsAllocateNothing) {
         const auto problem = formulations().require(formulation()).make(compiled, start.rank.aside);
         if (settings.analysis == Analysis::kinematics && problem->nv() != problem->nc()) continue;
         State state(*problem);
-        ASSERT_TRUE(find_first_state(start, settings, *problem, state).ok());
+        ASSERT_TRUE(find_first_state(start, settings, *problem, state, [](const std::string&) {}).ok());
         LinearSystems systems({name, "auto"});
         const auto fresh_pivots = [&] {
           std::int64_t sum = 0;

@@ -102,8 +102,9 @@ void add_undetermined(std::string& text, const SceneCheck& found) {
 void add_doubt(std::string& text, const SceneCheck& found) {
   const RankAnalysis& analysis = found.rank;
   if (analysis.doubtful < 0) return;
-  text += fmt::format("neither dependent nor clearly independent: {}, of which {:.0e} is left beside the others\n",
-                      describe_row(*found.model, analysis.doubtful), analysis.doubt);
+  text += fmt::format("neither dependent nor clearly independent: {}, of which {:.0e} is left{}\n",
+                      describe_row(*found.model, analysis.doubtful), analysis.doubt,
+                      analysis.vanishing ? "" : " beside the others");
 }
 
 void add_state(std::string& text, const SceneCheck& found) {

@@ -9,10 +9,10 @@
 #include "core/counted.h"
 #include "integrators/jacobian_policy.h"
 #include "integrators/start/driven_pose.h"
-#include "integrators/start/singular_position.h"
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/fixed_steps.h"
+#include "integrators/stepping/singular_position.h"
 #include "integrators/stepping/turning.h"
 
 namespace poinsot {

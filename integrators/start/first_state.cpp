@@ -17,13 +17,60 @@ namespace {
 
 // Of the largest velocity, by which the velocities of the branch may differ: rounding beside the position.
 constexpr double kOnBranch = 1e-5;
+constexpr double kUnbalanced = 1e-5;  // of the largest load, likewise
+
+// Adds to the multipliers what those of the rows independent in the singular position can of M a + Gᵀλ − Q, and gives
+// out what is left of it. The problem stands at the state.
+Status fit_multipliers(Problem& problem, const RankAnalysis& rank, const Settings& settings, State& state,
+                       std::span<double> off) {
+  const Eigen::Index nv = state.v.size();
+  const auto stand = [&](Problem& at) {
+    at.set_position(state.t, span(state.q));
+    at.set_velocity(span(state.v));
+  };
+  const std::unique_ptr<Problem> independent = problem.clone_without(rank.aside_here);
+  stand(*independent);
+  stand(problem);
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(nv + independent->nc());
+  problem.equations_of_motion(state.a(), state.lambda(), span(forces, 0, nv));
+  forces = -forces;
+  Consistent consistent(*independent, settings.linear());
+  if (Status status = consistent.factor(state.t); !status.ok()) return status;
+  if (Status status = consistent.solve(state.t, span(forces)); !status.ok()) return status;
+
+  const std::vector<int>&all = problem.model_rows(), &some = independent->model_rows();
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    const auto place = std::ranges::lower_bound(all, some[k]) - all.begin();
+    state.lambda()[index(place)] += forces[nv + static_cast<Eigen::Index>(k)];
+  }
+  // Rows a formulation adds (rp's normalizations) come last in both.
+  const Eigen::Index own = problem.nc() - static_cast<Eigen::Index>(all.size());
+  state.z.tail(own) += forces.tail(own);
+  problem.equations_of_motion(state.a(), state.lambda(), off);
+  return {};
+}
+
+// Of the forces and M a, at least what it takes to turn the velocities within a body's size. The problem stands at the
+// state.
+double largest_load(Problem& problem, const State& state, double time_beside) {
+  constexpr double kThousandth = 1e-3;  // of the bodies' sizes, which takes time_beside
+  Eigen::VectorXd load(state.v.size());
+  problem.equations_of_motion(std::vector<double>(index(load.size()), 0.0), {}, span(load));
+  double most = largest(span(load));
+  problem.momentum(state.a(), span(load));
+  most = std::max(most, largest(span(load)));
+  problem.momentum(span(state.v), span(load));
+  return std::max(most, kThousandth * largest(span(load)) / time_beside);
+}
 
 // Accelerations and multipliers of a start in a singular position that the velocities lead through.
 //
 // There G has lost rank: rows that are independent on either side leave accelerations open. On the branch of the motion
-// these are smooth: they are the limit of those beside (stepping/passage.h). The multipliers, which may grow without
-// bound towards the position, are those of the rows independent in it that fit M a + Gᵀλ = Q.
-Status limit_accelerations(Problem& problem, const RankAnalysis& rank, const Settings& settings, State& state) {
+// these are smooth: they are the limit of those beside (stepping/passage.h), and so are the multipliers where they have
+// one. Where they grow without bound towards the position, they are those of the rows independent in it that come
+// nearest to M a + Gᵀλ = Q.
+Status limit_state(Problem& problem, const RankAnalysis& rank, const Settings& settings, State& state,
+                   const Tell& tell) {
   // times the time after which velocities have led a thousandth of the bodies' sizes away: the farther, the less
   // rounding
   constexpr std::array kFarther{15.0, 5.0, 1.0};
@@ -40,53 +87,41 @@ Status limit_accelerations(Problem& problem, const RankAnalysis& rank, const Set
                         singular())};
   }
   // The constraints leave more velocities free than the mechanism has on either side.
-  const Eigen::VectorXd off = limit.v - state.v;
-  if (!(largest(span(off)) <= kOnBranch * largest(span(state.v)))) {
+  const Eigen::VectorXd beside_v = limit.v - state.v;
+  if (!(largest(span(beside_v)) <= kOnBranch * largest(span(state.v)))) {
     return {Failure::singular_position, state.t,
             fmt::format("the initial pose is a singular position of the mechanism, and the initial velocities are on "
                         "none of the branches that go through it: singular here: {}; start beside it, or with the "
                         "velocities of one branch",
                         singular())};
   }
-  const Eigen::Index nv = state.v.size();
   state.z.setZero();
-  state.z.head(nv) = limit.z.head(nv);
-
-  const std::unique_ptr<Problem> independent = problem.clone_without(rank.aside_here);
-  independent->set_position(state.t, span(state.q));
-  independent->set_velocity(span(state.v));
-  Eigen::VectorXd forces = Eigen::VectorXd::Zero(nv + independent->nc());
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(independent->nc());
-  independent->equations_of_motion(state.a(), span(none), span(forces, 0, nv));
-  forces = -forces;
-  Consistent consistent(*independent, settings.linear());
-  if (Status status = consistent.factor(state.t); !status.ok()) return status;
-  if (Status status = consistent.solve(state.t, span(forces)); !status.ok()) return status;
-
-  const std::vector<int>&all = problem.model_rows(), &some = independent->model_rows();
-  for (std::size_t k = 0; k < some.size(); ++k) {
-    const auto place = std::ranges::lower_bound(all, some[k]) - all.begin();
-    state.lambda()[index(place)] = forces[nv + static_cast<Eigen::Index>(k)];
+  state.z.head(limit.v.size()) = limit.z.head(limit.v.size());
+  (void)passage.limit_multipliers(state);
+  Eigen::VectorXd off(state.v.size());
+  if (Status status = fit_multipliers(problem, rank, settings, state, span(off)); !status.ok()) return status;
+  Eigen::Index most = 0;
+  const double left = off.cwiseAbs().maxCoeff(&most);
+  if (left > kUnbalanced * largest_load(problem, state, rank.time_beside)) {
+    tell(
+        fmt::format("at t = 0 s multipliers grow without bound towards the singular position: in it, they and the "
+                    "reactions leave up to {:.2g} N or N m of the loads of {} unbalanced; take output times beside it",
+                    left, problem.describe_unknown(static_cast<int>(most))));
   }
-  // Rows a formulation adds (rp's normalizations) come last in both.
-  const std::size_t own = index(problem.nc()) - all.size();
-  std::copy(forces.end() - static_cast<std::ptrdiff_t>(own), forces.end(),
-            state.lambda().end() - static_cast<std::ptrdiff_t>(own));
-  problem.set_position(state.t, span(state.q));
-  problem.set_velocity(span(state.v));
   return {};
 }
 
 }  // namespace
 
-Status find_first_state(const InitialState& initial, const Settings& settings, Problem& problem, State& state) {
+Status find_first_state(const InitialState& initial, const Settings& settings, Problem& problem, State& state,
+                        const Tell& tell) {
   if (Status status = problem.from_bodies(initial.bodies, span(state.q), span(state.v)); !status.ok()) return status;
   if (settings.analysis == Analysis::kinematics) return {};  // which finds everything but q itself
   Consistent consistent(problem, settings.linear());
   consistent.stand(state);
   bool rewritten = false;
   if (Status status = accept(problem, state, rewritten); !status.ok()) return status;
-  if (initial.rank.singular_position()) return limit_accelerations(problem, initial.rank, settings, state);
+  if (initial.rank.singular_position()) return limit_state(problem, initial.rank, settings, state, tell);
   return consistent.accelerations(state.t, span(state.z));
 }
 

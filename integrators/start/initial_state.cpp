@@ -153,9 +153,10 @@ class Assembler {
           model_->bodies[index(most - ways.begin())].name, most->radians));
   }
 
-  // Position and velocity where they are off.
+  // Position and velocity where they are off. Beside a singular position rows that all but hold leave velocities far
+  // off.
   Status project() {
-    if (!off_position() && !off_velocity()) return {};
+    if (!off_position() && !off_velocity() && result_.rank.doubtful < 0) return {};
     const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, result_.rank.aside_here);
     std::vector<double> q(index(problem->nq())), v(index(problem->nv()));
     check(problem->from_bodies(given_, q, v).ok(), "rA represents every orientation");
@@ -196,13 +197,16 @@ class Assembler {
     if (rank.singular_position() && rank.moves_on)
       result_.notices.push_back(
           fmt::format("the initial pose is a singular position of the mechanism: singular here: {}; the run follows "
-                      "the branch that the initial velocities lead to",
+                      "the branch that the initial velocities lead to, if there is one",
                       names(rank.singular)));
     if (rank.doubtful >= 0)
       result_.notices.push_back(fmt::format(
-          "{} is a combination of the other constraints but for {:.0e} of its length; it is kept as independent, and "
-          "reactions against it are large: the mechanism is that near to moving, or to being constrained once less",
-          describe_row(*model_, rank.doubtful), rank.doubt));
+          "{} but for {:.0e} of its length; it is kept as independent, and reactions against it are large: the "
+          "mechanism "
+          "is that near to {}",
+          rank.vanishing ? "the gradient of " + describe_row(*model_, rank.doubtful) + " has vanished"
+                         : describe_row(*model_, rank.doubtful) + " is a combination of the other constraints",
+          rank.doubt, rank.vanishing ? "a singular position" : "moving, or to being constrained once less"));
     if (rank.degrees_of_freedom() == 0 && !model_->bodies.empty() &&
         std::ranges::all_of(model_->rows, [](const Row& row) { return row.f.is_constant(); }))
       result_.notices.push_back("the mechanism has no degree of freedom and no driver: it cannot move");

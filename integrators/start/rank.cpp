@@ -35,6 +35,7 @@ class Examination {
     result_.variables = 6 * static_cast<int>(model_->bodies.size());
     result_.rank = result_.rank_here = rows;
     space_.emplace(all_rows(model_, 0, states_));
+    tell_vanishing();
     std::vector<int> loops = loop_rows(*model_, *space_);
     if (loops.empty()) return std::move(result_);
     if (loops.size() < model_->rows.size()) {
@@ -140,7 +141,7 @@ class Examination {
     }
     tell_undetermined(columns, null);
     // Beside rows that are barely independent nothing of the others' independence is to be given away.
-    if (result_.doubt > 0) {
+    if (result_.doubt > 0 && !result_.vanishing) {
       result_.aside = chosen(null);
     } else {
       const bool known = here_.from <= kDependent && tolerance == kDependent;
@@ -200,8 +201,19 @@ class Examination {
     result_.rank_here = result_.rank - static_cast<int>(result_.singular.size());
   }
 
+  void tell_vanishing() {
+    for (std::size_t k = 0; k < space_->rows().size(); ++k) {
+      const double left = space_->left_of(k);
+      if (left <= kDependent || left >= (result_.vanishing ? result_.doubt : kIndependent)) continue;
+      result_.doubt = left;
+      result_.doubtful = space_->rows()[k];
+      result_.vanishing = true;
+    }
+  }
+
   void tell_doubt(const Sparse& columns, const std::vector<int>& surely) {
     result_.doubt = kIndependent;
+    result_.vanishing = false;
     for (const int column : dependent_columns(columns, kIndependent))
       if (!std::ranges::binary_search(surely, column)) result_.doubtful = space_->rows()[index(column)];
     for (double part = kIndependent / 10; part > kDependent; part /= 10)

@@ -59,6 +59,7 @@ struct RankAnalysis {
   double time_beside = 0;           // s: after which they have, by a thousandth of the bodies' sizes
   double doubt = 0;   // the largest part below kIndependent that is left of a row beside the others; 0: there is none
   int doubtful = -1;  // the row
+  bool vanishing = false;  // its gradient is as small a part of its terms: by itself, not beside the others
 
   int degrees_of_freedom() const { return variables - rank; }
   bool singular_position() const { return rank_here < rank; }

@@ -95,19 +95,33 @@ void RowSpace::stand(double t, std::span<const BodyState> states) {
   }
 }
 
+// Of the cross product of two directions.
+double RowSpace::direction_terms(const Row& row) const {
+  double size = 0;
+  for (const int body : {row.i, row.j})
+    if (body != kGround) size = std::max(size, 1 / sizes_[index(body)]);
+  return row.a_i.norm() * row.a_j.norm() * size;
+}
+
 // Where a gradient can cancel altogether, kDependent of the terms it is made of: the cross product of directions that
 // are parallel, the distance of points that coincide.
 double RowSpace::rounding_of(const Row& row, std::span<const BodyState> states) const {
   const auto place = [&](int body, const Vector3& s) {
     return s.norm() + (body == kGround ? 0.0 : states[index(body)].r.norm());
   };
-  if (row.type == RowType::DP1 || row.type == RowType::angle) {
-    double size = 0;
-    for (const int body : {row.i, row.j})
-      if (body != kGround) size = std::max(size, 1 / sizes_[index(body)]);
-    return kDependent * row.a_i.norm() * row.a_j.norm() * size;
-  }
+  if (row.type == RowType::DP1 || row.type == RowType::angle) return kDependent * direction_terms(row);
   return row.type == RowType::D ? kDependent * 2 * (place(row.i, row.s_i) + place(row.j, row.s_j)) : 0;
+}
+
+double RowSpace::left_of(std::size_t k) const {
+  const Row& row = model_->rows[index(rows_[k])];
+  double terms = 0;
+  if (row.type == RowType::DP1) terms = direction_terms(row);
+  if (row.type == RowType::D) {  // of points, where its bodies are does not matter
+    for (const int body : {row.i, row.j})
+      if (body != kGround) terms = std::max(terms, 2 * (body == row.i ? row.s_i : row.s_j).norm());
+  }
+  return terms > 0 ? std::min(1.0, lengths_[k] / terms) : 1;
 }
 
 void RowSpace::distances(std::span<double> out) const {

@@ -40,6 +40,8 @@ class RowSpace {
   const Eigen::SparseMatrix<double>& columns() const { return Gt_; }
   // ‖g‖ by row; of a row that vanishes, that of its terms.
   std::span<const double> lengths() const { return lengths_; }
+  // What is left of the gradient of a row that can vanish, where it stands: 1 is as much as ever.
+  double left_of(std::size_t k) const;
   // Φ/‖g‖, m.
   void distances(std::span<double> out) const;
   // G v − ν and ν in the rows' own units, where it stands, with velocities v of intrinsic_formulation().
@@ -48,6 +50,7 @@ class RowSpace {
   double size_of_row(std::size_t k) const;
 
  private:
+  double direction_terms(const Row& row) const;
   double rounding_of(const Row& row, std::span<const BodyState> states) const;
 
   std::shared_ptr<const Model> model_;

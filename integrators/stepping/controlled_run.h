@@ -16,6 +16,7 @@
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/pulses.h"
 #include "integrators/stepping/sample_times.h"
+#include "integrators/stepping/singular_position.h"
 #include "integrators/stepping/step_control.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
@@ -38,6 +39,13 @@ class Course {
     clock_.pause();
     sample(run_.observe, run_.problem, at, run_.statistics, t);
     clock_.resume();
+  }
+  // No consistent state was found beside `at`, the motion at the next output time.
+  Status singular_sample(const State& at) const {
+    const int rows = static_cast<int>(run_.problem.model_rows().size());
+    const int row = most_dependent_row(run_.problem, rows, at.t, span(at.q)).row;
+    return poinsot::singular_sample(times.next(),
+                                    row < 0 ? "" : run_.problem.describe_unknown(run_.problem.nv() + row));
   }
   double turned(double h) const { return h * run_.problem.fastest_turn(); }  // rad, the fastest body at its speed now
   double end() const { return run_.settings.end; }
@@ -100,7 +108,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
       }
       if (!status.ok()) {  // the step went over a place where no state can be found, as of angles that are singular
         if (status.failure == Failure::refused) return status;
-        if (status.failure == Failure::singular_position) return singular_sample(times.next());
+        if (status.failure == Failure::singular_position) return course.singular_sample(method.interpolated());
         method.take_back();
         --course.statistics().steps;
         ++course.statistics().rejected_steps;

@@ -24,13 +24,30 @@ constexpr double kTooLittle = 1e-6;  // of the velocity, changed within τ
 
 // What puts a state moved along v back onto the constraints, and what it comes to.
 struct Passage::Beside {
-  Eigen::VectorXd c, v, a;
+  Eigen::VectorXd c, v, a, lambda;
   double steepness = 0;
 };
 
 struct Passage::Work {
   explicit Work(const Problem& problem)
       : place(problem), nearest(problem), moved(problem.nv()), moved_by(2 * problem.nv()) {}
+
+  using Part = Eigen::VectorXd Beside::*;
+  Eigen::VectorXd mean(std::size_t k, Part x) const { return 0.5 * (beside[k][0].*x + beside[k][1].*x); }
+  Eigen::VectorXd limit(Part x) const {
+    Eigen::VectorXd all = kWeights[0] * mean(0, x);
+    for (std::size_t k = 1; k < kWeights.size(); ++k) all += kWeights[k] * mean(k, x);
+    return all;
+  }
+  // Changes of up to `nothing` are none.
+  bool is_smooth(Part x, const Eigen::VectorXd& value, double nothing) {
+    const double most =
+        std::max(kSmooth * std::max(largest(span(value)), largest(span(std::as_const(beside)[0][0].*x))), nothing);
+    moved = (4 * mean(0, x) - mean(1, x)) / 3 - value;
+    if (!(largest(span(moved)) <= most)) return false;
+    moved = beside[0][0].*x - beside[0][1].*x - 0.5 * (beside[1][0].*x - beside[1][1].*x);  // half of a jump
+    return largest(span(moved)) <= most;
+  }
 
   State place, nearest;                                       // nearest: at +τ
   std::array<std::array<Beside, 2>, kWeights.size()> beside;  // at ±τ, ±2τ, ...
@@ -61,6 +78,7 @@ Status Passage::stand_beside(const State& at, const Eigen::VectorXd& along, doub
   if (Status status = consistent_.accelerations(place); !status.ok()) return status;
   beside.v = place.v;
   beside.a = place.z.head(at.v.size());
+  beside.lambda = place.z.tail(place.z.size() - at.v.size());
   beside.steepness = consistent_.steepness(place.t);
   return {};
 }
@@ -111,32 +129,22 @@ bool Passage::limit(State& at, const Eigen::VectorXd& along, double tau, double 
       if (k == 0 && side == 0) work_->nearest = work_->place;
     }
   }
-  const auto mean = [&](std::size_t k, Eigen::VectorXd Beside::*x) {
-    return 0.5 * (work_->beside[k][0].*x + work_->beside[k][1].*x);
-  };
-  const auto sum = [&](Eigen::VectorXd Beside::*x) {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(problem_.nv());
-    for (std::size_t k = 0; k < kWeights.size(); ++k) all += kWeights[k] * mean(k, x);
-    return all;
-  };
-  const auto is_smooth = [&](Eigen::VectorXd Beside::*x, const Eigen::VectorXd& value, double nothing) {
-    const auto odd = [&](std::size_t k) { return work_->beside[k][0].*x - work_->beside[k][1].*x; };
-    const double most =
-        std::max(kSmooth * std::max(largest(span(value)), largest(span(work_->beside[0][0].*x))), nothing);
-    work_->moved = (4 * mean(0, x) - mean(1, x)) / 3 - value;
-    if (!(largest(span(work_->moved)) <= most)) return false;
-    work_->moved = odd(0) - 0.5 * odd(1);  // half of a jump
-    return largest(span(work_->moved)) <= most;
-  };
-  const Eigen::VectorXd c = sum(&Beside::c), v = sum(&Beside::v), a = sum(&Beside::a);
+  const Eigen::VectorXd c = work_->limit(&Beside::c), v = work_->limit(&Beside::v), a = work_->limit(&Beside::a);
   // Of a motion without accelerations they are nothing but rounding.
   const double unseen = kTooLittle * largest(span(v)) / tau;
-  if (!is_smooth(&Beside::v, v, 0) || !is_smooth(&Beside::a, a, unseen)) return false;
+  if (!work_->is_smooth(&Beside::v, v, 0) || !work_->is_smooth(&Beside::a, a, unseen)) return false;
   problem_.retract(span(at.q), {c.data(), static_cast<std::size_t>(c.size())}, span(work_->place.q));
   work_->moved_by << c, v - at.v;
   at.q = work_->place.q;
   at.v = v;
   at.z.head(v.size()) = a;
+  return true;
+}
+
+bool Passage::limit_multipliers(State& at) {
+  const Eigen::VectorXd lambda = work_->limit(&Beside::lambda);
+  if (!work_->is_smooth(&Beside::lambda, lambda, 0)) return false;
+  at.z.tail(lambda.size()) = lambda;
   return true;
 }
 
@@ -156,11 +164,13 @@ Status Passage::complete(State& at) {
   return settled ? multipliers(at) : consistent_.complete(at);
 }
 
-// Those that fit M a + Gᵀλ = Q, which the position itself leaves open.
+// Those that fit M a + Gᵀλ = Q or, where the position leaves them open, the limit of those beside.
 Status Passage::multipliers(State& at) {
   constexpr double kOpen = 1e8;  // steepness from which on rounding of a makes them
-  if (!consistent_.factor(at.t).ok() || !(consistent_.steepness(at.t) < kOpen))
+  if (!consistent_.factor(at.t).ok() || !(consistent_.steepness(at.t) < kOpen)) {
+    if (limit_multipliers(at)) return {};
     return {Failure::singular_position, at.t, {}};
+  }
   const auto nv = static_cast<std::size_t>(problem_.nv());
   work_->place.z.setZero();
   const std::span<double> z = span(work_->place.z);

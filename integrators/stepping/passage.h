@@ -34,6 +34,9 @@ class Passage {
   // nearer to a singular position than rows off by one move positions by `steepest`. Says whether there is one: fails
   // nowhere.
   bool limit(State& at, const Eigen::VectorXd& along, double tau, double steepest);
+  // Of the same states: makes λ of `at` the limit of theirs. Says whether there is one: λ is left where they grow
+  // without bound.
+  bool limit_multipliers(State& at);
   // The same for the end of a step that began with v_n: what the constraints leave to rounding there is in `at`. λ is
   // that of the limit or, where the position leaves it open, of the state at τ; `open` says so. The problem stands at
   // `at`, before and after.

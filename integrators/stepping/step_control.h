@@ -108,7 +108,7 @@ class Creeping {
 // Error control has come to an end at time t with steps of length h; `cause` is what the last attempt failed of;
 // without a message, of Newton's method.
 Status step_too_small(double t, double h, const Status& cause);
-// Where a motion is to be given out at a singular position.
-Status singular_sample(double t);
+// Where a motion is to be given out at a singular position; of a row, where one is known.
+Status singular_sample(double t, const std::string& row);
 
 }  // namespace poinsot

@@ -1,4 +1,4 @@
-#include "integrators/start/singular_position.h"
+#include "integrators/stepping/singular_position.h"
 
 #include <fmt/format.h>
 
