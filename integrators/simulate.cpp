@@ -157,9 +157,9 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
         largest, rotation.wrong, integrator.name, formulation.name, 0.9 * settings.step * rotation.wrong / largest));
   }
   const Failure failure = outcome.status.failure;
-  const bool unexplained = failure == Failure::step_size_too_small || failure == Failure::not_converged;
-  if (settings.analysis == Analysis::dynamics &&
-      (unexplained || failure == Failure::singular_matrix || failure == Failure::singular_position)) {
+  const bool unexplained = failure == Failure::step_size_too_small || failure == Failure::not_converged ||
+                           failure == Failure::singular_matrix;
+  if (settings.analysis == Analysis::dynamics && (unexplained || failure == Failure::singular_position)) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
     std::string why = vanished_distance(*problem, state);
     if (why.empty() && unexplained)

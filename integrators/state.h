@@ -11,7 +11,8 @@ namespace poinsot {
 
 struct State {
   double t = 0;
-  Eigen::VectorXd q, v, z;  // z = (a, λ)
+  Eigen::VectorXd q, v, z;        // z = (a, λ)
+  bool multipliers_open = false;  // by the position, a singular one: λ is that of a state beside it
 
   // All zero.
   explicit State(const Problem& problem)

@@ -1,5 +1,6 @@
 // What starts in singular positions have at once: the velocities of a branch, accelerations and forces of the motion
 // beside; and starts beside singular positions.
+#include <functional>
 #include <numbers>
 
 #include "tests/support/loops.h"
@@ -58,53 +59,82 @@ TEST_P(StartsOnABranch, ARodThatTurnsAboutItsCentreKeepsTurning) {
   expect_right_or_named({start});
 }
 
-// What is `beside` rad from a singular position has one way to go and constraints that hardly say so: velocities off it
-// are put right or refused.
+// Mechanisms whose angle is prescribed, phi0 + rate t, by constraints that are singular where it is 0: a press on a
+// toggle, a rod turned by the cosine of its angle about a hinge at `arm`, the crank of a four-bar. They begin at the
+// part `part` of that rate.
+struct Prescribed {
+  double phi0, rate, part;
+
+  Start press(const Vector3& gravity) const {
+    Start press = toggle("press", toggle_way(angle(part)), gravity);
+    add_constraint(press.scene, "press", ConstraintType::CD, 2, fmt::format("2*cos({}*t + {})", rate, phi0)).c =
+        Vector3::UnitX();
+    return named(press, toggle_way(angle(1)));
+  }
+  Start rod(double arm) const {
+    const auto way = [=](const auto& phi) {
+      return [=](double t) { return std::vector<Planar>{{arm * std::cos(phi(t)), arm * std::sin(phi(t)), phi(t)}}; };
+    };
+    Start rod{fmt::format("rod of {} m", arm), scene_on(way(angle(part)), {0, -9.81, 0})};
+    add_joint(rod.scene, "hinge", JointType::revolute, kGround, 0, Vector3::Zero());
+    Constraint& cosine =
+        add_constraint(rod.scene, "cosine", ConstraintType::DP1, 0, fmt::format("cos({}*t + {})", rate, phi0));
+    cosine.a_i = cosine.a_j = {1, 0, 0};
+    return named(rod, way(angle(1)));
+  }
+  Start four_bar() const {
+    const auto way = [](const auto& phi) { return [=](double t) { return parallelogram(phi(t), phi(t)); }; };
+    Start crank{"four-bar", scene_on(way(angle(part)), {1, -9.81, 0})};
+    const Vector3 tip(std::cos(phi0), std::sin(phi0), 0);
+    add_joint(crank.scene, "hinge", JointType::revolute, kGround, 0, Vector3::Zero());
+    add_joint(crank.scene, "knee", JointType::cylindrical, 0, 1, tip);
+    add_joint(crank.scene, "elbow", JointType::spherical, 1, 2, tip + 2 * Vector3::UnitX());
+    add_joint(crank.scene, "foot", JointType::revolute, kGround, 2, {2, 0, 0});
+    Driver& motor = crank.scene.drivers.emplace_back();
+    motor.name = "motor", motor.j = 0, motor.axis = {0, 0, 1},
+    motor.value = Expression::parse(fmt::format("{}*t", rate));
+    return named(crank, way(angle(1)));
+  }
+
+ private:
+  std::function<double(double)> angle(double of) const {
+    return [=, *this](double t) { return of * rate * t + phi0; };
+  }
+  Start named(Start start, const Way& way) const {
+    start.what += fmt::format(", {} rad + {} of {} rad/s", phi0, part, rate);
+    start.way = way;
+    return start;
+  }
+};
+
+// Beside a singular position there is one way to go, and constraints hardly say which: velocities off it are put right
+// or refused.
 TEST_P(StartsOnABranch, VelocitiesBesideAreThoseOfTheBranchOrRefusedByName) {
   std::vector<Start> starts;
   for (const double beside : {1e-13, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4}) {
     for (const double rate : {0.01, 5.0}) {
       for (const double part : {1.0, 0.5, 0.0}) {
-        const auto angle = [=](double t) { return rate * t + beside; };
-        const auto given = [=](double t) { return part * rate * t + beside; };
-        const auto add = [&](const char* what, Start start, const Way& way) {
-          start.what = fmt::format("{} at {} of {} rad/s, {} rad beside", what, part, rate, beside);
-          start.way = way;
-          start.may_stop = part != 1;
+        const Prescribed p{beside, rate, part};
+        for (Start start : {p.press({5, 0, 0}), p.rod(0), p.rod(1), p.four_bar()}) {
           start.kinematics = true;
+          start.may_stop = part != 1;
           starts.push_back(std::move(start));
-        };
-        Start press = toggle("", toggle_way(given), {5, 0, 0});
-        add_constraint(press.scene, "press", ConstraintType::CD, 2, fmt::format("2*cos({}*t + {})", rate, beside)).c =
-            Vector3::UnitX();
-        add("press", std::move(press), toggle_way(angle));
-
-        for (const double arm : {0.0, 1.0}) {
-          const auto rod = [=](const auto& phi) {
-            return [=](double t) {
-              return std::vector<Planar>{{arm * std::cos(phi(t)), arm * std::sin(phi(t)), phi(t)}};
-            };
-          };
-          Start turned{"", scene_on(rod(given), {0, -9.81, 0})};
-          add_joint(turned.scene, "hinge", JointType::revolute, kGround, 0, Vector3::Zero());
-          Constraint& cosine = add_constraint(turned.scene, "cosine", ConstraintType::DP1, 0,
-                                              fmt::format("cos({}*t + {})", rate, beside));
-          cosine.a_i = cosine.a_j = {1, 0, 0};
-          add("rod", std::move(turned), rod(angle));
         }
-        const auto four_bar = [](const auto& phi) { return [=](double t) { return parallelogram(phi(t), phi(t)); }; };
-        Start driven{"", scene_on(four_bar(given), {1, -9.81, 0})};
-        Scene& scene = driven.scene;
-        const Vector3 tip(std::cos(beside), std::sin(beside), 0);
-        add_joint(scene, "hinge", JointType::revolute, kGround, 0, Vector3::Zero());
-        add_joint(scene, "knee", JointType::cylindrical, 0, 1, tip);
-        add_joint(scene, "elbow", JointType::spherical, 1, 2, tip + 2 * Vector3::UnitX());
-        add_joint(scene, "foot", JointType::revolute, kGround, 2, {2, 0, 0});
-        Driver& motor = scene.drivers.emplace_back();
-        motor.name = "motor", motor.j = 0, motor.axis = {0, 0, 1},
-        motor.value = Expression::parse(fmt::format("{}*t", rate));
-        add("four-bar", std::move(driven), four_bar(angle));
       }
+    }
+  }
+  expect_right_or_named(starts);
+}
+
+// Output times in the very position, on the way and at the end: multipliers are the limit of those beside, or it is
+// said that there is none.
+TEST_P(StartsOnABranch, WhatIsGivenOutInASingularPositionIsTheLimitOfWhatIsBeside) {
+  std::vector<Start> starts;
+  for (const double way : {0.5, 1.0}) {
+    const Prescribed p{-way * kUntil, 1, 1};
+    for (Start start : {p.press({5, 0, 0}), p.press({0, -9.81, 0}), p.rod(0), p.rod(1), p.four_bar()}) {
+      start.may_stop = way == 1;
+      starts.push_back(std::move(start));
     }
   }
   expect_right_or_named(starts);

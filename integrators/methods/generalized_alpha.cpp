@@ -94,8 +94,9 @@ class GeneralizedAlpha : public FixedSteps {
     extrapolation_.lead(x_.z);
 
     Status status = iterate(t);
-    if (form_ == Form::stabilized2 && settings_.retry && status.failure == Failure::not_converged && newton_.stalled())
-      status = iterate_at_index3(t);
+    const bool open =
+        status.failure == Failure::singular_matrix || (status.failure == Failure::not_converged && newton_.stalled());
+    if (open && form_ == Form::stabilized2 && settings_.retry) status = iterate_at_index3(t);
     if (!status.ok()) return status;
     end_step();
     ringing_.watch(run_, x_.z, extrapolation_.before(), x_.q, t, h_);

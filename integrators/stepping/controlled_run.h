@@ -37,6 +37,7 @@ class Course {
   void give_out(const State& at) { give_out(at, at.t); }
   void give_out(const State& at, double t) {
     clock_.pause();
+    open_multipliers_.look(at, run_.tell);
     sample(run_.observe, run_.problem, at, run_.statistics, t);
     clock_.resume();
   }
@@ -61,6 +62,7 @@ class Course {
  private:
   const Run& run_;
   PhaseClock& clock_;
+  OpenMultipliers open_multipliers_;
 };
 
 // From the method's state to the end, or to the first step after which leave() says so.

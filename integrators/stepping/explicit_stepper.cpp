@@ -104,7 +104,7 @@ Status ExplicitStepper::evaluate(State& at, const Vector& y, Eigen::Index k) {
   problem_.retract(span(q_n_), span(y).first(nv_), span(at.q));
   if (Status status = consistent_.accelerations(at); !status.ok()) return status;
   if (turns_too_far(problem_, h_)) return {Failure::rotation_too_large, at.t, {}};
-  settled_ = false;
+  settled_ = at.multipliers_open = false;
   if (project_stages_) {
     if (Status status = passage_.settle(at, settled_); !status.ok()) return status;
     if (!settled_) {

@@ -15,7 +15,7 @@ Status FixedSteps::examine_end(bool& settled) {
   // position, and whether it is on its branch.
   constexpr double kSingular = 0.02, kLeft = 0.2;
   double jump = integrates() ? branch_.jump(problem_, v_n_, x_.v, h_) : 0;
-  if (settles_ && jump > kSingular) {
+  if (settles_ && (singular_ends_.grow(x_.lambda()) || jump > kSingular)) {
     if (Status status = settle_end(settled); !status.ok()) return status;
     if (settled) jump = branch_.jump(problem_, v_n_, x_.v, h_);
   }
@@ -76,7 +76,12 @@ Status FixedSteps::settle_end(bool& settled) {
   given_ = x_;
   settled = settle(singular_ends_, last_seen(), v_n_, *given_);
   if (!settled) return {};
-  if (Status status = repeat_singular(x_.t); !status.ok()) return status;
+  if (Status status = repeat_singular(x_.t); status.failure == Failure::singular_matrix) {
+    x_ = *given_;  // the limit of what was done
+    return {};
+  } else if (!status.ok()) {
+    return status;
+  }
   settled = settle(singular_ends_, last_seen(), v_n_, x_);
   return {};
 }
@@ -99,10 +104,6 @@ bool FixedSteps::settle(SingularEnds& ends, Problem& problem, const Vector& v_n,
         "at t = {:.6g} s a step ends in a singular position, or so near that rounding decides about velocities or "
         "accelerations: they are the limit of those beside it",
         at.t));
-  }
-  if (ends.leaves_multipliers_open() && !std::exchange(told_of_multipliers_, true)) {
-    run_.tell(
-        fmt::format("at t = {:.6g} s the position leaves multipliers open: they are those of a state beside it", at.t));
   }
   return true;
 }

@@ -92,6 +92,7 @@ Status FixedSteps::reach(double t, bool sampled) {
   }
   q_n_.swap(x_.q);
   v_n_.swap(x_.v);
+  x_.multipliers_open = false;
   Status status = step(t);
   x_.t = t;
   bool settled = false;
@@ -159,6 +160,7 @@ void FixedSteps::set_step(double h) {
 
 Status FixedSteps::begin() {
   place(problem_);
+  if (run_.singular_for == 0) (void)singular_ends_.grow(x_.lambda());
   sample(run_.observe, problem_, x_, run_.statistics);
   clock_.start();
   return {};
@@ -173,10 +175,11 @@ Status FixedSteps::give_out(Problem& problem) {
   if (last) run_.systems.let_go();
   const State* given = &x_;
   if (!settled && scale > 0) given = &output_.choose(problem, x_, scale, last, run_.statistics);
-  if (!settled && settles_ && singular_ends_.doubts(*given, v_n_, h_)) {
+  if (!settled && settles_ && singular_ends_.doubts(problem, *given, v_n_, h_)) {
     given_ = *given;
     if (settle(singular_ends_, problem, v_n_, *given_)) given = &*given_;
   }
+  open_multipliers_.look(*given, run_.tell);
   sample(run_.observe, problem, *given, run_.statistics);
   if (given_ && given == &*given_) place(problem);
   clock_.resume();

@@ -114,15 +114,15 @@ class FixedSteps {
   BranchWatch branch_;
   SingularEnds singular_ends_;
   std::optional<State> given_;  // a sample in a singular position
-  double settled_at_ = -1;      // time when x_ was made the limit of states beside a singular position
-  bool settles_ = false;        // ends in singular positions are
-  bool divides_ = false;        // steps that fail are done in parts
-  bool repeats_ = false;        // and may be done as they were after that
-  bool departs_ = false;        // the last step may have left its branch
-  bool as_it_is_ = false;       // that step in parts did no better
-  bool doubted_ = false;        // of a branch, and told
-  bool told_ = false;           // of a singular end
-  bool told_of_multipliers_ = false;
+  OpenMultipliers open_multipliers_;
+  double settled_at_ = -1;  // time when x_ was made the limit of states beside a singular position
+  bool settles_ = false;    // ends in singular positions are
+  bool divides_ = false;    // steps that fail are done in parts
+  bool repeats_ = false;    // and may be done as they were after that
+  bool departs_ = false;    // the last step may have left its branch
+  bool as_it_is_ = false;   // that step in parts did no better
+  bool doubted_ = false;    // of a branch, and told
+  bool told_ = false;       // of a singular end
   Index1Output output_;
 };
 

@@ -1,8 +1,11 @@
 // What every integrator does at a sample and at its end: measure the constraint violation, hand out, add up times.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/phase_clock.h"
@@ -28,6 +31,19 @@ inline void sample(const Observer& observe, const Problem& problem, const State&
 inline void sample(const Observer& observe, const Problem& problem, const State& at, Statistics& statistics) {
   sample(observe, problem, at, statistics, at.t);
 }
+
+// Says once that multipliers given out are open.
+class OpenMultipliers {
+ public:
+  void look(const State& at, const Tell& tell) {
+    if (!at.multipliers_open || std::exchange(told_, true)) return;
+    tell(
+        fmt::format("at t = {:.6g} s the position leaves multipliers open: they are those of a state beside it", at.t));
+  }
+
+ private:
+  bool told_ = false;
+};
 
 inline void finish(PhaseClock& clock, Statistics& statistics) {
   clock.stop();

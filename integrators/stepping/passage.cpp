@@ -84,7 +84,7 @@ Status Passage::stand_beside(const State& at, const Eigen::VectorXd& along, doub
 }
 
 Status Passage::settle(State& at, bool& settled) {
-  settled = settled_ = false;
+  settled = settled_ = at.multipliers_open = false;
   const double rate = problem_.fastest_turn();
   if (!(rate > 0)) return {};
   const double here = consistent_.steepness(at.t);
@@ -92,6 +92,7 @@ Status Passage::settle(State& at, bool& settled) {
   if (!is_steep(here)) return {};
   settled = settled_ = limit(at, at.v, kTurn / rate, here);
   if (!settled) return consistent_.accelerations(at);
+  give_multipliers(at);
   consistent_.stand(work_->nearest);
   if (Status status = consistent_.factor(work_->nearest.t); !status.ok()) return status;
   consistent_.stand(at);
@@ -105,18 +106,18 @@ bool Passage::is_steep(double here) {
   return first || !(here < kSteep * least_);
 }
 
-bool Passage::settle_end(State& at, const Eigen::VectorXd& v_n, bool& open) {
+bool Passage::settle_end(State& at, const Eigen::VectorXd& v_n) {
   problem_.set_velocity(span(v_n));
   const double rate = problem_.fastest_turn();
   consistent_.stand(at);
   const double here = rate > 0 && consistent_.factor(at.t).ok() ? consistent_.steepness(at.t) : HUGE_VAL;
   const bool settled = rate > 0 && is_steep(here) && limit(at, v_n, kTurn / rate, here);
+  if (settled) {
+    least_ = std::min(least_, work_->beside.back()[0].steepness);
+    give_multipliers(at);
+  }
   consistent_.stand(at);
-  if (!settled) return false;
-  least_ = std::min(least_, work_->beside.back()[0].steepness);
-  open = !multipliers(at).ok();
-  if (open) std::ranges::copy(std::as_const(work_->nearest).lambda(), at.lambda().begin());
-  return true;
+  return settled;
 }
 
 bool Passage::limit(State& at, const Eigen::VectorXd& along, double tau, double steepest) {
@@ -149,7 +150,7 @@ bool Passage::limit_multipliers(State& at) {
 }
 
 Status Passage::complete(State& at) {
-  settled_ = false;
+  settled_ = at.multipliers_open = false;
   given_ = at;
   const Status status = consistent_.complete(at);
   if (status.ok()) {
@@ -161,7 +162,13 @@ Status Passage::complete(State& at) {
   bool settled = false;
   if (Status here = consistent_.accelerations(at); !here.ok()) return here;
   if (Status here = settle(at, settled); !here.ok()) return here;
-  return settled ? multipliers(at) : consistent_.complete(at);
+  return settled ? Status{} : consistent_.complete(at);
+}
+
+void Passage::give_multipliers(State& at) {
+  consistent_.stand(at);
+  at.multipliers_open = !multipliers(at).ok();
+  if (at.multipliers_open) std::ranges::copy(std::as_const(work_->nearest).lambda(), at.lambda().begin());
 }
 
 // Those that fit M a + Gᵀλ = Q or, where the position leaves them open, the limit of those beside.

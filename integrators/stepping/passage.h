@@ -27,8 +27,9 @@ class Passage {
   ~Passage();
 
   // Whether `at`, off the constraints by the error of a step, lies nearer to a singular position than those beside:
-  // then q, v and a are made the limit of theirs, λ is left. The problem stands at `at`, before and after. The
-  // factorization at hand is that of `at` before; after, where it was settled, that of a state beside.
+  // then it is made the limit of theirs: λ, too, or, where it has none and the position leaves it open, that of the
+  // state at τ. The problem stands at `at`, before and after. The factorization at hand is that of `at` before; after,
+  // where it was settled, that of a state beside.
   Status settle(State& at, bool& settled);
   // Makes q, v and a of `at` the limit of those at ±τ, ... ±4τ along a velocity of the branch, which are as they are no
   // nearer to a singular position than rows off by one move positions by `steepest`. Says whether there is one: fails
@@ -37,10 +38,9 @@ class Passage {
   // Of the same states: makes λ of `at` the limit of theirs. Says whether there is one: λ is left where they grow
   // without bound.
   bool limit_multipliers(State& at);
-  // The same for the end of a step that began with v_n: what the constraints leave to rounding there is in `at`. λ is
-  // that of the limit or, where the position leaves it open, of the state at τ; `open` says so. The problem stands at
-  // `at`, before and after.
-  bool settle_end(State& at, const Eigen::VectorXd& v_n, bool& open);
+  // The same as settle() for the end of a step that began with v_n: what the constraints leave to rounding there is in
+  // `at`. Fails nowhere. The problem stands at `at`, before and after.
+  bool settle_end(State& at, const Eigen::VectorXd& v_n);
   // The consistent state beside (q, v), λ included: Consistent's, or the limit.
   Status complete(State& at);
   // How far the last one was moved, δq and then δv; by Consistent, where it was not settled.
@@ -51,6 +51,7 @@ class Passage {
   Status stand_beside(const State& at, const Eigen::VectorXd& along, double s, Beside& beside);
   // Whether that is much steeper than somewhere before, or nothing is known yet.
   bool is_steep(double here);
+  void give_multipliers(State& at);
   Status multipliers(State& at);
 
   Problem& problem_;

@@ -3,8 +3,28 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
+
+#include "integrators/stepping/vectors.h"
 
 namespace poinsot {
+namespace {
+
+// Whether M a + Gᵀλ and Q are a tenth of their size apart.
+bool leaves_loads(Problem& problem, const State& at) {
+  constexpr double kPart = 0.1;
+  std::vector<double> a(at.a().begin(), at.a().end()), load(a.size());
+  problem.equations_of_motion(a, at.lambda(), load);
+  const double off = largest(load);
+  problem.momentum(a, load);
+  double most = largest(load);
+  std::ranges::fill(a, 0.0);
+  problem.equations_of_motion(a, {}, load);
+  most = std::max(most, largest(load));
+  return off > kPart * most;
+}
+
+}  // namespace
 
 bool SingularEnds::settle(Problem& problem, const Eigen::VectorXd& v_n, State& at) {
   if (of_ != &problem) {
@@ -13,13 +33,26 @@ bool SingularEnds::settle(Problem& problem, const Eigen::VectorXd& v_n, State& a
     consistent_.emplace(problem, choice_);
     passage_.emplace(problem, *consistent_);
   }
-  const bool settled = passage_->settle_end(at, v_n, open_);
-  if (!settled) largest_ = std::max(largest_, std::exchange(doubted_, 0));
+  const bool settled = passage_->settle_end(at, v_n);
+  if (!settled) {
+    largest_ = std::max(largest_, std::exchange(doubted_, 0));
+    largest_multiplier_ = std::max(largest_multiplier_, std::exchange(doubted_multiplier_, 0));
+  }
   return settled;
 }
 
-bool SingularEnds::doubts(const State& at, const Eigen::VectorXd& v_n, double h) {
-  constexpr double kPart = 0.25;
+bool SingularEnds::grow(std::span<const double> lambda) {
+  constexpr double kGrown = 100;
+  const double multiplier = largest(lambda);
+  const bool grown = largest_multiplier_ > 0 && multiplier > kGrown * largest_multiplier_;
+  doubted_multiplier_ = grown ? multiplier : 0;
+  before_ = std::exchange(last_, multiplier);
+  if (!grown) largest_multiplier_ = std::max(largest_multiplier_, multiplier);
+  return grown;
+}
+
+bool SingularEnds::doubts(Problem& problem, const State& at, const Eigen::VectorXd& v_n, double h) {
+  constexpr double kPart = 0.25, kLarger = 1.5;
   double mean = 0, end = 0, apart = 0;
   for (Eigen::Index k = 0; k < v_n.size(); ++k) {
     const double a = (at.v[k] - v_n[k]) / h;
@@ -29,7 +62,7 @@ bool SingularEnds::doubts(const State& at, const Eigen::VectorXd& v_n, double h)
   }
   const bool doubtful = apart > kPart * std::max(mean, end) && end > largest_;
   doubted_ = doubtful ? end : 0;
-  return doubtful;
+  return doubtful || (largest(at.lambda()) > kLarger * before_ && leaves_loads(problem, at));
 }
 
 }  // namespace poinsot

@@ -96,11 +96,12 @@ Status step_too_small(double t, double h, const Status& cause) {
 }
 
 Status singular_sample(double t, const std::string& row) {
-  return {Failure::singular_position, t,
-          fmt::format("at t = {:.9g} s, an output time, the mechanism is in a singular position{}, where the constraints "
-                      "leave velocities and accelerations to rounding: they cannot be given out; take output times "
-                      "beside it",
-                      t, row.empty() ? "" : " (singular here: " + row + ")")};
+  return {
+      Failure::singular_position, t,
+      fmt::format("at t = {:.9g} s, an output time, the mechanism is in a singular position{}, where the constraints "
+                  "leave velocities and accelerations to rounding: they cannot be given out; take output times "
+                  "beside it",
+                  t, row.empty() ? "" : " (singular here: " + row + ")")};
 }
 
 }  // namespace poinsot

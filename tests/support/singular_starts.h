@@ -92,6 +92,14 @@ inline double largest_multiplier(const Snapshot& s) {
   return largest;
 }
 
+// In a singular position itself no multipliers need fit: then that is said.
+inline bool says_open(const Attempt& c, double t) {
+  return std::ranges::any_of(c.outcome.notices, [when = fmt::format("at t = {:.6g} s", t)](const auto& n) {
+    return n.find(when) == 0 && (n.find("multipliers grow without bound") != std::string::npos ||
+                                 n.find("leaves multipliers open") != std::string::npos);
+  });
+}
+
 // By the order of the method, at kStride or at rtol 1e-8.
 struct Allowed {
   double position, velocity, acceleration;
@@ -124,12 +132,11 @@ class SingularStarts : public ::testing::TestWithParam<std::string> {
     EXPECT_LT(off.velocity, most.velocity);
     EXPECT_LT(off.first_acceleration, 1e-4);
     EXPECT_LT(off.acceleration, most.acceleration);
-    // In the position itself no multipliers need fit: then that is said.
-    const bool open = std::ranges::any_of(
-        c.outcome.notices, [](const auto& n) { return n.find("grow without bound") != std::string::npos; });
-    for (std::size_t k = open ? 1 : 0; k < c.off.size(); ++k)
+    for (std::size_t k = 0; k < c.off.size(); ++k) {
+      if (says_open(c, c.samples[k].t)) continue;
       EXPECT_LT(c.off[k], most.equations * (1 + c.force[k]) + 1e-12 * largest_multiplier(c.samples[k]))
           << c.samples[k].t;
+    }
     if (!start.conserves) return;
     const auto [least, largest] = std::ranges::minmax(c.energy);
     EXPECT_LT(largest - least, most.energy);
