@@ -150,6 +150,31 @@ TEST_P(ParadoxicLinkages, MoveStayClosedKeepEnergyAndFollowTheMechanismWithoutRe
   EXPECT_GE(same, 17);  // of 18
 }
 
+TEST_P(ParadoxicLinkages, AreDrivenAsWithoutRedundancy) {
+  if (GetParam().freedoms > 1) return;
+  const auto driven = [](Frames frames, bool redundant) {
+    Scene scene = GetParam().make({frames, false, redundant});
+    Driver& motor = scene.drivers.emplace_back();
+    motor.name = "motor";
+    motor.i = scene.joints[0].i, motor.j = scene.joints[0].j;
+    motor.axis = scene.joints[0].axis;  // of the ground
+    motor.value = Expression::parse("0.35*sin(2*t)");
+    return scene;
+  };
+  for (const FormulationEntry& formulation : formulations()) {
+    for (const Frames frames : {Frames::drawn, Frames::quarter_turns, Frames::random}) {
+      SCOPED_TRACE(fmt::format("{} frames {}", formulation.name, static_cast<int>(frames)));
+      const Scene scene = driven(frames, true);
+      const Settings settings = kinematics(formulation.name, 0.05, 1.5, 0.25);
+      const std::vector<Snapshot> with = motion(scene, settings), without = motion(driven(frames, false), settings);
+      ASSERT_EQ(with.size(), 7u);
+      for (const Snapshot& sample : with) EXPECT_LT(open(scene, sample.bodies), 1e-10) << sample.t;
+      EXPECT_GT(bent(scene, with[3].bodies), 0.3);
+      EXPECT_LT(distance(with, without).largest(), 1e-8) << distance(with, without);
+    }
+  }
+}
+
 TEST_P(ParadoxicLinkages, AreCheckedForWhatTheirGeometrySays) {
   for (const Frames frames : {Frames::drawn, Frames::quarter_turns, Frames::random}) {
     for (const bool carried : {false, true}) {
