@@ -111,17 +111,23 @@ bool NewtonLoop::balanced(double position, const Vector& z, const Vector& q) {
 Status NewtonLoop::not_converged(double t, double correction) const {
   const char* try_first = divided_ ? "an integrator with error control" : "a smaller step";
   if (!std::isfinite(correction)) {
+    const auto first = std::ranges::find_if(delta_, [](double x) { return !std::isfinite(x); });
+    const std::string of =
+        first == delta_.end() ? "" : " of " + problem_.describe_unknown(static_cast<int>(first - delta_.begin()));
     return {Failure::not_finite, t,
-            fmt::format("at t = {:.9g} s Newton's correction is not finite; try {}", t, try_first)};
+            fmt::format("at t = {:.9g} s Newton's correction{} is not finite; try {}", t, of, try_first)};
   }
   Eigen::Index largest = 0;
   delta_.cwiseAbs().maxCoeff(&largest);
+  // Corrections that do not shrink ask for another step or matrix, whatever they are compared with.
+  std::string others;
+  if (settings_.jacobian != "exact") others += ", the exact jacobian";
+  if (!slow_) others += ", more iterations or a larger tolerance";
   return {Failure::not_converged, t,
           fmt::format("at t = {:.9g} s Newton's method did not converge: after {} the correction is {:.3g}, "
-                      "the tolerance {:.3g}; the largest correction is that of {}; try {}, the exact jacobian or a "
-                      "larger tolerance",
+                      "the tolerance {:.3g}; the largest correction is that of {}; try {}{}",
                       t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
-                      problem_.describe_unknown(static_cast<int>(largest)), try_first)};
+                      problem_.describe_unknown(static_cast<int>(largest)), try_first, others)};
 }
 
 }  // namespace poinsot
