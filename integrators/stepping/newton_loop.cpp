@@ -72,7 +72,7 @@ double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
     sum += squared_size(z.data() + b, turns, turn);
   }
   if (!std::isfinite(all)) return all;
-  constexpr double kLeast = std::numeric_limits<double>::min();  // at rest without any load there is no size
+  constexpr double kLeast = 1e-150;  // where nothing is accelerated there is no size; and no quotient overflows
   const double size = std::max({std::sqrt(sum / problem_.bodies()), problem_.model().gravity.norm(), kLeast});
   const double accelerations = most == 0 ? 0 : std::sqrt(most) / size;
   if (of_this_step) return accelerations;
@@ -119,10 +119,13 @@ Status NewtonLoop::not_converged(double t, double correction) const {
   }
   Eigen::Index largest = 0;
   delta_.cwiseAbs().maxCoeff(&largest);
-  // Corrections that do not shrink ask for another step or matrix, whatever they are compared with.
+  // Corrections that do not come near ask for another step or matrix, whatever they are compared with.
+  constexpr int kFew = 10;
+  constexpr double kNear = 1e4;
   std::string others;
   if (settings_.jacobian != "exact") others += ", the exact jacobian";
-  if (!slow_) others += ", more iterations or a larger tolerance";
+  if (settings_.max_iterations < kFew || correction < kNear * settings_.tolerance)
+    others += ", more iterations or a larger tolerance";
   return {Failure::not_converged, t,
           fmt::format("at t = {:.9g} s Newton's method did not converge: after {} the correction is {:.3g}, "
                       "the tolerance {:.3g}; the largest correction is that of {}; try {}{}",
