@@ -158,7 +158,8 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   }
   const Failure failure = outcome.status.failure;
   const bool unexplained = failure == Failure::step_size_too_small || failure == Failure::not_converged ||
-                           failure == Failure::singular_matrix;
+                           failure == Failure::singular_matrix ||
+                           (failure == Failure::rotation_too_large && outcome.status.time > 0);
   if (settings.analysis == Analysis::dynamics && (unexplained || failure == Failure::singular_position)) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
     std::string why = vanished_distance(*problem, state);

@@ -1,6 +1,8 @@
 // What is given out as acceleration and multiplier where rounding has spoilt those of index 3.
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -62,7 +64,10 @@ TEST_P(Index1Output, TakesThePlaceOfWhatRoundingHasSpoilt) {
     EXPECT_LT((r.samples.back().bodies[0].rdd - expected).norm(), loose) << far << ' ' << step;
     ASSERT_TRUE(r.outcome.statistics.acceleration_error);
     EXPECT_EQ(r.outcome.statistics.acceleration_error->index, 1) << far;
-    EXPECT_LT(r.outcome.statistics.acceleration_error->acceleration, 1e-6) << far;
+    // Of velocities that are off by the rounding of positions over the step, and turn at this rate.
+    const double rounding = std::numeric_limits<double>::epsilon() * far;
+    EXPECT_LT(r.outcome.statistics.acceleration_error->acceleration, 1e-6 + 50 * rounding * (std::abs(rate) / step + 1))
+        << far;
   }
 }
 

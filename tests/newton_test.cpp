@@ -62,8 +62,8 @@ TEST_P(Newton, SpendsItsIterations) {
               MatchesRegex("at t = 0.01 s Newton's method did not converge: after 1 iteration the correction is .*, "
                            "the tolerance 1e-12; the largest correction is that of (body 'body_.' "
                            "\\(/bodies/.\\)|joint 'revolute.' \\(/joints/.; its row . of 5\\)|body 'body_.' "
-                           "\\(/bodies/.; its normalization\\)); try a smaller step, the exact "
-                           "jacobian or a larger tolerance"));
+                           "\\(/bodies/.; its normalization\\)); try a smaller step, (the exact jacobian, )?more "
+                           "iterations or a larger tolerance"));
   expect_kept(r, 1e-2, 1e-2);
 }
 
@@ -138,7 +138,7 @@ TEST_P(Newton, SpendsItsIterationsInKinematics) {
       MatchesRegex(
           "at t = 0.01 s the position did not converge: after 1 iteration the correction is .*, the "
           "tolerance 1e-12; body '.*' \\(/bodies/.\\) moves most; the mechanism may be locked here or the driver ask "
-          "for more than it can reach; try a smaller step"));
+          "for more than it can reach; else try more iterations or a larger tolerance"));
   expect_kept(r, 1e-2, 1e-2);
 }
 
@@ -213,6 +213,31 @@ TEST_P(Newton, StopsAtABifurcation) {
   EXPECT_THAT(r.samples.back().t, AnyOf(testing::DoubleNear(0.95, 1e-9), testing::DoubleNear(1, 1e-9)));
   for (const Snapshot& sample : r.samples)
     for (const std::size_t link : {0u, 1u}) EXPECT_NEAR(sample.bodies[link].w.norm(), 1, sample.t < 0.99 ? 1e-6 : 0.02);
+}
+
+// A bob on a spring, by steps of h w = 1: symplectic Euler has it where nothing pulls in every third step, and without
+// gravity there is nothing that a correction could be compared with.
+TEST(NewtonsMethod, TakesAStepWithoutAnyAcceleration) {
+  Scene scene;
+  Body& bob = scene.bodies.emplace_back();
+  bob.name = "bob", bob.mass = 1, bob.inertia = Matrix3::Identity(), bob.position = {1, 0, 0};
+  Spring spring;
+  spring.name = "spring", spring.i = kGround, spring.j = 0, spring.stiffness = 1e6, spring.length = 0.75;
+  scene.forces.emplace_back(spring);
+  Joint& guide = scene.joints.emplace_back();
+  guide.name = "guide", guide.type = JointType::translational, guide.i = kGround, guide.j = 0, guide.axis = {1, 0, 0};
+  Settings settings;
+  settings.integrator = "half_implicit";
+  settings.step = 1e-3, settings.end = 0.03;
+  for (const FormulationEntry& formulation : formulations()) {
+    settings.formulation = formulation.name;
+    const std::vector<Snapshot> samples = motion(scene, settings);
+    ASSERT_EQ(samples.size(), 31u) << formulation.name;
+    for (std::size_t n = 0; n < samples.size(); ++n) {  // 1, 0, -1, -1, 0, 1, ...
+      const double expected[] = {0.25, 0, -0.25, -0.25, 0, 0.25};
+      EXPECT_NEAR(samples[n].bodies[0].r.x() - 0.75, expected[n % 6], 1e-9) << formulation.name << ' ' << n;
+    }
+  }
 }
 
 TEST_P(Newton, NamesABodyWithoutInertia) {

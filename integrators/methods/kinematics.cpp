@@ -30,6 +30,7 @@ constexpr double kFullTurn = 1;
 constexpr double kSuspicious = 0x1p-10, kSingular = 1e-6;
 constexpr double kShortest = 0x1p-24;  // part of a step
 constexpr int kMostParts = 1000;
+constexpr double kFarTurn = 0.1;  // rad, of a body in a part
 
 // Numbers are those of the paper's equations.
 class Kinematics final : public FixedSteps {
@@ -159,12 +160,10 @@ class Kinematics final : public FixedSteps {
     Status status;
     for (int parts = 0; at < t; ++parts) {
       if (parts == kMostParts) {
-        status = as_one;
-        if (!status.ok()) break;
-        status = {Failure::rotation_too_large, at,
-                  fmt::format("at t = {:.9g} s a step goes further than {} parts of it can follow; try a step of at "
-                              "most {:.2g} s",
-                              at, kMostParts, h)};
+        problem_.set_position(at, span(q_from_));
+        problem_.set_velocity(span(v_from_));
+        const bool far = h * problem_.fastest_turn() > kFarTurn;  // else something else keeps parts as short
+        status = far || as_one.ok() ? leads_too_far(problem_, x_.a(), at, kMostParts, h) : as_one;
         break;
       }
       const double to = at + 1.01 * h >= t ? t : at + h;
@@ -254,7 +253,7 @@ class Kinematics final : public FixedSteps {
     return {Failure::not_converged, t,
             fmt::format("at t = {:.9g} s the position did not converge: after {} the correction is {:.3g}, the "
                         "tolerance {:.3g}; {} moves most; the mechanism may be locked here or the driver ask for more "
-                        "than it can reach; try a smaller step",
+                        "than it can reach; else try more iterations or a larger tolerance",
                         t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
                         problem_.describe_unknown(static_cast<int>(largest)))};
   }

@@ -91,7 +91,8 @@ Status OverConstrained::measure(double t) {
   return {Failure::constraint_lost, t,
           fmt::format("at t = {:.9g} s {} is violated by {:.3g}: it followed from the other constraints where the run "
                       "began and was set aside, and does not hold with them any more; the constraints contradict one "
-                      "another here, or the step is too large to keep them",
+                      "another from here on, and one of them has to go, or the steps leave them: try smaller steps or "
+                      "a smaller tolerance",
                       t, describe_row(model(), aside_->rows()[worst]), std::abs(residual[worst]))};
 }
 

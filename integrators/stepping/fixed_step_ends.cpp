@@ -3,12 +3,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
+#include "formulations/registry.h"
 #include "integrators/stepping/fixed_steps.h"
 #include "integrators/stepping/turning.h"
 
 namespace poinsot {
+namespace {
+
+// The step to offer where one of h is too long for bodies that turn at `rate`, rad/s: up to where free rotation is
+// right, which is where a method goes on with it. What a step makes of a rotation far beyond the one before it says
+// nothing of the motion, and `rate` is that of the one before; a tenth of the step it is in any case.
+double step_that_serves(const Settings& settings, const Problem& problem, double h, double most, double rate) {
+  constexpr double kWithin = 0.9, kPart = 0.1;
+  const Rotations& rotations = integrators().require(settings.integrator).rotations;
+  const double wrong = rotations.in(formulations().require(problem.formulation()).space).wrong;
+  const double turn = std::min(kWithin * wrong, kPart * std::min(most, std::numbers::pi));
+  return std::min(kPart * h, turn / rate);
+}
+
+}  // namespace
 
 Status FixedSteps::examine_end(bool& settled) {
   // Part of its velocities that a step changes unusually: from there on it is asked whether its end is a singular
@@ -24,8 +40,13 @@ Status FixedSteps::examine_end(bool& settled) {
 }
 
 Status FixedSteps::measure_rotation(Problem& problem, double t) {
+  constexpr double kSudden = 10;
   const double before = std::exchange(rotation_, h_ * problem.fastest_turn());
-  if (rotation_ > run_.most_rotation) return rotated_too_far(problem, x_.a(), t, h_, run_.most_rotation);
+  if (rotation_ > run_.most_rotation) {
+    const double led_to = t > 0 && rotation_ > kSudden * before ? before : rotation_;
+    return rotated_too_far(problem, x_.a(), t, h_, run_.most_rotation,
+                           step_that_serves(settings_, problem, h_, run_.most_rotation, led_to / h_));
+  }
   if (Status status = check_turns(problem, t); !status.ok()) return status;
   run_.statistics.largest_rotation = std::max(run_.statistics.largest_rotation, rotation_);
   if (std::max(before, rotation_) < 0.5 * kMostUnexpected || t == 0) return {};
@@ -41,9 +62,14 @@ Status FixedSteps::check_velocity(Problem& problem, double t) {
   change_ = x_.v - v_n_;
   problem.set_velocity(span(change_));
   const double unexpected = h_ * problem.fastest_turn();
+  if (unexpected < kMostUnexpected) {
+    problem.set_velocity(span(x_.v));
+    return {};
+  }
+  problem.set_velocity(span(v_n_));
+  const double serves = step_that_serves(settings_, problem, h_, run_.most_rotation, problem.fastest_turn());
   problem.set_velocity(span(x_.v));
-  if (unexpected < kMostUnexpected) return {};
-  return turned_unexpectedly(problem, x_.a(), t, h_, unexpected);
+  return turned_unexpectedly(problem, x_.a(), t, h_, unexpected, serves);
 }
 
 // Beyond kTurns turns of a step a branch may be left; within, bodies that whip round are as likely. So they are beyond

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace poinsot {
 namespace {
 
 constexpr double kOfNoAccount = 1e-7;
 constexpr double kExplained = 100;  // so many times its estimate rounding may be: the steps add it up
+constexpr double kOfSteps = 4;      // and that of positions, which constraints hold
 
 double apart(std::span<const double> x, std::span<const double> y) {
   double m = 0;
@@ -33,7 +35,28 @@ const State& Index1Output::choose(Problem& problem, const State& at, double scal
   error.index = 1;
   error.acceleration = apart({before.data(), at.a().size()}, found_->a());
   error.multiplier = apart({before.data() + at.a().size(), at.lambda().size()}, found_->lambda());
+  add_rounding_of_state(problem, kOfSteps * std::numeric_limits<double>::epsilon() * largest(span(at.q)), error);
   return *found_;
+}
+
+void Index1Output::add_rounding_of_state(Problem& problem, double rounding, AccelerationError& error) {
+  const Eigen::Index nv = problem.nv(), nc = problem.nc(), per_body = nv / problem.bodies();
+  const double t = found_->t;
+  Eigen::VectorXd move = Eigen::VectorXd::Zero(nv + nc);
+  problem.velocity_residual(span(move, nv, nc));
+  move = -move;
+  if (!consistent_->solve(t, span(move)).ok()) return;
+  State beside = *found_;
+  beside.v += move.head(nv);
+  std::minstd_rand random(1);
+  for (Eigen::Index k = 0; k < nv; ++k) move[k] = k % per_body < 3 ? (random() % 2 == 0 ? rounding : -rounding) : 0.0;
+  problem.retract(span(found_->q), span(move, 0, nv), span(beside.q));
+  consistent_->stand(beside);
+  if (consistent_->refine(beside).ok()) {
+    error.acceleration += apart(beside.a(), found_->a());
+    error.multiplier += apart(beside.lambda(), found_->lambda());
+  }
+  consistent_->stand(*found_);
 }
 
 // Where the matrix is singular there is nothing to compare with.

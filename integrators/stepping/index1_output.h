@@ -9,7 +9,9 @@
 //   |a₃ − a₁| explained by ε|q|/s         a₁ and λ₁ are given out
 //   |a₃ − a₁| larger                      the order of the method is in it: what the step has computed is given out
 //
-// At the last output time both are found in any case: what they differ by is about the error of a₃ and λ₃.
+// At the last output time both are found in any case: what they differ by is about the error of a₃ and λ₃. That of a₁
+// and λ₁ is what rounding leaves in q, ε|q|, and in v, which of index 3 is a difference of positions and off the
+// constraints by its rounding: by how much a₁ and λ₁ change where q moves by so much and v onto G v = ν.
 #pragma once
 
 #include <optional>
@@ -28,6 +30,8 @@ class Index1Output {
 
  private:
   bool solve(Problem& problem, const State& at);
+  // What rounding of the state found makes of its accelerations and multipliers.
+  void add_rounding_of_state(Problem& problem, double rounding, AccelerationError& error);
 
   LinearChoice choice_;
   Problem* of_ = nullptr;

@@ -61,7 +61,7 @@ NewtonLoop::NewtonLoop(Problem& problem, StepSystem& system, const Settings& set
       momentum_(problem.nv()),
       rows_(problem.nv() + problem.nc()) {}
 
-double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
+double NewtonLoop::relative(const Vector& z, bool of_this_step) {
   const Eigen::Index nv = problem_.nv(), per_body = nv / problem_.bodies(), turns = per_body - 3;
   const double turn = arm_ * arm_;
   double most = 0, all = 0, sum = 0;
@@ -72,9 +72,10 @@ double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
     sum += squared_size(z.data() + b, turns, turn);
   }
   if (!std::isfinite(all)) return all;
-  constexpr double kLeast = std::numeric_limits<double>::min();  // at rest without any load there is no size
+  constexpr double kLeast = 1e-150;  // where nothing is accelerated there is no size; and no quotient overflows
   const double size = std::max({std::sqrt(sum / problem_.bodies()), problem_.model().gravity.norm(), kLeast});
-  const double accelerations = most == 0 ? 0 : std::sqrt(most) / size;
+  moved_ = std::sqrt(most);
+  const double accelerations = moved_ / size;
   if (of_this_step) return accelerations;
   const double multipliers = max_norm(delta_.tail(problem_.nc()));
   return multipliers == 0 ? accelerations
@@ -84,6 +85,7 @@ double NewtonLoop::relative(const Vector& z, bool of_this_step) const {
 bool NewtonLoop::is_rounding(double t, double position, const Vector& q) {
   const double moved = position * max_norm(delta_.head(problem_.nv()));
   if (moved <= rounding_of(problem_, q)) return true;
+  if (!(moved <= kFar * std::min(1.0, arm_))) return false;  // however steep: there may be no solution at all
   return moved <= 64 * kEpsilon * std::max(1.0, max_norm(q)) * steepness(t, position);
 }
 
@@ -111,17 +113,27 @@ bool NewtonLoop::balanced(double position, const Vector& z, const Vector& q) {
 Status NewtonLoop::not_converged(double t, double correction) const {
   const char* try_first = divided_ ? "an integrator with error control" : "a smaller step";
   if (!std::isfinite(correction)) {
+    const auto first = std::ranges::find_if(delta_, [](double x) { return !std::isfinite(x); });
+    const std::string of =
+        first == delta_.end() ? "" : " of " + problem_.describe_unknown(static_cast<int>(first - delta_.begin()));
     return {Failure::not_finite, t,
-            fmt::format("at t = {:.9g} s Newton's correction is not finite; try {}", t, try_first)};
+            fmt::format("at t = {:.9g} s Newton's correction{} is not finite; try {}", t, of, try_first)};
   }
   Eigen::Index largest = 0;
   delta_.cwiseAbs().maxCoeff(&largest);
+  // Corrections that do not come near ask for another step or matrix, whatever they are compared with.
+  constexpr int kFew = 10;
+  constexpr double kNear = 1e4, kClose = 0.01;
+  std::string others;
+  if (settings_.jacobian != "exact") others += ", the exact jacobian";
+  const bool near = correction < kNear * settings_.tolerance &&
+                    (stopping_ == Stopping::correction || correction < std::max(kClose, settings_.tolerance));
+  if (settings_.max_iterations < kFew || near) others += ", more iterations or a larger tolerance";
   return {Failure::not_converged, t,
           fmt::format("at t = {:.9g} s Newton's method did not converge: after {} the correction is {:.3g}, "
-                      "the tolerance {:.3g}; the largest correction is that of {}; try {}, the exact jacobian or a "
-                      "larger tolerance",
+                      "the tolerance {:.3g}; the largest correction is that of {}; try {}{}",
                       t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
-                      problem_.describe_unknown(static_cast<int>(largest)), try_first)};
+                      problem_.describe_unknown(static_cast<int>(largest)), try_first, others)};
 }
 
 }  // namespace poinsot

@@ -6,7 +6,8 @@
 //   relative      where no body's acceleration is corrected by more than tolerance · max(|g|, rms of accelerations), a
 //                 turn counted as the way it makes at the model's longest arm. λ is not looked at: it stands linearly
 //                 in the residual, so that its correction leaves nothing behind with a matrix of this step. With one of
-//                 steps before, the largest correction of λ is to be below tolerance · max |λ| besides.
+//                 steps before, the largest correction of λ is to be below tolerance · max |λ| besides. It moves no
+//                 body by more than a thousandth of that arm, from where the constraints held to so much.
 //   correction    where the 2-norm of the correction of all unknowns is below the tolerance, as in the original study,
 //                 (46)
 // by the settings' key "stopping", or where it can do no better in this arithmetic, once corrections have stopped to
@@ -19,6 +20,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -48,12 +50,14 @@ class NewtonLoop {
   Status solve(double t, double position, const Vector& z, const Vector& q, Residual&& residual, Matrix&& matrix,
                Correct&& correct) {
     if (gradient_ < 0) measure_gradient();
+    const double far_off = kFar * std::min(1.0, arm_ * arm_);
     double correction = 0, before = INFINITY;
     bool of_this_step = false;
     stalled_ = false;
     since_stall_ = std::numeric_limits<int>::max() / 2;
     for (int k = 0; k < settings_.max_iterations; ++k) {
       residual(delta_);
+      const double off = delta_.tail(problem_.nc()).template lpNorm<Eigen::Infinity>();
       if (stalled_ && balanced(position, z, q)) return {};
       if (due(refresh_, k, slow_ || !system_.ready())) {
         if (Status status = matrix(); !status.ok()) return status;
@@ -72,7 +76,8 @@ class NewtonLoop {
       }
       stalled_ = correction > 0.5 * before;
       since_stall_ = stalled_ ? 0 : since_stall_ + 1;
-      if (correction <= settings_.tolerance || (stalled_ && is_rounding(t, position, q))) return {};
+      if (correction <= settings_.tolerance && moved_ * position <= kFar * arm_ && off * position <= far_off) return {};
+      if (stalled_ && is_rounding(t, position, q)) return {};
       before = correction;
       if (!std::isfinite(correction)) break;
     }
@@ -87,8 +92,12 @@ class NewtonLoop {
  private:
   // A kept matrix is made anew where corrections shrink by less than this: four more iterations would cost more.
   static constexpr double kSlow = 0.25;
+  // A correction that moves a body by more of the longest arm is none to end with, whatever it is compared with, nor is
+  // one of positions that were so far off the constraints: where a step has no solution accelerations may grow until
+  // corrections are small beside them, and a matrix that is nearly singular answers by λ alone.
+  static constexpr double kFar = 1e-3;
 
-  double relative(const Vector& z, bool of_this_step) const;
+  double relative(const Vector& z, bool of_this_step);
   bool is_rounding(double t, double position, const Vector& q);
   double steepness(double t, double position);
   void measure_gradient();
@@ -104,6 +113,7 @@ class NewtonLoop {
   bool divided_;  // a step that failed was done in parts to where that does not help
   double arm_;    // m, the longest of a body to a constraint
   Vector delta_, momentum_, rows_;
+  double moved_ = 0;      // m/s², the largest correction of a body's acceleration where those are compared
   double gradient_ = -1;  // |Gᵀ|, of the first step: directions and arms stay what they are
   bool stalled_ = false;
   int since_stall_ = 0;  // iterations

@@ -57,11 +57,14 @@ std::string near_singular_position(Problem& problem, int rows, std::span<const d
   Eigen::Index row = 0;
   const double share = now.cwiseQuotient(before).head(rows).minCoeff(&row);
   if (!(share < kNear)) return {};
+  // Beyond the longest reach of a mechanism there is no position for any method.
+  const bool driven = std::ranges::any_of(problem.model().rows, [](const Row& r) { return !r.f.is_constant(); });
   return fmt::format(
       "it stopped beside a singular position of the mechanism, where the gradient of {} is a combination of the other "
       "constraints' but for {:.1g} of its length (at the start for {:.1g}); dopri5 and dop853 step over most of such "
-      "positions at larger tolerances, fixed steps may",
-      problem.describe_unknown(problem.nv() + static_cast<int>(row)), now[row], before[row]);
+      "positions at larger tolerances, fixed steps may{}",
+      problem.describe_unknown(problem.nv() + static_cast<int>(row)), now[row], before[row],
+      driven ? "; where a driver asks for more than the mechanism reaches nothing does: end before it" : "");
 }
 
 std::string vanished_distance(Problem& problem, const State& state) {

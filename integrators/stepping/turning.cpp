@@ -35,21 +35,31 @@ Status turned_too_far(const Problem& problem, double t, double h) {
                       t, name, turn.rate, h * turn.rate, 0.3 * kMostCounted / turn.rate)};
 }
 
-Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most) {
+Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most,
+                       double serves) {
   const auto [name, rate] = fastest(problem, a);
   return {Failure::rotation_too_large, t,
           fmt::format("at t = {:.9g} s body '{}' turns by {:.3g} rad in a step; in formulation {} the integrator makes "
                       "no sense beyond {:.2g}: rotation is lost or invented; try a step of at most {:.2g} s",
-                      t, name, h * rate, problem.formulation(), most, 0.1 * most / rate)};
+                      t, name, h * rate, problem.formulation(), most, serves)};
 }
 
-Status turned_unexpectedly(const Problem& problem, std::span<const double> a, double t, double h, double unexpected) {
+Status turned_unexpectedly(const Problem& problem, std::span<const double> a, double t, double h, double unexpected,
+                           double serves) {
   const auto [name, rate] = fastest(problem, a);
   return {Failure::rotation_too_large, t,
           fmt::format("at t = {:.9g} s the step may have ended on another branch than the motion leads to: body '{}' "
                       "turns by {:.3g} rad in it, a body by {:.3g} rad more or less than in the step before; try a "
-                      "tenth of the step",
-                      t, name, h * rate, unexpected)};
+                      "step of at most {:.2g} s",
+                      t, name, h * rate, unexpected, serves)};
+}
+
+Status leads_too_far(const Problem& problem, std::span<const double> a, double t, int parts, double serves) {
+  const auto [name, rate] = fastest(problem, a);
+  return {Failure::rotation_too_large, t,
+          fmt::format("at t = {:.9g} s a step goes further than {} parts of it can follow: body '{}' turns at {:.3g} "
+                      "rad/s; try a step of at most {:.2g} s",
+                      t, parts, name, rate, serves)};
 }
 
 }  // namespace poinsot

@@ -21,7 +21,12 @@ inline bool turns_too_far(const Problem& problem, double h) {
 // The stop of a fixed step, or of one that cannot be shorter. The problem stands at its end.
 Status turned_too_far(const Problem& problem, double t, double h);
 // The same for a body whose rotation in a step exceeds `most`, for a reason named by the integrator's registry.
-Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most);
-Status turned_unexpectedly(const Problem& problem, std::span<const double> a, double t, double h, double unexpected);
+// `serves`: the step to try, s.
+Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most,
+                       double serves);
+Status turned_unexpectedly(const Problem& problem, std::span<const double> a, double t, double h, double unexpected,
+                           double serves);
+// The same of kinematics, whose steps are followed in parts. The problem stands where `parts` of them have led to.
+Status leads_too_far(const Problem& problem, std::span<const double> a, double t, int parts, double serves);
 
 }  // namespace poinsot

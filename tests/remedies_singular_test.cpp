@@ -1,0 +1,202 @@
+// Singular positions and places where a scene asks for what cannot be: what a stop there says to try helps, in the same
+// scene.
+#include <gtest/gtest.h>
+
+#include "tests/support/every_way.h"
+#include "tests/support/loops.h"
+#include "tests/support/passages.h"
+#include "tests/support/remedies.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class SingularRemedies : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(All, SingularRemedies, ::testing::ValuesIn(formulation_names()),
+                         [](const auto& test) { return test.param; });
+
+// Its first post driven from where it stands.
+Scene with_motor(Scene scene, const char* angle) {
+  Driver& motor = scene.drivers.emplace_back();
+  motor.name = "motor", motor.i = kGround, motor.j = 0, motor.axis = {0, 0, 1};
+  motor.value = Expression::parse(angle);
+  for (Body& body : scene.bodies) body.velocity.setZero(), body.angular_velocity.setZero();
+  return scene;
+}
+
+TEST_P(SingularRemedies, OfKinematicsAreToEndBeforeOrToStartBeyond) {
+  for (const bool redundant : {false, true}) {
+    SCOPED_TRACE(redundant);
+    const Settings settings = kinematics(GetParam(), 0.05, 1);
+    const Recorded stopped = run(with_motor(posts(1, 0.3, 0, redundant), "-t"), settings);
+    expect_stopped(stopped, Failure::singular_position, "joint 'joint", "end before it, or start beyond it");
+    EXPECT_NEAR(stopped.outcome.status.time, 0.3, 1e-4);
+    Settings before = settings;
+    before.end = 0.29, before.step = 0.01;
+    expect_helped(with_motor(posts(1, 0.3, 0, redundant), "-t"), before);
+    const Scene beyond = with_motor(posts(1, -0.01, 0, redundant), "-t");
+    expect_helped(beyond, settings);
+    const Snapshot end = run(beyond, settings).samples.back();
+    EXPECT_NEAR(end.bodies[1].r.x(), 1 + 0.5 * std::cos(1.01), 1e-9) << "parallel";
+    EXPECT_NEAR(end.bodies[1].r.y(), -0.5 * std::sin(1.01), 1e-9) << "parallel";
+  }
+}
+
+TEST_P(SingularRemedies, OfKinematicsFromThereAreToStartBesideOrDynamics) {
+  const Settings settings = kinematics(GetParam(), 0.01, 0.1);
+  const Recorded stopped = run(with_motor(posts(1, 0, 0, false), "-3*t"), settings);
+  EXPECT_EQ(stopped.outcome.status.failure, Failure::singular_position);
+  EXPECT_THAT(stopped.outcome.status.message, HasSubstr("joint 'joint4'"));
+  EXPECT_THAT(stopped.outcome.status.message, HasSubstr("start beside it, or with analysis dynamics, which follows"));
+  expect_helped(with_motor(posts(1, -0.01, 0, false), "-3*t"), settings);
+  Scene moving = posts(1, 0, -3, false);
+  moving.drivers = with_motor(posts(1, 0, 0, false), "-3*t").drivers;
+  expect_helped(moving, controlled("dop853", GetParam(), 1e-8, 0.1));
+}
+
+TEST_P(SingularRemedies, OfIterationsInKinematicsAreMoreOfThemOrALargerTolerance) {
+  const Scene scene = with_motor(posts(1, 0.5, 0, false), "t");
+  Settings settings = kinematics(GetParam(), 0.1, 1);
+  settings.max_iterations = 1;
+  expect_stopped(run(scene, settings), Failure::not_converged, "body '", "try more iterations or a larger tolerance");
+  settings.max_iterations = 20;
+  expect_helped(scene, settings);
+  settings.max_iterations = 1, settings.tolerance = 1e-3;
+  expect_helped(scene, settings);
+}
+
+// Here a step ends beside the flat position, from where a method of first order may go on on another branch; where it
+// is left for certain the run stops, and offers the same.
+TEST(SingularRemediesOfBranches, AreATenthOfTheStepOrDop853) {
+  const Scene scene = posts(2, 0.2515015516593695, kSpin, false);
+  const auto uncertain = Contains(HasSubstr("is not certain; try a tenth of it or dop853"));
+  int doubted = 0;
+  in_every_way(3e-2, 2, [&](const Settings& way) {
+    Settings settings;
+    settings.formulation = way.formulation, settings.integrator = way.integrator;
+    settings.step = way.step, settings.end = way.end;
+    const Recorded r = run(scene, settings);
+    if (!r.outcome.status.ok()) {
+      expect_stopped(r, Failure::singular_position, "joint '", "try another step or dop853");
+    } else if (!::testing::Value(r.outcome.notices, uncertain)) {
+      return;
+    }
+    ++doubted;
+    Settings tenth = with_step(settings, 0.1 * settings.step), controls = settings;
+    controls.integrator = "dop853";
+    for (const Settings& remedy : {tenth, controls}) {
+      SCOPED_TRACE(remedy.integrator);
+      const Recorded again = run(scene, remedy);
+      EXPECT_TRUE(again.outcome.status.ok()) << again.outcome.status.message;
+      EXPECT_THAT(again.outcome.notices, Not(uncertain));
+      for (const std::size_t coupler : {3u, 4u})  // which turn on other branches alone
+        EXPECT_LT((again.samples.back().bodies[coupler].A - Matrix3::Identity()).norm(), 1e-2);
+    }
+  });
+  EXPECT_GT(doubted, 0);
+}
+
+// A direction that turns back at an output time.
+TEST_P(SingularRemedies, OfASingularOutputTimeAreTimesBesideIt) {
+  Scene scene;
+  Body& wheel = scene.bodies.emplace_back();
+  wheel.name = "wheel", wheel.mass = 1, wheel.inertia = Vector3(1, 1, 1).asDiagonal();
+  wheel.orientation = Eigen::AngleAxisd(1, Vector3::UnitZ()).toRotationMatrix();
+  wheel.angular_velocity = {0, 0, -1};
+  Joint& hinge = scene.joints.emplace_back();
+  hinge.name = "hinge", hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
+  Constraint& row = scene.constraints.emplace_back();
+  row.name = "cosine", row.type = ConstraintType::DP1, row.i = kGround, row.j = 0;
+  row.a_i = row.a_j = {1, 0, 0};
+  row.f = Expression::parse("cos(1 - t)");
+  for (const char* integrator : {"dopri5", "dop853", "radau5"}) {
+    SCOPED_TRACE(integrator);
+    const Recorded stopped = run(scene, controlled(integrator, GetParam(), 1e-8, 1.5, 0.5));
+    expect_stopped(stopped, Failure::singular_position, "", "take output times beside it");
+    expect_helped(scene, controlled(integrator, GetParam(), 1e-8, 1.5, 0.3));
+  }
+}
+
+TEST_P(SingularRemedies, OfAPositionThatJumpsIsAWayThroughTheValuesBetween) {
+  const auto scene = [](const char* angle) { return with_motor(posts(1, 0.5, 0, false), angle); };
+  for (const char* integrator : {"dopri5", "dop853", "radau5"}) {
+    SCOPED_TRACE(integrator);
+    const Settings settings = controlled(integrator, GetParam(), 1e-8, 1);
+    expect_stopped(run(scene("0.1*t + 0.2*step(t - 0.5)"), settings), Failure::inconsistent_state, "",
+                   "prescribes a jump of positions, which no motion follows; let it pass through the values between");
+    expect_helped(scene("0.1*t + 0.2*min(max(10*(t - 0.5), 0), 1)"), settings);
+  }
+}
+
+TEST_P(SingularRemedies, OfVelocitiesOnNoBranchAreThoseOfOneOrAStartBeside) {
+  Scene none = posts(1, 0, kSpin, false);
+  none.bodies[1].velocity = {0, -0.75, 0}, none.bodies[1].angular_velocity = {0, 0, -1.5};
+  none.bodies[2].velocity = {0, (-1.5 + kSpin) / 2, 0}, none.bodies[2].angular_velocity = {0, 0, -1.5 - kSpin};
+  const Settings settings = controlled("dop853", GetParam(), 1e-8, 0.1);
+  const Recorded refused = run(none, settings);
+  EXPECT_EQ(refused.outcome.status.failure, Failure::singular_position);
+  EXPECT_THAT(refused.outcome.status.message, HasSubstr("joint 'joint4'"));
+  EXPECT_THAT(refused.outcome.status.message, HasSubstr("start beside it, or with the velocities of one branch"));
+  expect_helped(posts(1, 0, kSpin, false), settings);
+  expect_helped(posts(1, 0.01, kSpin, false), settings);
+}
+
+TEST_P(SingularRemedies, OfABodyWithoutInertiaIsInertia) {
+  Scene scene = scene_of("free_body");
+  const Matrix3 inertia = scene.bodies[0].inertia;
+  scene.bodies[0].inertia.setZero();
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.analysis != Analysis::dynamics || refusal_of(integrator, GetParam())) continue;
+    SCOPED_TRACE(integrator.name);
+    Settings settings;
+    settings.integrator = integrator.name, settings.formulation = GetParam();
+    settings.end = 0.01;
+    Scene with = scene;
+    with.bodies[0].inertia = inertia;
+    const Recorded r = run(scene, settings);
+    EXPECT_EQ(r.outcome.status.failure, Failure::singular_matrix) << r.outcome.status.message;
+    EXPECT_THAT(r.outcome.status.message, HasSubstr("a body without inertia"));
+    EXPECT_THAT(r.outcome.status.message, HasSubstr("'" + scene.bodies[0].name + "'"));
+    expect_helped(with, settings);
+  }
+}
+
+// A telescope that asks for more than a rod can reach: no method goes on there, and the time before it is done.
+TEST_P(SingularRemedies, OfADriverThatAsksForTooMuchIsToEndBefore) {
+  Scene scene;
+  scene.gravity = {0, 0, -9.81};
+  Body& rod = scene.bodies.emplace_back();
+  rod.name = "rod", rod.mass = 3, rod.inertia = Vector3(1, 0.01, 1).asDiagonal(), rod.position = {0, 0, -1};
+  rod.orientation = Eigen::AngleAxisd(-std::numbers::pi / 2, Vector3::UnitX()).toRotationMatrix();
+  Joint& hinge = scene.joints.emplace_back();
+  hinge.name = "hinge", hinge.i = kGround, hinge.j = 0, hinge.axis = {1, 0, 0};
+  Driver& telescope = scene.drivers.emplace_back();
+  telescope.name = "telescope", telescope.type = DriverType::distance, telescope.i = kGround, telescope.j = 0;
+  telescope.s_i = {0, 3, 0}, telescope.s_j = {0, 1, 0};
+  telescope.value = Expression::parse("sqrt(13) + (5 - sqrt(13))*t");
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (refusal_of(integrator, GetParam())) continue;
+    SCOPED_TRACE(integrator.name);
+    Settings settings;
+    settings.integrator = integrator.name, settings.formulation = GetParam(), settings.analysis = integrator.analysis;
+    settings.step = 0.01, settings.end = 2;
+    Recorded r = run(scene, settings);
+    // RATTLE is told by the rotation it comes to; with the step that is offered it comes to the same end.
+    for (int k = 0; k < 2 && offered_step(r.outcome.status.message); ++k) {
+      settings.step = *offered_step(r.outcome.status.message);
+      r = run(scene, settings);
+    }
+    ASSERT_FALSE(r.outcome.status.ok());
+    EXPECT_NEAR(r.outcome.status.time, 1, 0.02);
+    EXPECT_THAT(r.outcome.status.message, HasSubstr("end before it"));
+    EXPECT_LT(r.outcome.statistics.violation.position, 1e-6) << "what is given out is on the constraints";
+    settings.end = 0.97;
+    expect_helped(scene, settings);
+  }
+}
+
+}  // namespace
+}  // namespace poinsot::test
