@@ -115,6 +115,16 @@ class Problem {
   // again. Fails where rows left out do not follow from the others any more.
   virtual Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a,
                         std::span<double> lambda, bool& rewritten) = 0;
+  // The rows that take part depend on one another where the problem stands, or all but do. Whether others could take
+  // their place, and do so now: then λ of the state (t, q, v) is that of those, and revision() has gone up. The problem
+  // stands at that state afterwards.
+  virtual bool choose_rows_here(double t, std::span<const double> q, std::span<const double> v,
+                                std::span<double> lambda) {
+    (void)lambda;
+    set_position(t, q);
+    set_velocity(v);
+    return false;
+  }
   // Largest |Φ| and |G v − ν| of rows that are left out because they follow from the others, where the problem
   // stands.
   struct LeftOut {

@@ -81,7 +81,7 @@ constexpr double kFars[] = {1e3, 1e6, 1e8};
 Scene four_bar() {
   return loop({4, Frames::random, false, false});
 }
-constexpr double kEnd = 0.2, kRate = 3, kMass = 3.3;
+constexpr double kFarEnd = 0.2, kRate = 3, kMass = 3.3;
 
 Transform moved_by(double far) {
   Transform moved;
@@ -95,13 +95,13 @@ double rounding(double far) {
 }
 
 TEST(FarReactions, AreThoseAtTheOriginUpToTheRoundingOfPositions) {
-  const FarRun exact = reactions_of(four_bar(), controlled("dop853", "rp", 1e-12, kEnd, kEnd / 4));
+  const FarRun exact = reactions_of(four_bar(), controlled("dop853", "rp", 1e-12, kFarEnd, kFarEnd / 4));
   ASSERT_TRUE(exact.outcome.status.ok()) << exact.outcome.status.message;
   for (const double step : {1e-2, 1e-3, 2.5e-4}) {
-    const int ways = in_every_way(step, kEnd, [&](Settings settings) {
+    const int ways = in_every_way(step, kFarEnd, [&](Settings settings) {
       const bool controls_error = integrators().require(settings.integrator).controls_error;
       if (controls_error && step < 1e-2) return;
-      settings.every = kEnd / 4;
+      settings.every = kFarEnd / 4;
       settings.stopping = Settings{}.stopping;
       settings.tolerance = 1e-8;
       settings.rtol = 1e-6, settings.atol = 1e-6;
@@ -129,8 +129,8 @@ TEST(FarReactions, AreThoseAtTheOriginUpToTheRoundingOfPositions) {
 TEST(FarReactions, DifferByNoMoreThanTheRecordsEstimate) {
   int estimated = 0;
   for (const double step : {1e-2, 1e-3, 2.5e-4}) {
-    in_every_way(step, kEnd, [&](Settings settings) {
-      settings.every = kEnd;
+    in_every_way(step, kFarEnd, [&](Settings settings) {
+      settings.every = kFarEnd;
       settings.stopping = Settings{}.stopping;
       settings.tolerance = 1e-8;
       const FarRun near = reactions_of(four_bar(), settings);

@@ -11,7 +11,7 @@
 namespace poinsot::test {
 namespace {
 
-constexpr double kStep = 2.5e-3, kEnd = 0.5;
+constexpr double kMachineStep = 2.5e-3, kMachineEnd = 0.5;
 
 // How far the joints of a scene have come apart, in m and rad, by points and directions attached at its initial pose.
 double open(const Scene& scene, const std::vector<BodyState>& now) {
@@ -104,7 +104,8 @@ TEST_P(ParadoxicLinkages, MoveStayClosedKeepEnergyAndFollowTheMechanismWithoutRe
     // The reference has neither redundancy nor the frames, nor the formulation of what is compared with it.
     const Scene plain = GetParam().make({Frames::drawn, carried, false});
     for (const FormulationEntry& formulation : formulations()) {
-      const Settings tight = controlled("dop853", formulation.name == "rA" ? "rp" : "rA", 1e-11, kEnd, kEnd);
+      const Settings tight =
+          controlled("dop853", formulation.name == "rA" ? "rp" : "rA", 1e-11, kMachineEnd, kMachineEnd);
       const Course reference = move(plain, tight);
       ASSERT_TRUE(reference.outcome.status.ok()) << reference.outcome.status.message;
       ASSERT_THAT(reference.outcome.notices, ::testing::Not(::testing::Contains(::testing::HasSubstr("redundant"))));
@@ -115,7 +116,7 @@ TEST_P(ParadoxicLinkages, MoveStayClosedKeepEnergyAndFollowTheMechanismWithoutRe
         SCOPED_TRACE(fmt::format("{} {} frames {}{}", integrator.name, formulation.name, static_cast<int>(frames),
                                  carried ? ", carried" : ""));
         const Scene scene = GetParam().make({frames, carried, true});
-        Settings settings = dynamics(formulation.name, kStep, kEnd, kEnd / 4);
+        Settings settings = dynamics(formulation.name, kMachineStep, kMachineEnd, kMachineEnd / 4);
         settings.integrator = integrator.name;
         settings.tolerance = 1e-7;
         settings.rtol = 1e-9;

@@ -182,6 +182,10 @@ class Kinematics final : public FixedSteps {
       if (ends || (h < kSuspicious * whole && !std::exchange(examined, true))) {
         const DependentRow found =
             most_dependent_row(problem_, static_cast<int>(problem_.model_rows().size()), at, span(q_from_));
+        if (found.share < kSingular && std::exchange(chose_at_, at) != at && choose_others(at)) {
+          h = 0.5 * (t - at);
+          continue;
+        }
         if (found.share < kSingular || (ends && status.ok())) status = branching(at, found.row);
         if (status.failure == Failure::not_converged && !as_one.ok()) status = as_one;
         if (ends || found.share < kSingular) break;
@@ -198,6 +202,13 @@ class Kinematics final : public FixedSteps {
     bool rewritten = false;
     if (Status status = poinsot::accept(problem_, x_, rewritten); !status.ok()) return status;
     return rewritten ? resume() : Status{};
+  }
+
+  // Of the rows at (q_from_, v_from_), which all but depend on one another.
+  bool choose_others(double at) {
+    if (!problem_.choose_rows_here(at, span(q_from_), span(v_from_), {})) return false;
+    x_.t = at, x_.q = q_from_, x_.v = v_from_;
+    return resume().ok();
   }
 
   Status branching(double t, int row) const {
@@ -275,6 +286,7 @@ class Kinematics final : public FixedSteps {
   Vector delta_, q_next_, dq_;
   Vector q_from_, v_from_;  // where a step, or a part of it, begins
   Vector a_from_;           // of a step
+  double chose_at_ = -1;    // time of the part for which other rows were asked for
   bool careful_ = false;    // in parts of a step
   bool slow_ = false;       // corrections did not shrink as they should
   double contraction_ = 0;  // second correction over the first

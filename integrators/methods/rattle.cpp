@@ -43,6 +43,10 @@ class Rattle final : public FixedSteps {
     if (Status status = FixedSteps::begin(); !status.ok()) return status;
     return run_.singular_for > 0 ? Status{} : factor(ends_.begin(), 0);
   }
+  Status resume() override {
+    velocity_rows_ = velocity_rows(ends_.begin().problem);
+    return forget();
+  }
   Status leave_singular() override {
     start_from(x_.z);
     velocity_rows_ = velocity_rows(ends_.begin().problem);

@@ -17,7 +17,7 @@ namespace {
 // bodies that turn against one another α changes by kTurnsMost what each turns; as a rule much less: after a look by no
 // more than kTurnsMore times what it changed by since the one before, but by kTurnsLittle. Error control sees what its
 // steps leave of rows whose coefficients are large; in large blocks an exchange costs more than that.
-constexpr double kWorn = 12, kWornForControl = 4, kWorst = 40;
+constexpr double kWorn = 12, kWornForControl = 4, kWornWhereAsked = 1.5, kWorst = 40;
 constexpr std::size_t kFew = 20;  // rows set aside
 constexpr double kTurnsMost = 2, kTurnsLittle = 0.75, kTurnsMore = 3;
 // Long steps turn bodies by as much as wears a choice out at once: what it changed by in the last one, and somewhat
@@ -119,13 +119,14 @@ void BlockChoice::look(const RowSpace& space) {
   good_for_ = turn_until_worst(kTurnsMost);
 }
 
-bool BlockChoice::renew(const RowSpace& space, double turned, double ahead) {
+bool BlockChoice::renew(const RowSpace& space, double turned, double ahead, bool asked) {
   if (!watched_) return false;
   const double before = angle(worst_);
   look(space);
   const double change = turned > 0 ? (before - angle(worst_)) / turned : 0, soon = std::max(change, 0.0) * ahead;
   fastest_ = std::max(kForgotten * fastest_, change);
-  const double limit = steps_ == Steps::error_controlled && left_out_.size() <= kFew ? kWornForControl : kWorn;
+  const bool controls = steps_ == Steps::error_controlled && left_out_.size() <= kFew;
+  const double limit = asked ? kWornWhereAsked : controls ? kWornForControl : kWorn;
   worn_ = std::max(limit, given_);
   const bool will_be = has_coefficients() && angle(worst_) - kSooner * soon < angle(worn_);
   if (!worn() && !will_be) {

@@ -51,7 +51,8 @@ class BlockChoice {
   bool worn() const { return worst_ > worn_; }
   // Chooses anew where the present choice has worn out, or will within the next step: true where other rows are set
   // aside now. Bodies have turned by `turned` since it was looked at, and will by `ahead` in that step.
-  bool renew(const RowSpace& space, double turned, double ahead);
+  // `asked`: as rows kept have turned out to depend on one another here; the best choice is wanted.
+  bool renew(const RowSpace& space, double turned, double ahead, bool asked);
   // Where it was last looked at, rad: what bodies may turn by until it is to be looked at again.
   double good_for() const { return good_for_; }
   void add_aside(const RowSpace& space, std::vector<int>& rows) const;

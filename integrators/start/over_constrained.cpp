@@ -126,6 +126,18 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
   return {};
 }
 
+bool OverConstrained::choose_rows_here(double t, std::span<const double> q, std::span<const double> v,
+                                       std::span<double> lambda) {
+  kept_->to_bodies(std::vector<double>(index(nv_)), now_);
+  const bool others = choice_->rows.renew(t_, now_, HUGE_VAL, 0, true);
+  choice_->at = now_;
+  way_ = 0;
+  set_position(t, q);
+  set_velocity(v);
+  if (others) exchange(t, q, v, lambda);
+  return others;
+}
+
 // Other rows, and the multipliers that are the same forces.
 void OverConstrained::exchange(double t, std::span<const double> q, std::span<const double> v,
                                std::span<double> lambda) {

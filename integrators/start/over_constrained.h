@@ -80,6 +80,8 @@ class OverConstrained final : public Problem {
   bool has_discrete_state() const override { return true; }
   Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double> lambda,
                 bool& rewritten) override;
+  bool choose_rows_here(double t, std::span<const double> q, std::span<const double> v,
+                        std::span<double> lambda) override;
   LeftOut left_out() const override;
 
  private:

@@ -37,11 +37,11 @@ bool RowChoice::worn() const {
   return std::ranges::any_of(blocks_, &BlockChoice::worn);
 }
 
-bool RowChoice::renew(double t, std::span<const BodyState> states, double turned, double ahead) {
+bool RowChoice::renew(double t, std::span<const BodyState> states, double turned, double ahead, bool asked) {
   space_.stand(t, states);
   bool any = false;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    renewed_[b] = blocks_[b].renew(space_, turned, ahead);
+    renewed_[b] = blocks_[b].renew(space_, turned, ahead, asked);
     any = any || renewed_[b];
   }
   take_good_for();

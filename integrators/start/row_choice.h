@@ -23,7 +23,8 @@ class RowChoice {
   bool worn() const;  // where it was last looked at
   // Chooses anew where the present choice has worn out, or will within the next step: true where other rows are set
   // aside now. Bodies have turned by `turned` since it was looked at, and will by `ahead` in that step.
-  bool renew(double t, std::span<const BodyState> states, double turned, double ahead);
+  // `asked`: as rows kept have turned out to depend on one another there; the best choice is wanted.
+  bool renew(double t, std::span<const BodyState> states, double turned, double ahead, bool asked = false);
   // Of the choice where it was last looked at, rad: what bodies may turn by until it is to be looked at again.
   double good_for() const { return good_for_; }
   // After renew() has chosen others: λ, by row of the model, of rows kept before ← that of those kept now, which are

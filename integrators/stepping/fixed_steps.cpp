@@ -96,7 +96,7 @@ Status FixedSteps::reach(double t, bool sampled) {
   Status status = step(t);
   x_.t = t;
   bool settled = false;
-  if (status.ok()) status = examine_end(settled);
+  if (status.ok()) status = examine_end(began, settled);
   if (!status.ok()) {
     x_.t = began;
     x_.q.swap(q_n_);
@@ -111,11 +111,33 @@ Status FixedSteps::reach(double t, bool sampled) {
   return discrete_ ? accept(*standing_) : Status{};
 }
 
+// Once where a step begins.
+bool FixedSteps::asks_for_other_rows(double began) {
+  return discrete_ && std::exchange(chose_at_, began) != began;
+}
+
+// Where the step leads to the rows that are kept may depend on one another: looks whether others do not.
+bool FixedSteps::choose_rows() {
+  Vector ahead = h_ * x_.v, q(x_.q.size());
+  Problem& problem = last_seen();
+  problem.retract(span(x_.q), span(ahead), span(q));
+  problem.set_position(x_.t + h_, span(q));
+  return problem.choose_rows_here(x_.t, span(x_.q), span(x_.v), x_.lambda());
+}
+
 Status FixedSteps::reach_in_halves(double t, bool sampled, int halvings) {
-  if (halvings > 0) z_began_ = x_.z;
+  if (halvings > 0 || discrete_) z_began_ = x_.z;
   const double began = x_.t;
   departs_ = false;
-  const Status as_one = reach(t, sampled);
+  Status as_one = reach(t, sampled);
+  if (may_be_too_long(as_one.failure) && as_one.failure != Failure::not_finite && x_.t == began &&
+      asks_for_other_rows(began)) {
+    x_.z = z_began_;
+    if (began != settled_at_ && !forget().ok()) return as_one;
+    rewritten_ = choose_rows();
+    if (rewritten_) z_began_ = x_.z;
+    if (rewritten_ || as_one.message.empty()) as_one = reach(t, sampled);
+  }
   const bool departs = departs_;
   if (as_one.ok() || halvings == 0 || !may_be_too_long(as_one.failure) || x_.t > began) return as_one;
   const double h = h_, half = began + 0.5 * (t - began);

@@ -94,9 +94,11 @@ class FixedSteps {
   Status reach(double t, bool sampled);
   Status reach_in_halves(double t, bool sampled, int halvings);
   // Whether x_ is to stand as the end of its step; as the limit of states beside it where it was `settled`.
-  Status examine_end(bool& settled);
+  Status examine_end(double began, bool& settled);
   Status settle_end(bool& settled);
   bool settles_beginning();
+  bool asks_for_other_rows(double began);
+  bool choose_rows();
   bool settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at);
   void set_step(double h);
   std::vector<BodyState> bodies();  // where x_ is
@@ -107,7 +109,8 @@ class FixedSteps {
   const bool discrete_;
   bool rewritten_ = false;
   Problem* standing_ = nullptr;  // the problem that stands at x_
-  Vector z_began_;               // of a step that may be divided, where it began
+  Vector z_began_;               // of a step that may be done again, where it began
+  double chose_at_ = -1;         // time of the beginning of a step for which other rows were asked for
   double shortest_ = 0;          // of the steps done
   double rotation_ = 0;          // of the last step, the largest of a body
   Vector change_;
