@@ -6,10 +6,13 @@
 #include <csignal>
 
 #include "command_line.h"
+#include "tests/scale.h"
 
 namespace poinsot::test {
 namespace {
 namespace fs = std::filesystem;
+
+const int kMany = std::max(400, scaled(800));  // samples, of two cases each, which take a while and much room
 
 class CliStudy : public CommandLine {
  protected:
@@ -138,7 +141,7 @@ TEST_F(CliStudy, RanksGiveTheSameBytes) {
 }
 
 TEST_F(CliStudy, AKillLosesTheCasesUnderWayAndNoMore) {
-  write_study(800, 0.02);
+  write_study(kMany, 0.02);
   const std::string expected = reference();
   std::uintmax_t before = 0;
   for (int kills = 0; kills < 3; ++kills) {
@@ -163,7 +166,7 @@ TEST_F(CliStudy, AKillLosesTheCasesUnderWayAndNoMore) {
   const std::size_t rows = lines(read("killed/cases.part")).size();
   ASSERT_EQ(study({"--threads", "2", "--out", "killed"}).status, 0);
   EXPECT_EQ(read("killed/cases.csv"), expected);
-  EXPECT_GE(lines(read("killed/cases.part")).size(), 1602u);
+  EXPECT_GE(lines(read("killed/cases.part")).size(), static_cast<std::size_t>(2 * kMany + 2));
   EXPECT_GT(rows, 100u);
   // What is there is not computed again.
   const auto size = fs::file_size(folder() / "killed/cases.part");
@@ -172,7 +175,7 @@ TEST_F(CliStudy, AKillLosesTheCasesUnderWayAndNoMore) {
 }
 
 TEST_F(CliStudy, AnInterruptedStudyEndsTidilyAndGoesOn) {
-  write_study(800, 0.02);
+  write_study(kMany, 0.02);
   const pid_t child = start({"study", "study.json", "--threads", "1", "--out", "out"});
   const fs::path part = folder() / "out/cases.part";
   while (!fs::exists(part) || fs::file_size(part) < 20'000) usleep(500);
@@ -185,7 +188,7 @@ TEST_F(CliStudy, AnInterruptedStudyEndsTidilyAndGoesOn) {
   EXPECT_EQ(record["incomplete"], true);
   const std::string message = record["message"];
   EXPECT_TRUE(message.starts_with("interrupted by SIGINT: ") &&
-              message.find(" of 1600 cases are there") != std::string::npos)
+              message.find(fmt::format(" of {} cases are there", 2 * kMany)) != std::string::npos)
       << message;
   EXPECT_NE(result.err.find("poinsot: " + message + "\n"), std::string::npos) << result.err;
   EXPECT_FALSE(fs::exists(folder() / "out/cases.csv"));
@@ -273,7 +276,7 @@ TEST_F(CliStudy, TimesAreMeasuredAloneAndSaidToBe) {
 
 // As the user of the tests, and where that is root as nobody, too.
 TEST_F(CliStudy, AFullDiskKeepsTheRowsThereWasRoomFor) {
-  write_study(800, 0.02);
+  write_study(kMany, 0.02);
   const std::string expected = reference();
   do {
     SCOPED_TRACE(program());
