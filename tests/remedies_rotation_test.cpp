@@ -119,7 +119,7 @@ TEST(RemediesOfRotation, GoOnWhereBodiesTurnFasterStill) {
 TEST(RemediesOfRotation, AreNotMadeOfWhatDiverged) {
   const Scene scene = loop({4, Frames::random, true, true});
   int offered = 0;
-  in_every_fixed_way(0.05, 2, [&](Settings settings) {
+  in_every_fixed_way(0.07, 2, [&](Settings settings) {
     settings.tolerance = 1e-3;
     const Recorded stopped = run(scene, settings);
     const auto step = offered_step(stopped.outcome.status.message);

@@ -99,8 +99,8 @@ TEST(SingularRemediesOfBranches, AreATenthOfTheStepOrDop853) {
   EXPECT_GT(doubted, 0);
 }
 
-// A direction that turns back at an output time.
-TEST_P(SingularRemedies, OfASingularOutputTimeAreTimesBesideIt) {
+// A cosine that turns back at an output time leaves rates to rounding: they are the limit of those beside.
+TEST_P(SingularRemedies, ASingularOutputTimeNeedsNone) {
   Scene scene;
   Body& wheel = scene.bodies.emplace_back();
   wheel.name = "wheel", wheel.mass = 1, wheel.inertia = Vector3(1, 1, 1).asDiagonal();
@@ -114,9 +114,13 @@ TEST_P(SingularRemedies, OfASingularOutputTimeAreTimesBesideIt) {
   row.f = Expression::parse("cos(1 - t)");
   for (const char* integrator : {"dopri5", "dop853", "radau5"}) {
     SCOPED_TRACE(integrator);
-    const Recorded stopped = run(scene, controlled(integrator, GetParam(), 1e-8, 1.5, 0.5));
-    expect_stopped(stopped, Failure::singular_position, "", "take output times beside it");
-    expect_helped(scene, controlled(integrator, GetParam(), 1e-8, 1.5, 0.3));
+    const Recorded r = run(scene, controlled(integrator, GetParam(), 1e-8, 1.5, 0.5));
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    ASSERT_EQ(r.samples.size(), 4u);
+    for (const Snapshot& sample : r.samples) {
+      EXPECT_NEAR(sample.bodies[0].w.z(), -1, 1e-6) << sample.t;
+      EXPECT_LT(sample.bodies[0].wd.norm(), 1e-6) << sample.t;
+    }
   }
 }
 

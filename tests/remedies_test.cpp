@@ -155,7 +155,7 @@ TEST_P(Remedies, OfARowSetAsideThatIsLost) {
     one.drivers.pop_back();
     expect_helped(one, settings);
   }
-  EXPECT_GE(lost, 2);
+  EXPECT_GE(lost, 1);
 }
 
 // A rotation notice names a step that loses less than what it warns of.

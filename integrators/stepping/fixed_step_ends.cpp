@@ -33,7 +33,7 @@ Status FixedSteps::examine_end(double began, bool& settled) {
   double jump = integrates() ? branch_.jump(problem_, v_n_, x_.v, h_) : 0;
   if (settles_ && (singular_ends_.grow(x_.lambda()) || jump > kSingular)) {
     // It may be that of the rows kept alone, where others are set aside.
-    if (discrete_ && chose_at_ != began) return {Failure::singular_position, x_.t, {}};
+    if (chooses_ && chose_at_ != began) return {Failure::singular_position, x_.t, {}};
     if (Status status = settle_end(settled); !status.ok()) return status;
     if (settled) jump = branch_.jump(problem_, v_n_, x_.v, h_);
   }
@@ -128,11 +128,10 @@ bool FixedSteps::settles_beginning() {
 bool FixedSteps::settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at) {
   if (!ends.settle(problem, v_n, at)) return false;
   if (!std::exchange(told_, true)) {
-    const bool chosen = problem.model_rows().size() < problem.model().rows.size();
     run_.tell(fmt::format(
         "at t = {:.6g} s a step ends in a singular position{}, or so near that rounding decides about velocities or "
         "accelerations: they are the limit of those beside it",
-        at.t, chosen ? " of the rows that are kept" : ""));
+        at.t, chooses_ ? " of the rows that are kept" : ""));
   }
   return true;
 }

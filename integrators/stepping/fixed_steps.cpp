@@ -48,6 +48,7 @@ FixedSteps::FixedSteps(const Run& run)
       q_n_(run.state.q),
       v_n_(run.state.v),
       discrete_(run.problem.has_discrete_state()),
+      chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
       singular_ends_(run.settings),
       output_(run.settings) {}
 
@@ -113,7 +114,7 @@ Status FixedSteps::reach(double t, bool sampled) {
 
 // Once where a step begins.
 bool FixedSteps::asks_for_other_rows(double began) {
-  return discrete_ && std::exchange(chose_at_, began) != began;
+  return chooses_ && std::exchange(chose_at_, began) != began;
 }
 
 // Where the step leads to the rows that are kept may depend on one another: looks whether others do not.
@@ -126,7 +127,7 @@ bool FixedSteps::choose_rows() {
 }
 
 Status FixedSteps::reach_in_halves(double t, bool sampled, int halvings) {
-  if (halvings > 0 || discrete_) z_began_ = x_.z;
+  if (halvings > 0 || chooses_) z_began_ = x_.z;
   const double began = x_.t;
   departs_ = false;
   Status as_one = reach(t, sampled);

@@ -106,7 +106,7 @@ class FixedSteps {
   // Whether the step ends on the branch that its velocities lead to.
   Status check_branch(Problem& problem);
 
-  const bool discrete_;
+  const bool discrete_, chooses_;  // something is to be brought up to date; rows among those that are redundant
   bool rewritten_ = false;
   Problem* standing_ = nullptr;  // the problem that stands at x_
   Vector z_began_;               // of a step that may be done again, where it began
