@@ -43,7 +43,8 @@ bool SingularEnds::settle(Problem& problem, const Eigen::VectorXd& v_n, State& a
 
 bool SingularEnds::grow(std::span<const double> lambda) {
   constexpr double kGrown = 100;
-  const double multiplier = largest(lambda);
+  double multiplier = 0;  // once a step
+  for (const double x : lambda) multiplier = std::max(multiplier, std::abs(x));
   const bool grown = largest_multiplier_ > 0 && multiplier > kGrown * largest_multiplier_;
   doubted_multiplier_ = grown ? multiplier : 0;
   before_ = std::exchange(last_, multiplier);
