@@ -51,8 +51,8 @@ TEST(ReferenceDynamics, EveryLinearSolverFollowsTheDiscreteTrajectory) {
 
 // The first step begins with v_1 = v_0 + h a_1 from the true v_0 and not from the scheme's, so its acceleration and
 // multipliers are wrong by O(1): instants begin at 0.1 s.
-constexpr double kSteps[] = {1e-2, 5e-3, 2.5e-3, 1.25e-3, 6.25e-4};
-constexpr double kEnd = 1, kEvery = 0.1;
+constexpr double kStepSizes[] = {1e-2, 5e-3, 2.5e-3, 1.25e-3, 6.25e-4};
+constexpr double kReferenceEnd = 1, kEvery = 0.1;
 
 struct Driven {
   const char* model;
@@ -79,9 +79,9 @@ TEST_P(DrivenMultipliers, ConvergeWithOrderOne) {
 
   std::vector<std::vector<double>> errors(rows);
   std::vector<double> size(rows);
-  for (double step : kSteps) {
+  for (double step : kStepSizes) {
     for (auto& row : errors) row.push_back(0);
-    for (const Snapshot& sample : motion(scene, dynamics(formulation, step, kEnd, kEvery))) {
+    for (const Snapshot& sample : motion(scene, dynamics(formulation, step, kReferenceEnd, kEvery))) {
       if (sample.t == 0) continue;
       const auto& reference = table.rows[static_cast<std::size_t>(std::lround(sample.t / kEvery))];
       ASSERT_NEAR(std::stod(reference[0]), sample.t, 1e-12);
@@ -102,7 +102,7 @@ TEST_P(DrivenMultipliers, ConvergeWithOrderOne) {
       continue;
     }
     ++judged;
-    EXPECT_TRUE(converges({std::begin(kSteps), std::end(kSteps)}, errors[k])) << scene.constraints[k].name;
+    EXPECT_TRUE(converges({std::begin(kStepSizes), std::end(kStepSizes)}, errors[k])) << scene.constraints[k].name;
   }
   EXPECT_GE(judged, 3);
 }
@@ -122,8 +122,8 @@ TEST_P(FreeMotion, ConvergesWithOrderOne) {
   reference.resize(11);
   reference.erase(reference.begin());
   std::map<std::string, std::vector<double>> errors;
-  for (double step : kSteps) {
-    std::vector<Snapshot> samples = motion(scene, dynamics(formulation, step, kEnd, kEvery));
+  for (double step : kStepSizes) {
+    std::vector<Snapshot> samples = motion(scene, dynamics(formulation, step, kReferenceEnd, kEvery));
     samples.erase(samples.begin());
     const Distance d = distance(samples, reference);
     errors["r"].push_back(d.r);
@@ -134,7 +134,7 @@ TEST_P(FreeMotion, ConvergesWithOrderOne) {
     errors["wd"].push_back(d.wd);
   }
   for (const auto& [quantity, of] : errors) {
-    EXPECT_TRUE(converges({std::begin(kSteps), std::end(kSteps)}, of)) << quantity;
+    EXPECT_TRUE(converges({std::begin(kStepSizes), std::end(kStepSizes)}, of)) << quantity;
   }
 }
 
