@@ -49,7 +49,7 @@ class Carried {
     base.name = "base";
     base.mass = 50;
     base.inertia = Vector3(20, 20, 20).asDiagonal();
-    base.angular_velocity = kSpin;
+    base.angular_velocity = kCarrierSpin;
     join(JointType::revolute, kGround, 0, Vector3::Zero(), Vector3::UnitY());
   }
 
@@ -59,8 +59,8 @@ class Carried {
     body.mass = 1;
     body.inertia = Vector3(0.1, 0.1, 0.1).asDiagonal();
     body.position = 0.5 * (from + to);
-    body.velocity = kSpin.cross(body.position);
-    body.angular_velocity = kSpin;
+    body.velocity = kCarrierSpin.cross(body.position);
+    body.angular_velocity = kCarrierSpin;
     return static_cast<int>(scene_.bodies.size()) - 1;
   }
 
@@ -73,7 +73,7 @@ class Carried {
     x.axis = axis;
   }
 
-  inline static const Vector3 kSpin{0, 4, 0};
+  inline static const Vector3 kCarrierSpin{0, 4, 0};
   bool redundant_;
   Scene scene_;
 };
