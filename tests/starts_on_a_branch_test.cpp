@@ -180,6 +180,7 @@ TEST_P(StartsOnABranch, TheForceOfAPressOnAStraightToggleIsThatOfTheClosedForm) 
       });
       ASSERT_TRUE(outcome.status.ok()) << outcome.status.message;
       EXPECT_EQ(seen, 5);
+      EXPECT_THAT(outcome.notices, ::testing::Not(::testing::Contains(::testing::HasSubstr("multipliers"))));
     }
   }
 }
