@@ -17,7 +17,7 @@ namespace {
 
 // Of the largest velocity, by which the velocities of the branch may differ: rounding beside the position.
 constexpr double kOnBranch = 1e-5;
-constexpr double kUnbalanced = 1e-5;  // of the largest load, likewise
+constexpr double kUnbalanced = 1e-5;  // of the largest load: more is not due to the limit's rounding
 
 // Adds to the multipliers what those of the rows independent in the singular position can of M a + Gᵀλ − Q, and gives
 // out what is left of it. The problem stands at the state.
@@ -105,7 +105,7 @@ Status limit_state(Problem& problem, const RankAnalysis& rank, const Settings& s
   if (left > kUnbalanced * largest_load(problem, state, rank.time_beside)) {
     tell(
         fmt::format("at t = 0 s multipliers grow without bound towards the singular position: in it, they and the "
-                    "reactions leave up to {:.2g} N or N m of the loads of {} unbalanced; take output times beside it",
+                    "reactions leave up to {:.2g} N or N m of the loads of {} unbalanced; a start beside it has none",
                     left, problem.describe_unknown(static_cast<int>(most))));
   }
   return {};

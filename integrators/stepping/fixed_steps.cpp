@@ -134,7 +134,7 @@ Status FixedSteps::reach_in_halves(double t, bool sampled, int halvings) {
   if (may_be_too_long(as_one.failure) && as_one.failure != Failure::not_finite && x_.t == began &&
       asks_for_other_rows(began)) {
     x_.z = z_began_;
-    if (began != settled_at_ && !forget().ok()) return as_one;
+    if (Status status = began == settled_at_ ? Status{} : forget(); !status.ok()) return status;
     rewritten_ = choose_rows();
     if (rewritten_) z_began_ = x_.z;
     if (rewritten_ || as_one.message.empty()) as_one = reach(t, sampled);
