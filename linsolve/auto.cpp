@@ -2,6 +2,7 @@
 //
 //   structure                                 pick    measured: klu's time for factor + solve over the pick's
 //   unsymmetric: kinematics; G alone          klu     (block hands the first over to klu, and does not take the second)
+//   the same, of one body                     dense   in whole steps 1.17 to 1.35, of instructions
 //   saddle point of bodies and constraints    block   1.1 to 1.8 the paper's mechanisms, 1.3 to 1.5 one hinged body,
 //                                                     2.3 to 3.1 chains of 10, 2.7 to 3.2 of 100 and more,
 //                                                     3.7 to 4.5 trees, 2.8 to 4.2 ladders, 1.5 to 2.3 many
@@ -9,7 +10,7 @@
 //
 // Measured: bench/linear_solver_bench, exact Newton matrices in rA, rp and reps, all in one run in turn, on an AMD EPYC
 // with AVX-512 (before commit 71b95ac; where it says "the paper's mechanisms", block had G alone of those without
-// degrees of freedom and klu the whole matrix). In whole steps dense is up to a tenth faster on the single pendulum.
+// degrees of freedom and klu the whole matrix).
 //
 // Where solves outnumber factorizations (jacobian "kept") the pick is the same: linsolve/README.md has the figures.
 #include "linsolve/back_ends.h"
@@ -50,7 +51,10 @@ class Auto final : public LinearSolver {
 
  private:
   LinearStatus do_analyze(const Pattern& pattern) override {
-    picked_ = workload() != Workload::transposed && saddle_point(pattern) ? "block" : "klu";
+    constexpr int kOneBody = 7;  // coordinates, at most
+    picked_ = workload() != Workload::transposed && saddle_point(pattern) ? "block"
+              : pattern.n <= kOneBody                                     ? "dense"
+                                                                          : "klu";
     solver_ = linear_solvers().require(picked_).make();
     return solver_->analyze(pattern, workload());
   }

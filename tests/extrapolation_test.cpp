@@ -85,5 +85,19 @@ TEST(Extrapolation, SparesIterations) {
   }
 }
 
+TEST(Extrapolation, SparesIterationsOfKinematics) {
+  for (const char* model : {"single_pendulum", "four_link", "slider_crank"})
+    for (const FormulationEntry& formulation : formulations())
+      for (const char* jacobian : {"exact", "kept"}) {
+        Settings settings;
+        settings.analysis = Analysis::kinematics;
+        settings.formulation = formulation.name, settings.jacobian = jacobian;
+        settings.step = 1e-3, settings.end = settings.every = 0.5, settings.tolerance = 1e-10;
+        const Statistics s = run(scene_of(model), settings).outcome.statistics;
+        EXPECT_LT(s.newton_iterations, 1.05 * static_cast<double>(s.steps)) << model << ' ' << formulation.name;
+        EXPECT_GE(s.newton_iterations, s.steps);
+      }
+}
+
 }  // namespace
 }  // namespace poinsot::test

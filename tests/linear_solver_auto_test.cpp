@@ -33,9 +33,10 @@ TEST(Auto, LeavesSaddlePointsToBlock) {
   }
 }
 
-TEST(Auto, LeavesKinematicsToKlu) {
+TEST(Auto, LeavesKinematicsToKluAndOfOneBodyToDense) {
   for (const FormulationEntry& formulation : formulations()) {
-    for (const char* name : {"single_pendulum", "four_link", "slider_crank"})
+    EXPECT_EQ(pick(model("single_pendulum"), formulation, MatrixKind::kinematic), "dense") << formulation.name;
+    for (const char* name : {"four_link", "slider_crank"})
       EXPECT_EQ(pick(model(name), formulation, MatrixKind::kinematic), "klu") << name << ' ' << formulation.name;
   }
 }
@@ -68,6 +69,7 @@ TEST(Auto, ARunNamesTheSolverThatDidTheWork) {
   };
   EXPECT_EQ(solved_by("double_pendulum", "auto"), "block");
   EXPECT_EQ(solved_by("four_link", "auto"), "klu");
+  EXPECT_EQ(solved_by("single_pendulum", "auto"), "dense");
   EXPECT_EQ(solved_by("double_pendulum", "dense"), "dense");
   settings.analysis = Analysis::kinematics;
   EXPECT_EQ(solved_by("four_link", "auto"), "klu");

@@ -11,6 +11,7 @@
 #include "integrators/start/driven_pose.h"
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
+#include "integrators/stepping/extrapolation.h"
 #include "integrators/stepping/fixed_steps.h"
 #include "integrators/stepping/singular_position.h"
 #include "integrators/stepping/turning.h"
@@ -30,7 +31,8 @@ constexpr double kFullTurn = 1;
 constexpr double kSuspicious = 0x1p-10, kSingular = 1e-6;
 constexpr double kShortest = 0x1p-24;  // part of a step
 constexpr int kMostParts = 1000;
-constexpr double kFarTurn = 0.1;  // rad, of a body in a part
+constexpr double kFarTurn = 0.1;      // rad, of a body in a part
+constexpr double kSameLength = 1e-6;  // relative: what rounding of times makes of the lengths of steps
 
 // Numbers are those of the paper's equations.
 class Kinematics final : public FixedSteps {
@@ -38,7 +40,7 @@ class Kinematics final : public FixedSteps {
   explicit Kinematics(const Run& run)
       : FixedSteps(run),
         refresh_(jacobians().require(settings_.jacobian).refresh),
-        // (auto answers this hint with klu, which knows determinants' signs)
+        // (auto answers this hint with klu or dense, which know determinants' signs)
         system_(problem_, run.systems.add(Workload::transposed), MatrixKind::kinematic, run.statistics, clock_),
         rows_change_(
             std::ranges::any_of(problem_.model().rows, [](const Row& row) { return row.alternate != nullptr; })),
@@ -47,7 +49,9 @@ class Kinematics final : public FixedSteps {
         dq_(nv_),
         q_from_(problem_.nq()),
         v_from_(nv_),
-        a_from_(nv_) {
+        a_from_(nv_),
+        beyond_(Vector::Zero(nv_)),
+        extrapolation_(beyond_) {
     if (settings_.reactions || settings_.signals) {
       inverse_dynamics_ = std::make_unique<Consistent>(problem_, settings_.linear());
     } else {
@@ -71,12 +75,20 @@ class Kinematics final : public FixedSteps {
 
   Status step(double t) override {
     q_from_ = q_n_, v_from_ = v_n_, a_from_ = x_.z.head(nv_);
+    const double h = t - x_.t;
+    if (!(std::abs(h - extrapolates_for_) <= kSameLength * h)) extrapolate_anew(h);
     const Status status = advance(x_.t, t, settings_.tolerance);
-    return status.ok() && certain(t - x_.t, t) ? status : follow(t, status);
+    if (status.ok() && certain(h, t)) {
+      extrapolation_.lead(beyond_);
+      return status;
+    }
+    extrapolate_anew(0);
+    return follow(t, status);
   }
 
   // Coordinates or rows are others: so is what the determinant's sign is compared with.
   Status resume() override {
+    extrapolate_anew(0);
     if (Status status = system_.refresh(x_.t, {}, {}, {}, {}); !status.ok()) return status;
     orientation_ = system_.orientation();
     return {};
@@ -110,10 +122,20 @@ class Kinematics final : public FixedSteps {
       const double h = t - from;
       dq_.noalias() = h * v_from_;
       // Where velocities turn round within the step, as beside a singular position, they alone say where it leads.
-      if (!careful_ && 0.25 * h * h * a_from_.squaredNorm() < v_from_.squaredNorm()) dq_ += (0.5 * h * h) * a_from_;
+      if (!careful_ && 0.25 * h * h * a_from_.squaredNorm() < v_from_.squaredNorm())
+        dq_ += (0.5 * h * h) * a_from_ + beyond_;
+      else
+        extrapolate_anew(0);
       problem_.retract(span(q_from_), span(dq_), span(x_.q));  // (11)
     }
     return find(t, tolerance);
+  }
+
+  // Steps of this length begin, of which nothing is known.
+  void extrapolate_anew(double h) {
+    extrapolates_for_ = h;
+    beyond_.setZero();
+    extrapolation_.restart(beyond_);
   }
 
   // Whether x_ is where the motion from q_from_ leads, over a time h to t; if so it is what the next is compared with.
@@ -242,6 +264,7 @@ class Kinematics final : public FixedSteps {
       delta_ = -delta_;
       if (Status status = system_.solve(t, span(delta_)); !status.ok()) return status;  // (14d)
       problem_.retract(span(x_.q), span(delta_), span(q_next_));                        // (14a), (12)
+      beyond_ += delta_;
       x_.q.swap(q_next_);
       ++run_.statistics.newton_iterations;
       const double before = correction;
@@ -286,10 +309,13 @@ class Kinematics final : public FixedSteps {
   Vector delta_, q_next_, dq_;
   Vector q_from_, v_from_;  // where a step, or a part of it, begins
   Vector a_from_;           // of a step
-  double chose_at_ = -1;    // time of the part for which other rows were asked for
-  bool careful_ = false;    // in parts of a step
-  bool slow_ = false;       // corrections did not shrink as they should
-  double contraction_ = 0;  // second correction over the first
+  Vector beyond_;           // what lies beyond h v + h²/2 a: as steps before have it, then as this one finds it
+  Extrapolation extrapolation_;
+  double extrapolates_for_ = 0;  // length of these steps
+  double chose_at_ = -1;         // time of the part for which other rows were asked for
+  bool careful_ = false;         // in parts of a step
+  bool slow_ = false;            // corrections did not shrink as they should
+  double contraction_ = 0;       // second correction over the first
   std::uint64_t orientation_ = 0;
 };
 
