@@ -7,7 +7,7 @@ namespace poinsot {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity(), kLargest = std::numeric_limits<double>::max();
-constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // of a function, relative
+constexpr double kFunctionRounding = 4 * std::numeric_limits<double>::epsilon();  // rounding, relative
 
 }  // namespace
 
@@ -15,7 +15,7 @@ constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // of 
 Bounds widened(double least, double most) {
   if (!(least <= most)) return Bounds::all();
   least = std::min(least, kLargest), most = std::max(most, -kLargest);
-  return {least - kRounding * std::abs(least), most + kRounding * std::abs(most)};
+  return {least - kFunctionRounding * std::abs(least), most + kFunctionRounding * std::abs(most)};
 }
 
 Bounds hull(Bounds x, Bounds y) {
@@ -64,7 +64,7 @@ Bounds magnitude(Bounds x) {
 Bounds sine(Bounds x) {
   constexpr double turn = 2 * std::numbers::pi;
   if (!(x.most - x.least < turn) || !(std::abs(x.least) < 1e8)) return {-1, 1};
-  const double slack = kRounding * (1 + std::abs(x.least) + std::abs(x.most));
+  const double slack = kFunctionRounding * (1 + std::abs(x.least) + std::abs(x.most));
   const auto passes = [&](double peak) {  // up to rounding
     return peak + turn * std::ceil((x.least - slack - peak) / turn) <= x.most + slack;
   };

@@ -1,5 +1,5 @@
-// The derivative check of a formulation (formulations/derivative_check.h), compiled with it: the residuals on dual
-// numbers on one side, the formulas of its Problem on the other.
+// The derivative check of a formulation (formulations/derivative_check.h): the residuals on dual numbers on one side,
+// the formulas of its Problem on the other.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +16,8 @@
 #include "core/dual.h"
 #include "formulations/derivative_check.h"
 #include "formulations/mechanism.h"
-#include "formulations/mechanism_problem.h"
 #include "formulations/model_part.h"
+#include "formulations/registry.h"
 
 namespace poinsot {
 
@@ -29,9 +29,8 @@ class DerivativeChecker {
       : part_(part),
         name_(std::move(name)),
         out_(out),
-        elements_(std::make_shared<const Elements>(std::make_shared<const Model>(part.model), std::span<const int>())),
-        problem_(std::make_unique<MechanismProblem<F>>(elements_)),
-        duals_(elements_),
+        problem_(formulations().require(F::name).make(std::make_shared<const Model>(part.model), {})),
+        duals_(std::make_shared<const Elements>(std::make_shared<const Model>(part.model), std::span<const int>())),
         q_(problem_->nq()),
         v_(problem_->nv()) {
     const bool regular = problem_->from_bodies(part.states, view(q_), view(v_)).ok();
@@ -169,7 +168,6 @@ class DerivativeChecker {
   const Part& part_;
   std::string name_;
   std::vector<DerivativeCheck>& out_;
-  std::shared_ptr<const Elements> elements_;
   std::unique_ptr<Problem> problem_;
   Mechanism<F, D> duals_;
   Vector q_, v_;

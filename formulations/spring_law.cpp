@@ -30,11 +30,11 @@ double halved(const F& f, double from, double to, double whole, double allowed, 
 }  // namespace
 
 double law_potential(const Expression& law, double x, double t) {
-  constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+  constexpr double kSlack = 16 * std::numeric_limits<double>::epsilon();
   constexpr int kHalvings = 40;
   const auto force = [&](double s) { return law.law(Arguments<double>{t, s, 0}).F; };
   const auto size = [&](double s) { return std::abs(force(s)); };
-  return halved(force, 0, x, gauss(force, 0, x), kRounding * std::abs(gauss(size, 0, x)), kHalvings);
+  return halved(force, 0, x, gauss(force, 0, x), kSlack * std::abs(gauss(size, 0, x)), kHalvings);
 }
 
 }  // namespace poinsot

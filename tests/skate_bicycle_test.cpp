@@ -6,7 +6,7 @@
 // steer of a bicycle, 2007, appendix A, with wheels of no size and no spin; z points down there.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Dense>
 #include <numbers>
 
 #include "core/scene_reader.h"
@@ -37,8 +37,16 @@ Eigen::Matrix4d linear_bicycle(double v) {
       -v * (M.inverse() * C);
   return A;
 }
-double growth(double v) {
-  return linear_bicycle(v).eigenvalues().real().maxCoeff();
+// Whether every solution decays: by the criterion of Routh and Hurwitz for the characteristic polynomial of A, whose
+// coefficients come from traces (Faddeev and Le Verrier). Eigen's eigenvalues would take ten seconds to compile.
+bool decays(const Eigen::Matrix4d& A) {
+  Eigen::Matrix4d power = A;
+  Eigen::Vector4d c;  // λ⁴ + c₀ λ³ + c₁ λ² + c₂ λ + c₃
+  for (int k = 0; k < 4; ++k) {
+    c[k] = -power.trace() / (k + 1);
+    power = (A * (power + c[k] * Eigen::Matrix4d::Identity())).eval();
+  }
+  return c.minCoeff() > 0 && c[0] * c[1] * c[2] > c[2] * c[2] + c[0] * c[0] * c[3];
 }
 
 // Where lean and steering neither grow nor decay.
@@ -46,7 +54,7 @@ double threshold() {
   double falls = 5, stands = 8;
   while (stands - falls > 1e-9) {
     const double v = (falls + stands) / 2;
-    (growth(v) > 0 ? falls : stands) = v;
+    (decays(linear_bicycle(v)) ? stands : falls) = v;
   }
   return stands;
 }

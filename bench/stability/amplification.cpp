@@ -26,7 +26,7 @@ using Complex = std::complex<double>;
 const Vector3 kAxis(0.48, 0.6, 0.64);
 constexpr double kAngle = 1e-6, kWay = 1e-6;  // rad, m: the unit
 constexpr int kPropagations = 5;
-constexpr double kMost = 1.5;  // a radius that is drawn
+constexpr double kDrawn = 1.5;  // a radius that is drawn
 
 // Stiffness and inertia 1; starts at the unit state.
 Scene scene_of(const Oscillator& oscillator, bool moving) {
@@ -231,7 +231,7 @@ study::PanelPlot amplification_plot(bool quick) {
             if (refusal_of(integrator, formulation.name)) continue;
             study::Curve curve{oscillator.name(), std::string(integrator.name), std::string(formulation.name), {}};
             for (const double hw : at)
-              if (const auto r = spectral_radius(oscillator, integrator.name, formulation.name, hw); r && *r <= kMost)
+              if (const auto r = spectral_radius(oscillator, integrator.name, formulation.name, hw); r && *r <= kDrawn)
                 curve.points.push_back({hw, *r});
             if (!curve.points.empty()) plot.curves.push_back(std::move(curve));
           }

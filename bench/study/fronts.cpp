@@ -9,15 +9,15 @@ namespace poinsot::study {
 namespace {
 
 // The fronts of whatever `counts` picks among the rows.
-struct Standing {
+struct OnFronts {
   std::vector<std::string> names;
   std::array<int, kQuantities.size()> on{};
   std::vector<std::string> scenes;
 };
 
 template <class Counts>
-Standing standing(std::vector<std::string> names, const std::vector<SceneChart>& charts, const Counts& counts) {
-  Standing s{std::move(names), {}, {}};
+OnFronts standing(std::vector<std::string> names, const std::vector<SceneChart>& charts, const Counts& counts) {
+  OnFronts s{std::move(names), {}, {}};
   for (const SceneChart& chart : charts) {
     std::array<bool, kQuantities.size()> here{};
     for (const ChartRow& row : chart.rows)
@@ -29,9 +29,9 @@ Standing standing(std::vector<std::string> names, const std::vector<SceneChart>&
 }
 
 // In the order of the integrators; those no chart has a row of are left out, they refuse all formulations asked for.
-std::vector<Standing> of_integrators(const std::vector<std::string>& integrators,
+std::vector<OnFronts> of_integrators(const std::vector<std::string>& integrators,
                                      const std::vector<SceneChart>& charts) {
-  std::vector<Standing> all;
+  std::vector<OnFronts> all;
   for (const std::string& name : integrators) {
     const auto its = [&](const ChartRow& row) { return row.integrator == name; };
     if (std::ranges::any_of(charts, [&](const SceneChart& chart) { return std::ranges::any_of(chart.rows, its); }))
@@ -45,24 +45,24 @@ std::vector<std::string> method_of(const ChartRow& row) {
 }
 
 // In the same order and with the same omission.
-std::vector<Standing> of_methods(const std::vector<std::string>& integrators, const std::vector<SceneChart>& charts) {
+std::vector<OnFronts> of_methods(const std::vector<std::string>& integrators, const std::vector<SceneChart>& charts) {
   std::vector<std::vector<std::string>> methods;
   for (const std::string& name : integrators)
     for (const SceneChart& chart : charts)
       for (const ChartRow& row : chart.rows)
         if (row.integrator == name && std::ranges::find(methods, method_of(row)) == methods.end())
           methods.push_back(method_of(row));
-  std::vector<Standing> all;
+  std::vector<OnFronts> all;
   for (const auto& method : methods)
     all.push_back(standing(method, charts, [&](const ChartRow& row) { return method_of(row) == method; }));
   return all;
 }
 
-Table table(std::string file, std::string title, std::vector<std::string> header, const std::vector<Standing>& all) {
+Table table(std::string file, std::string title, std::vector<std::string> header, const std::vector<OnFronts>& all) {
   for (const auto quantity : kQuantities) header.emplace_back(quantity);
   header.insert(header.end(), {"any", "scenes"});
   Table table{std::move(file), std::move(title), {}, std::move(header)};
-  for (const Standing& s : all) {
+  for (const OnFronts& s : all) {
     std::vector<std::string> row = s.names;
     for (const int n : s.on) row.push_back(std::to_string(n));
     row.push_back(std::to_string(s.scenes.size()));
@@ -97,14 +97,14 @@ std::string fronts_summary(const std::vector<std::string>& integrators, const st
       fmt::format("on the front of so many of {} chart{}:\n{:44}", charts.size(), charts.size() == 1 ? "" : "s", "");
   for (const auto quantity : kQuantities) text += fmt::format("{:>14}", quantity);
   text += fmt::format("{:>14}\n", "any");
-  for (const Standing& s : of_methods(integrators, charts)) {
+  for (const OnFronts& s : of_methods(integrators, charts)) {
     if (s.scenes.empty()) continue;
     text += fmt::format("  {:42}", fmt::format("{}", fmt::join(s.names, " ")));
     for (const int n : s.on) text += fmt::format("{:>14}", n);
     text += fmt::format("{:>14}\n", s.scenes.size());
   }
   std::vector<std::string> none;
-  for (const Standing& s : of_integrators(integrators, charts))
+  for (const OnFronts& s : of_integrators(integrators, charts))
     if (s.scenes.empty()) none.push_back(s.names.front());
   if (!none.empty()) text += fmt::format("on no front: {}\n", fmt::join(none, ", "));
   return text;

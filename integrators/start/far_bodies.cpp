@@ -41,7 +41,7 @@ double own_size(const Body& body) {
 }  // namespace
 
 void tell_far_bodies(const Model& model, std::vector<std::string>& notices) {
-  constexpr double kOfAccount = 1e-8;
+  constexpr double kMatters = 1e-8;
   std::vector<double> size(model.bodies.size(), 0);
   const auto reaches = [&](int body, const Vector3& s) {
     if (body == kGround) return;
@@ -58,7 +58,7 @@ void tell_far_bodies(const Model& model, std::vector<std::string>& notices) {
         size[k] > 0 ? std::numeric_limits<double>::epsilon() * model.bodies[k].position.norm() / size[k] : 0;
     if (moved > most) most = moved, worst = k;
   }
-  if (most <= kOfAccount) return;
+  if (most <= kMatters) return;
   const Body& body = model.bodies[worst];
   notices.push_back(
       fmt::format("body '{}' is {:.3g} m from the origin and {:.3g} m long: every step rounds its position "

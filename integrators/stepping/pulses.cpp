@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kAhead = 32;        // steps
 constexpr double kResolved = 1e-9;   // of the run
-constexpr double kNear = 1.0 / 8;    // of the bound
+constexpr double kUpTo = 1.0 / 8;    // of the bound
 constexpr int kPlaces = 5;           // at which f̈ comes that near
-constexpr double kUnseen = 0.1;      // of rtol
+constexpr double kHidden = 0.1;      // of rtol
 constexpr double kUntold = 1e-6;     // of a function, in steps of fixed length
 constexpr int kPartings = 6;         // of a stretch, for its bounds
 constexpr int kMostUnknown = 400;    // stretches of a function
@@ -72,7 +72,7 @@ bool bends_less(const Expression& f, double from, double to, double most, int ha
 bool shows(const Expression& f, double nothing, double from, double to) {
   const double flat = 8 * nothing / ((to - from) * (to - from));
   if (bounds(f, from, to).fdd.size() <= flat) return true;
-  return bends_less(f, from, to, std::max(flat, Bend(f, from, to).usual / kNear), kPartings);
+  return bends_less(f, from, to, std::max(flat, Bend(f, from, to).usual / kUpTo), kPartings);
 }
 
 // Half of what f changes by over eight steps about t.
@@ -95,7 +95,7 @@ std::optional<double> first_pulse(const Expression& f, double from, double to, d
   if (bend.largest > 0) {
     const double change = change_about(f, bend.at, h, end);
     if (bend.largest * h * h > std::max(change, nothing)) return bend.at;
-    if (bound * h * h <= change && bound * kNear <= bend.usual) return {};
+    if (bound * h * h <= change && bound * kUpTo <= bend.usual) return {};
   }
   const double middle = from + (to - from) / 2;
   const auto sooner = first_pulse(f, from, middle, h, end, nothing, budget);
@@ -105,7 +105,7 @@ std::optional<double> first_pulse(const Expression& f, double from, double to, d
 }  // namespace
 
 Pulses::Pulses(const Model& model, double end, double rtol, Tell tell) : end_(end), tell_(std::move(tell)) {
-  for (const Expression* f : functions_of_time(model)) functions_.push_back({f, kUnseen * rtol * size(*f, end)});
+  for (const Expression* f : functions_of_time(model)) functions_.push_back({f, kHidden * rtol * size(*f, end)});
 }
 
 double Pulses::search(double t, double to) {
