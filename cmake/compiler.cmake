@@ -38,6 +38,7 @@ endif()
 # third of that without optimization, which the sanitizers' checks multiply.
 set(poinsot_outer_options $<IF:$<CONFIG:Debug>,-O0,-O1>)
 set(poinsot_program_options)
+set(poinsot_reader_options)
 if(POINSOT_SANITIZE)
   # What the address sanitizer finds as well is not checked twice: these four took two fifths of the compile time.
   list(APPEND poinsot_interface_options -fsanitize=address,undefined -fno-sanitize=null,object-size,alignment,vptr
@@ -49,6 +50,10 @@ if(POINSOT_SANITIZE)
   # What is not the library and computes nothing is checked for its addresses only, a third of its compile time; traces
   # name its functions without lines.
   set(poinsot_program_options -fno-sanitize=undefined -g0)
+  # What reads files tells which branches an input takes: it is fuzzed as it stands in this build (tests/fuzz).
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    set(poinsot_reader_options -fsanitize-coverage=inline-8bit-counters,pc-table,indirect-calls,trace-cmp)
+  endif()
 endif()
 add_compile_options(${poinsot_interface_options})
 add_link_options(${poinsot_interface_link_options})

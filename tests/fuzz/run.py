@@ -5,7 +5,7 @@
   python3 tests/fuzz/run.py --seconds 3600 scene     an hour for one of them
   python3 tests/fuzz/run.py --runs 100000            so many inputs for each
 
-It needs clang++ and the release build (build/release). Corpora grow in build/fuzz/corpus; an input that ends a reader
+It needs the build with sanitizers (build/debug). Corpora grow in build/fuzz/corpus; an input that ends a reader
 by anything but its own refusal is kept in build/fuzz and told: `build/fuzz/fuzz_NAME FILE` shows it again. An input that
 takes more than 10 s or 1 GB is one, too.
 """
@@ -21,14 +21,14 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-RELEASE, BUILD = ROOT / "build" / "release", ROOT / "build" / "fuzz"
+SANITIZED, BUILD = ROOT / "build" / "debug", ROOT / "build" / "fuzz"
 ENTRIES = sorted(file.stem for file in Path(__file__).parent.glob("*.cpp"))
 
 
 def build():
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     subprocess.run(["cmake", "-S", str(Path(__file__).parent), "-B", str(BUILD), "-G", "Ninja", "--log-level=WARNING",
-                    "-DCMAKE_CXX_COMPILER=clang++", f"-DPOINSOT_BUILD={RELEASE}", *launcher], check=True)
+                    "-DCMAKE_CXX_COMPILER=clang++", f"-DPOINSOT_BUILD={SANITIZED}", *launcher], check=True)
     subprocess.run(["ninja", "-C", str(BUILD), "--quiet"], check=True)
 
 
@@ -50,7 +50,7 @@ def without_comments(text):
 
 def results(folder):
     """A chart and the rows of a study, as the program writes them."""
-    program = RELEASE / "app" / "poinsot"
+    program = SANITIZED / "app" / "poinsot"
     shutil.rmtree(folder, ignore_errors=True)
     common = ["--cache", str(folder / "cache"), "--quiet"]
     chart = subprocess.run([program, "chart", ROOT / "models" / "single_pendulum.json", "--quick", "--end", "0.1",
