@@ -34,8 +34,7 @@ class DerivativeChecker {
         duals_(elements_),
         q_(problem_->nq()),
         v_(problem_->nv()) {
-    const bool regular = problem_->from_bodies(part.states, view(q_), view(v_)).ok();
-    check(regular, "every attitude has coordinates");
+    problem_->from_bodies(part.states, view(q_), view(v_));
     problem_->set_position(0, view(q_));
     problem_->set_velocity(view(v_));
   }
