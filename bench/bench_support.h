@@ -46,7 +46,8 @@ class Standing {
     const InitialState start = find_initial_state(model_, Settings());
     problem = formulation.make(model_, start.rank.aside);
     State state(*problem);
-    good = start.status.ok() && problem->from_bodies(start.bodies, span(state.q), span(state.v)).ok();
+    good = start.status.ok();
+    if (good) problem->from_bodies(start.bodies, span(state.q), span(state.v));
     q.assign(state.q.begin(), state.q.end());
     v.assign(state.v.begin(), state.v.end());
     a.assign(v.size(), 0.1);

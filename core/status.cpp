@@ -10,7 +10,6 @@ std::string_view name(Failure failure) {
       "ok",
       "not_converged",
       "singular_matrix",
-      "orientation_singularity",
       "not_finite",
       "inconsistent_state",
       "constraint_lost",

@@ -8,17 +8,16 @@ namespace poinsot {
 
 enum class Failure {
   none,
-  not_converged,            // Newton's method spent its iterations or diverged
-  singular_matrix,          // the linear system has no trustworthy solution
-  orientation_singularity,  // the orientation coordinates do not determine the rates
-  not_finite,               // a NaN or an infinity came up
-  inconsistent_state,       // the state violates the constraints and may not or cannot be projected onto them
-  constraint_lost,          // a row that followed from the others does not hold any more
-  singular_position,        // the constraints depend on one another here, and no branch is chosen
-  rotation_too_large,       // a step turns a body further than the method can follow, or an angle can be counted
-  step_size_too_small,      // error control asks for steps that do not advance the time
-  refused,                  // the chosen linear solver does not take this system
-  interrupted,              // from outside (core/interruption.h): nothing is wrong with what was computed
+  not_converged,        // Newton's method spent its iterations or diverged
+  singular_matrix,      // the linear system has no trustworthy solution
+  not_finite,           // a NaN or an infinity came up
+  inconsistent_state,   // the state violates the constraints and may not or cannot be projected onto them
+  constraint_lost,      // a row that followed from the others does not hold any more
+  singular_position,    // the constraints depend on one another here, and no branch is chosen
+  rotation_too_large,   // a step turns a body further than the method can follow, or an angle can be counted
+  step_size_too_small,  // error control asks for steps that do not advance the time
+  refused,              // the chosen linear solver does not take this system
+  interrupted,          // from outside (core/interruption.h): nothing is wrong with what was computed
 };
 
 // The failure's name as it stands in the run record: "ok", "not_converged", ...

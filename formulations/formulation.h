@@ -79,9 +79,9 @@ concept FormulationOn = FormulationState<F, T> &&
 
   // x moved by δx: A exp(δx~), x + δx.
   F::retract(x, dx, out);
-  // From and to A, ω̄ and ω̄̇. rates_from is false where x is singular.
+  // From and to A, ω̄ and ω̄̇. The x of every A is one by which ω̄ determines ẋ.
   F::from_rotation(A, out);
-  { F::rates_from(at, w, out) } -> std::same_as<bool>;
+  F::rates_from(at, w, out);
   { F::angular_acceleration(at, rate, xd, xdd) } -> std::same_as<Vec3<T>>;
 };
 

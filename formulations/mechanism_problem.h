@@ -49,7 +49,7 @@ class MechanismProblem final : public Problem {
   const Model& model() const override { return *mechanism_.c.elements->model; }
   const std::vector<int>& model_rows() const override { return mechanism_.c.elements->model_row; }
 
-  Status from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const override {
+  void from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const override {
     expect(q, nq_), expect(v, nv_);
     for (int b = 0; b < bodies_; ++b) {
       const BodyState& state = states[static_cast<std::size_t>(b)];
@@ -60,13 +60,8 @@ class MechanismProblem final : public Problem {
       F::from_rotation(state.A, r + 3);
       typename F::template Position<double> at;
       F::position(r + 3, at);
-      if (!F::rates_from(at, state.w, rd + 3)) {
-        return {Failure::orientation_singularity, 0,
-                "the orientation of body '" + model().bodies[static_cast<std::size_t>(b)].name +
-                    "' is singular in formulation " + std::string(F::name)};
-      }
+      F::rates_from(at, state.w, rd + 3);
     }
-    return {};
   }
 
   void to_bodies(std::span<const double> a, std::span<BodyState> states) const override {

@@ -70,7 +70,7 @@ class Problem {
   int nc() const { return nc_; }
 
   // State of the model's bodies at the start, in this formulation's coordinates; the same from and to body states.
-  virtual Status from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const = 0;
+  virtual void from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const = 0;
   // Of the first bodies, as many as there are states. Needs position and velocity set; `a` as solved.
   virtual void to_bodies(std::span<const double> a, std::span<BodyState> states) const = 0;
   // Where some of them stand: by body r and A by columns, as intrinsic_formulation() has them in q.

@@ -114,9 +114,8 @@ struct RA {
     Eigen::Map<Mat3<T>>{x} = A;
   }
   template <class T>
-  static bool rates_from(const Position<T>&, const Vec3<T>& w, T* xd) {
+  static void rates_from(const Position<T>&, const Vec3<T>& w, T* xd) {
     Eigen::Map<Vec3<T>>{xd} = w;
-    return true;
   }
   template <class T>
   static Vec3<T> angular_acceleration(const Position<T>&, const Velocity<T>&, const T*, const T* xdd) {

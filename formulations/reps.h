@@ -29,7 +29,6 @@ struct REPS {
   static constexpr bool normalized = false;
   static constexpr CoordinateSpace space = CoordinateSpace::charts;
 
-  static constexpr double kTooSmall = 1e-8;    // |sin θ| at which the rates are lost
   static constexpr double kLeaveChart = 0.25;  // |sin θ| below which the chart is left; another one offers √(2/3)
 
   template <class T>
@@ -186,14 +185,11 @@ struct REPS {
     EulerChart::angles(A, plain(EulerChart::sin_theta(A, 0)) > kLeaveChart ? 0 : EulerChart::best(A), x);
   }
   template <class T>
-  static bool rates_from(const Position<T>& at, const Vec3<T>& w, T* xd) {  // ε̇ = B⁻¹ ω_c
-    using std::abs;
-    if (plain(abs(at.st)) < kTooSmall) return false;
+  static void rates_from(const Position<T>& at, const Vec3<T>& w, T* xd) {  // ε̇ = B⁻¹ ω_c
     const Vec3<T> wc = EulerChart::vector_to_chart<T>(at.chart, w);
     xd[0] = (at.ss * wc[0] + at.cs * wc[1]) / at.st;
     xd[1] = at.cs * wc[0] - at.ss * wc[1];
     xd[2] = wc[2] - at.ct * xd[0];
-    return true;
   }
   template <class T>
   static Vec3<T> angular_acceleration(const Position<T>& at, const Velocity<T>&, const T* xd, const T* xdd) {

@@ -141,9 +141,8 @@ struct RP {
     Eigen::Map<Vec4<T>>{x} = parameters_from_rotation<T>(A);
   }
   template <class T>
-  static bool rates_from(const Position<T>& at, const Vec3<T>& w, T* xd) {  // ṗ = ½ Gᵀ ω̄
+  static void rates_from(const Position<T>& at, const Vec3<T>& w, T* xd) {  // ṗ = ½ Gᵀ ω̄
     Eigen::Map<Vec4<T>>{xd} = T(0.5) * (G_matrix<T>(at.p).transpose() * w);
-    return true;
   }
   template <class T>
   static Vec3<T> angular_acceleration(const Position<T>& at, const Velocity<T>&, const T*, const T* xdd) {

@@ -18,7 +18,6 @@
 #include "integrators/settings_reader.h"
 #include "integrators/settings_table.h"
 #include "integrators/signals.h"
-#include "integrators/start/driven_pose.h"
 #include "integrators/start/first_state.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
@@ -73,7 +72,8 @@ void explain(Status& status, const Problem& problem) {
     status = no_value(status.time, fault);
   } else if (const std::string why = overflowing(problem.model(), status.time); !why.empty()) {
     status = {Failure::not_finite, status.time,
-              fmt::format("at t = {:.9g} s a number overflows: {}", status.time, why)};
+              fmt::format("at t = {:.9g} s a number overflows: {}; give it in units in which it is smaller",
+                          status.time, why)};
   }
 }
 
@@ -135,8 +135,6 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   if (settings.analysis == Analysis::dynamics) {  // kinematics finds its pose itself
     problem->set_position(0, span(state.q));
     problem->set_velocity(span(state.v));
-    outcome.status = check_driven_pose(*problem, state.a());
-    if (!outcome.status.ok()) return outcome;
   }
   tell_of_switches(*model, integrator, settings, notice);
   const Eigen::VectorXd q_start = state.q;
@@ -162,9 +160,10 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
                            (failure == Failure::rotation_too_large && outcome.status.time > 0);
   if (settings.analysis == Analysis::dynamics && (unexplained || failure == Failure::singular_position)) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
-    std::string why = vanished_distance(*problem, state);
+    std::string why = vanished_gradient(*problem, state);
     if (why.empty() && unexplained)
       why = near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
+    if (why.empty() && failure == Failure::step_size_too_small) why = growing_motion(*problem, state);
     if (!why.empty()) outcome.status.message += "; " + why;
   }
   outcome.statistics.linear = systems.work();

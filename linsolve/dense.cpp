@@ -51,7 +51,7 @@ class Dense final : public ScaledLu {
     if (n_ > kLargest)
       return {LinearFailure::refused, -1,
               "linear solver dense takes at most " + std::to_string(kLargest) + " unknowns, these are " +
-                  std::to_string(n_) + "; klu takes them"};
+                  std::to_string(n_)};
     kernels_ = std::ranges::find_if(kKernels, [&](const Kernels& k) { return k.size == n_ || k.size == 0; });
     lu_.assign(static_cast<std::size_t>(n_) * static_cast<std::size_t>(dense::stride(n_)), 0);
     order_.assign(static_cast<std::size_t>(n_), 0), place_ = order_;

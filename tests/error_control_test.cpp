@@ -226,6 +226,9 @@ TEST_P(ErrorControl, StopsWhereAForceGrowsWithoutBound) {
   ASSERT_GT(r.samples.size(), 2u);  // those before are good
   EXPECT_LE(r.samples.back().t, r.outcome.status.time);
   EXPECT_TRUE(r.samples.back().bodies[0].A.allFinite());
+  EXPECT_THAT(r.outcome.status.message, HasSubstr("body '"));
+  EXPECT_THAT(r.outcome.status.message, HasSubstr("end before it"));
+  EXPECT_TRUE(run(scene, settings(1e-8, 0.45)).outcome.status.ok());
 }
 
 // With nothing but a relative tolerance no step resolves the rounding of a body at rest, which rp has in plane motion.
@@ -239,6 +242,11 @@ TEST_P(ErrorControl, SaysThatTheTolerancesAskForTooMuch) {
     EXPECT_EQ(outcome.status.failure, Failure::step_size_too_small) << end;
     EXPECT_THAT(outcome.status.message, HasSubstr("where a body is at rest, atol alone does")) << end;
     EXPECT_LT(outcome.statistics.steps + outcome.statistics.rejected_steps, 30000) << end;
+    EXPECT_THAT(outcome.status.message, HasSubstr("larger tolerances or an implicit integrator")) << end;
+    EXPECT_TRUE(simulate(scene_of("double_pendulum"), settings(1e-8, end), {}).status.ok());
+    Settings fixed = settings(1e-8, end);
+    fixed.integrator = "implicit_euler";
+    EXPECT_TRUE(simulate(scene_of("double_pendulum"), fixed, {}).status.ok());
   }
   s.rtol = 1e-15;
   try {

@@ -83,7 +83,7 @@ TEST(Formulations, TorsionSpringsCountTurns) {
     for (double angle = 0; angle < 20; angle += 2.5) {
       SCOPED_TRACE(angle);
       state.A = exp_so3<double>(Vector3(0, 0, angle));
-      ASSERT_TRUE(at.problem->from_bodies(std::vector(1, state), view(at.q), view(at.v)).ok());
+      at.problem->from_bodies(std::vector(1, state), view(at.q), view(at.v));
       at.stand(0);
       EXPECT_NEAR(at.problem->energy(), angle * angle, 1e-12 * (1 + angle * angle));
       VectorX a = VectorX::Zero(at.problem->nv());

@@ -75,6 +75,7 @@ std::vector<Scene> scenes() {
 }
 
 TEST(Verification, SaysTheOrderAndTheErrorOfEveryMethod) {
+  int unseen = 0;
   for (const Scene& scene : scenes()) {
     const Followed exact = follow(scene, controlled("dop853", "rA", 1e-12, kHorizon));
     const int ways = in_every_way(kInterval, kHorizon, [&](Settings settings) {
@@ -101,10 +102,17 @@ TEST(Verification, SaysTheOrderAndTheErrorOfEveryMethod) {
           EXPECT_LT(error, 5 * q.apart) << name;
           continue;
         }
+        // Accelerations and reactions of the first step have an error of another kind where the motion is under way,
+        // and half-implicit Euler is of second order in plane velocities.
+        if (q.order_unseen) {
+          EXPECT_TRUE(name != "position" && name != "orientation") << name;
+          EXPECT_FALSE(q.order || q.error) << name;
+          ++unseen;
+          continue;
+        }
         ASSERT_TRUE(q.order && q.error) << name;
         EXPECT_GT(*q.order, integrator.order - 0.15) << name;
-        // Accelerations of the first step have an error of another order where the motion is under way, and
-        // half-implicit Euler is of second order in plane velocities.
+        EXPECT_LT(*q.order, integrator.order + 1.25) << name;
         if (name == "position" || name == "orientation") {
           EXPECT_LT(*q.order, integrator.order + 0.15) << name;
         }
@@ -115,6 +123,7 @@ TEST(Verification, SaysTheOrderAndTheErrorOfEveryMethod) {
     });
     EXPECT_GE(ways, 25);
   }
+  EXPECT_GT(unseen, 0);
 }
 
 // Each position is found on its own: no error adds up, and nothing has an order.

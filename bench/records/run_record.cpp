@@ -17,6 +17,7 @@ nlohmann::ordered_json packed(const study::Verification& verification) {
     json["quantities"].push_back(
         {{"quantity", q.name}, {"unit", q.unit}, {"apart", q.apart}, {"where", q.where}, {"t", q.t}});
     if (q.order) json["quantities"].back()["order"] = *q.order;
+    if (q.order_unseen) json["quantities"].back()["order"] = nullptr;
     if (q.error) json["quantities"].back()["error"] = *q.error;
   }
   return json;

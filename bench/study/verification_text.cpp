@@ -16,11 +16,12 @@ void print(std::FILE* out, const Verification& verification) {
     return;
   }
   fmt::print(out, "verified against {}: apart by at most, of {} times\n", verification.against, verification.times);
-  const bool orders = std::ranges::any_of(all, [](const Quantity& q) { return q.order.has_value(); });
+  const bool orders = std::ranges::any_of(all, [](const Quantity& q) { return q.order || q.order_unseen; });
   for (const Quantity& q : all) {
     fmt::print(out, "  {:<20} {:>8.2g} {:<7}", q.name, q.apart, q.unit);
     if (q.apart > 0) fmt::print(out, " {} at t = {:g} s", printable(q.where), q.t);
     if (q.order) fmt::print(out, ", order {:.2f}", *q.order);
+    if (q.order_unseen) fmt::print(out, ", order not seen");
     if (q.error) fmt::print(out, ", so the error is about {:.2g}", *q.error);
     fmt::print(out, "\n");
   }

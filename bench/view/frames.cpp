@@ -37,22 +37,20 @@ void FrameRecorder::add(double t, std::span<const BodyState> bodies) {
     last_.kinetic += (model_->bodies[b].mass * bodies[b].rd.squaredNorm() +
                       bodies[b].w.dot(model_->bodies[b].inertia * bodies[b].w)) /
                      2;
-  if (const Status status = problem_->from_bodies(bodies, q_, v_); status.ok()) {
-    const auto stand = [&] {
-      problem_->set_position(t, q_);
-      problem_->set_velocity(v_);
-    };
-    stand();
-    // Turns of torsion springs are counted from frame to frame.
-    bool rewritten = false;
-    if (problem_->has_discrete_state() && problem_->accept(t, q_, v_, a_, lambda_, rewritten).ok() && rewritten)
-      stand();
-    last_.energy = problem_->energy();
-    problem_->position_residual(residual_);
-    last_.position_violation = largest(residual_);
-    problem_->velocity_residual(residual_);
-    last_.velocity_violation = largest(residual_);
-  }
+  problem_->from_bodies(bodies, q_, v_);
+  const auto stand = [&] {
+    problem_->set_position(t, q_);
+    problem_->set_velocity(v_);
+  };
+  stand();
+  // Turns of torsion springs are counted from frame to frame.
+  bool rewritten = false;
+  if (problem_->has_discrete_state() && problem_->accept(t, q_, v_, a_, lambda_, rewritten).ok() && rewritten) stand();
+  last_.energy = problem_->energy();
+  problem_->position_residual(residual_);
+  last_.position_violation = largest(residual_);
+  problem_->velocity_residual(residual_);
+  last_.velocity_violation = largest(residual_);
   if (added_++ % stride_ != 0) return;
   frames_.push_back(last_);
   if (!thin_ || frames_.size() * bodies.size() <= kManyPoses || frames_.size() < 2 * kFewFrames) return;

@@ -74,27 +74,28 @@ class Session {
       statistics_.largest_rotation = std::max(statistics_.largest_rotation, course_.turned(h));
       since_pass_ += course_.turned(h);
       ida_.turn_at_most(problem_.counted_turn().rate);
+      Status status;
       for (; !course_.every_step && times.next() < t; times.pass()) {
-        if (Status status = stand_at(times.next()); !status.ok()) return status;
+        if (status = stand_at(times.next()); !status.ok()) break;
         course_.give_out(at_);
       }
-      if (creeping.tries(t, h)) {
-        if (Status status = go_on(); !status.ok()) return status;
+      if (status.ok() && creeping.tries(t, h)) {
+        if (status = go_on(); !status.ok()) return status;
         creeping = Creeping(settings_.end);
         continue;
       }
       creeping.completed(h);
-      if (t == turn.before) {  // given out beyond the switch
-        if (Status status = stand_at(t); !status.ok()) return status;
-        continue;
-      }
-      if (course_.every_step || times.next() == t) {
+      const bool crosses = t == turn.before;  // given out beyond the switch
+      const bool given = !crosses && (course_.every_step || times.next() == t);
+      if (status.ok() && (crosses || given)) status = stand_at(t);
+      if (status.ok() && given) {
         times.pass();
-        if (Status status = stand_at(t); !status.ok()) return status;
         course_.give_out(at_);
       }
-      if (!problem_.has_discrete_state() || t >= settings_.end) continue;
-      if (Status status = keep_up(t); !status.ok()) return status;
+      if (status.ok() && !crosses && t < settings_.end) status = keep_up(t);
+      if (!status.ok()) {
+        if (status = detour(status); !status.ok()) return status;
+      }
     }
     return {};
   }
@@ -102,6 +103,7 @@ class Session {
   // What is discrete follows the motion as IDA has it, off the constraints by its tolerance. Where that seems to be off
   // rows that are set aside, a state on the constraints decides.
   Status keep_up(double t) {
+    if (!problem_.has_discrete_state()) return {};
     ida_.read_end(t, next_);
     problem_.set_position(t, span(next_.q));
     problem_.set_velocity(span(next_.v));
@@ -147,7 +149,7 @@ class Session {
   Status go_on() {
     const double t = ida_.time(), h = ida_.next_step();
     if (t > at_.t) {
-      if (Status status = stand_at(t); !status.ok()) return status;
+      if (Status status = stand_at(t); !status.ok()) return detour(status);
     }
     const bool far = since_pass_ > kNear && at_.t > failed_at_ + kOnward * settings_.end;
     failed_at_ = at_.t;
@@ -156,6 +158,13 @@ class Session {
     if (ida_.relax()) return step_too_small(at_.t, h, ida_.linear_status());
     begin_again();
     return {};
+  }
+
+  // Where no state can be made of IDA's motion, which is off the constraints or, beside a singular position, not on the
+  // branch any more: over that place from the last point.
+  Status detour(const Status& why) {
+    const bool lost = why.failure == Failure::singular_position || why.failure == Failure::inconsistent_state;
+    return lost ? pass() : why;
   }
 
   // By steps of an explicit pair from at_ until well beyond singular positions.
@@ -191,14 +200,7 @@ class Session {
   Status stand_at(double t) {
     ida_.read(t, next_);
     if (Status status = passage_.complete(next_); !status.ok()) return status;
-    if (consistent_.leaves_branch(next_)) {
-      return {
-          Failure::singular_position, t,
-          fmt::format("at t = {:.9g} s, beside a singular position of the constraints, the velocities jump: rounding "
-                      "would choose which way the mechanism goes on; dop853 or an implicit integrator with a fixed "
-                      "step may pass",
-                      t)};
-    }
+    if (consistent_.leaves_branch(next_)) return {Failure::singular_position, t, {}};
     consistent_.follow(next_);
     std::swap(at_, next_);
     return {};

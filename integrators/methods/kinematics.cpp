@@ -8,7 +8,6 @@
 
 #include "core/counted.h"
 #include "integrators/jacobian_policy.h"
-#include "integrators/start/driven_pose.h"
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/extrapolation.h"
@@ -65,7 +64,6 @@ class Kinematics final : public FixedSteps {
   Status begin() override {
     clock_.start();
     if (Status status = find(0, settings_.tolerance); !status.ok()) return status;
-    if (Status status = check_driven_pose(problem_, x_.a()); !status.ok()) return status;
     orientation_ = system_.orientation();
     if (problem_.has_discrete_state()) {
       if (Status status = accept(problem_); !status.ok()) return status;
@@ -270,9 +268,6 @@ class Kinematics final : public FixedSteps {
       const double before = correction;
       correction = delta_.norm();
       slow_ = k > 0 && !(correction < kSlow * before);
-      if (!std::isfinite(correction)) {
-        return {Failure::not_finite, t, fmt::format("at t = {:.9g} s the position's correction is not finite", t)};
-      }
       if (k == 0) {
         // Beside a singular position corrections are as large as can be, and what they shrink by says nothing.
         first = correction;

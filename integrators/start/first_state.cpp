@@ -115,7 +115,7 @@ Status limit_state(Problem& problem, const RankAnalysis& rank, const Settings& s
 
 Status find_first_state(const InitialState& initial, const Settings& settings, Problem& problem, State& state,
                         const Tell& tell) {
-  if (Status status = problem.from_bodies(initial.bodies, span(state.q), span(state.v)); !status.ok()) return status;
+  problem.from_bodies(initial.bodies, span(state.q), span(state.v));
   if (settings.analysis == Analysis::kinematics) return {};  // which finds everything but q itself
   Consistent consistent(problem, settings.linear());
   consistent.stand(state);

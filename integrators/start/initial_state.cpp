@@ -7,7 +7,6 @@
 #include <functional>
 #include <numeric>
 
-#include "core/check.h"
 #include "core/index.h"
 #include "core/input_error.h"
 #include "core/model_faults.h"
@@ -159,7 +158,7 @@ class Assembler {
     if (!off_position() && !off_velocity() && result_.rank.doubtful < 0) return {};
     const std::unique_ptr<Problem> problem = intrinsic_formulation().make(model_, result_.rank.aside_here);
     std::vector<double> q(index(problem->nq())), v(index(problem->nv()));
-    check(problem->from_bodies(given_, q, v).ok(), "rA represents every orientation");
+    problem->from_bodies(given_, q, v);
     Consistent consistent(*problem, settings_.linear());
     if (off_position()) {
       if (Status status = consistent.project_position(0, q); !status.ok()) return status;

@@ -35,8 +35,8 @@ class OverConstrained final : public Problem {
   std::string_view formulation() const override { return kept_->formulation(); }
   const Model& model() const override { return kept_->model(); }
   const std::vector<int>& model_rows() const override { return kept_->model_rows(); }
-  Status from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const override {
-    return kept_->from_bodies(states, q, v);
+  void from_bodies(std::span<const BodyState> states, std::span<double> q, std::span<double> v) const override {
+    kept_->from_bodies(states, q, v);
   }
   void to_bodies(std::span<const double> a, std::span<BodyState> states) const override { kept_->to_bodies(a, states); }
   void poses(std::span<const int> bodies, std::span<double> out) const override { kept_->poses(bodies, out); }

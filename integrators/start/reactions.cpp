@@ -25,7 +25,7 @@ void Reactions::update(const Sample& sample) {
     return;
   }
   problem_->to_bodies(sample.a, states_);
-  if (!whole_->from_bodies(states_, q_, v_).ok()) return;
+  whole_->from_bodies(states_, q_, v_);
   whole_->set_position(sample.t, q_);
   whole_->set_velocity(v_);
   if (!choice_ || revision_ != problem_->revision()) {

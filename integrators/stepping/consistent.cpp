@@ -110,10 +110,7 @@ Status Consistent::project_position(double t, std::span<double> q, std::span<dou
     if (correction <= kFarNegligible * scale || (correction < 1e-9 * scale && correction >= 0.5 * before)) return {};
     before = correction;
   }
-  return {Failure::inconsistent_state, t,
-          fmt::format("at t = {:.9g} s no position near the given one "
-                      "satisfies the constraints",
-                      t)};
+  return {Failure::inconsistent_state, t, {}};  // who asks knows what for
 }
 
 Status Consistent::project_velocity(double t, std::span<double> v) {
@@ -149,11 +146,7 @@ Status Consistent::project(State& at, bool& moved) {
       if (Status status = position_correction(at.t); !status.ok()) return status;
     }
     if (k == kCorrections || !(correction < before)) {
-      return {Failure::inconsistent_state, at.t,
-              fmt::format("at t = {:.9g} s the step leads too far from the "
-                          "constraints to be projected onto them; try smaller "
-                          "tolerances",
-                          at.t)};
+      return {Failure::inconsistent_state, at.t, {}};
     }
     problem_.retract(span(at.q), moves(), span(q_moved_));
     at.q.swap(q_moved_);
@@ -218,13 +211,15 @@ Status Consistent::complete(State& at) {
 
 Status Consistent::cross(State& at) {
   if (Status status = accelerations(at); !status.ok()) return status;
+  problem_.position_residual(rows());
+  const auto jumping = std::ranges::max_element(rows(), {}, [](double x) { return std::abs(x); }) - rows().begin();
   bool moved = false;
   const Status status = project(at, moved);
   if (!status.ok() || largest(span(moved_by_, 0, problem_.nv())) > kJump * std::max(1.0, largest(span(at.q)))) {
     return {Failure::inconsistent_state, at.t,
-            fmt::format("at t = {:.9g} s a driver or a constraint prescribes a jump of positions, which no motion "
-                        "follows; let it pass through the values between",
-                        at.t)};
+            fmt::format("at t = {:.9g} s {} prescribes a jump of positions, which no motion follows; let it pass "
+                        "through the values between",
+                        at.t, problem_.describe_unknown(problem_.nv() + static_cast<int>(jumping)))};
   }
   return moved ? accelerations(at) : Status{};  // velocities may have jumped: no refinement of those before
 }

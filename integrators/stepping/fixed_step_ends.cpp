@@ -26,14 +26,14 @@ double step_that_serves(const Settings& settings, const Problem& problem, double
 
 }  // namespace
 
-Status FixedSteps::examine_end(double began, bool& settled) {
+Status FixedSteps::examine_end(bool& settled) {
   // Part of its velocities that a step changes unusually: from there on it is asked whether its end is a singular
   // position, and whether it is on its branch.
   constexpr double kSingular = 0.02, kLeft = 0.2;
   double jump = integrates() ? branch_.jump(problem_, v_n_, x_.v, h_) : 0;
   if (settles_ && (singular_ends_.grow(x_.lambda()) || jump > kSingular)) {
     // It may be that of the rows kept alone, where others are set aside.
-    if (chooses_ && chose_at_ != began) return {Failure::singular_position, x_.t, {}};
+    if (chooses_ && !rows_asked_) return {Failure::singular_position, x_.t, {}};
     if (Status status = settle_end(settled); !status.ok()) return status;
     if (settled) jump = branch_.jump(problem_, v_n_, x_.v, h_);
   }
@@ -83,8 +83,8 @@ Status FixedSteps::check_branch(Problem& problem) {
   const double t = x_.t;
   const auto [share, row] = departure(problem, settings_.linear(), {t - h_, q_n_, v_n_}, {t, x_.q, x_.v});
   const bool fine = rotation_ <= kFine, left = fine && share > kReversed;
-  if (left || (fine && share > kComparable + kTurns * rotation_ && repeats_ && !as_it_is_)) {
-    departs_ = !left;
+  if (left || (fine && share > kComparable + kTurns * rotation_ && repeats_ && on_branch_ != OnBranch::granted)) {
+    on_branch_ = left ? OnBranch::asked : OnBranch::doubted;
     return {Failure::singular_position, t,
             fmt::format("at t = {:.9g} s, beside a singular position of the constraints, the step ends on another "
                         "branch than its velocities lead to, by {} most of all; try another step or dop853",
@@ -112,17 +112,6 @@ Status FixedSteps::settle_end(bool& settled) {
   }
   settled = settle(singular_ends_, last_seen(), v_n_, x_);
   return {};
-}
-
-// The same for where a step begins that leads nowhere.
-bool FixedSteps::settles_beginning() {
-  if (!settles_ || settled_at_ == x_.t) return false;
-  const std::unique_ptr<Problem> problem = last_seen().clone();  // which goes on showing where it stopped
-  place(*problem);
-  SingularEnds ends(settings_);
-  if (!settle(ends, *problem, x_.v, x_)) return false;
-  settled_at_ = x_.t;
-  return true;
 }
 
 bool FixedSteps::settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at) {

@@ -3,9 +3,9 @@
 //
 // A method derives from FixedSteps, says what its step is, and overrides what else it does differently. March calls
 //   prepare, begin,   then for every t_n:   [leave_singular | resume] step [stand [accept] [complete, sample]]
-// A step that fails numerically is done in two halves, and those that fail again in halves of them, down to h/2^10:
-// then resize and, after a failure, forget are called besides. A step that ends in a singular position, seen by what it
-// makes of velocities or by the failure of the next one, ends in the limit of states beside it (singular_ends.h).
+// A step that fails numerically is done again, with other rows or in parts (fixed_step_redo.cpp): then resize and,
+// after a failure, forget are called besides. A step that ends in a singular position, seen by what it makes of
+// velocities or by the failure of the next one, ends in the limit of states beside it (singular_ends.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -91,26 +91,54 @@ class FixedSteps {
   Vector q_n_, v_n_;  // where the step began
 
  private:
-  Status reach(double t, bool sampled);
-  Status reach_in_halves(double t, bool sampled, int halvings);
-  // Whether x_ is to stand as the end of its step; as the limit of states beside it where it was `settled`.
-  Status examine_end(double began, bool& settled);
-  Status settle_end(bool& settled);
-  bool settles_beginning();
-  bool asks_for_other_rows(double began);
+  // How x_ stands where the next step begins, and what that step begins with.
+  enum class Start {
+    usual,      // as the one before left it
+    rewritten,  // in other coordinates or with other rows: resume
+    limit,      // of the states beside a singular position: leave_singular
+  };
+  // What is asked of the step under way about its branch.
+  enum class OnBranch {
+    asked,
+    doubted,  // it failed because it may have left it
+    granted,  // nothing: in parts it did no better
+  };
+  struct Beginning {
+    State x;
+    Start start;
+    bool rows_asked;
+    double shortest;
+    std::int64_t steps;
+  };
+
+  // The step of the grid to t, by whatever it takes: fixed_step_redo.cpp.
+  Status advance(double t, bool sampled);
+  Status reach_or_redo(double t, bool sampled, int halvings);
+  Status redo_whole(double t, double half, bool sampled, Status as_one);
+  Status reach_in_halves(double t, double half, bool sampled, int halvings);
+  void begin_from(const Beginning& beginning);
+  Status take_back();
   bool choose_rows();
-  bool settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at);
-  void set_step(double h);
+  void rewrite();
+  bool settles_beginning();
   std::vector<BodyState> bodies();  // where x_ is
+  void set_step(double h);
+
+  Status reach(double t, bool sampled);
+  // Whether x_ is to stand as the end of its step; as the limit of states beside it where it was `settled`.
+  Status examine_end(bool& settled);
+  Status settle_end(bool& settled);
+  bool settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at);
   Status measure_rotation(Problem& problem, double t);
   // Whether the step ends on the branch that its velocities lead to.
   Status check_branch(Problem& problem);
 
   const bool discrete_, chooses_;  // something is to be brought up to date; rows among those that are redundant
-  bool rewritten_ = false;
+  Start start_ = Start::usual;
+  OnBranch on_branch_ = OnBranch::asked;
+  bool rows_asked_ = false;      // other rows were asked for where the step under way begins
   Problem* standing_ = nullptr;  // the problem that stands at x_
   Vector z_began_;               // of a step that may be done again, where it began
-  double chose_at_ = -1;         // time of the beginning of a step for which other rows were asked for
   double shortest_ = 0;          // of the steps done
   double rotation_ = 0;          // of the last step, the largest of a body
   Vector change_;
@@ -118,14 +146,11 @@ class FixedSteps {
   SingularEnds singular_ends_;
   std::optional<State> given_;  // a sample in a singular position
   OpenMultipliers open_multipliers_;
-  double settled_at_ = -1;  // time when x_ was made the limit of states beside a singular position
-  bool settles_ = false;    // ends in singular positions are
-  bool divides_ = false;    // steps that fail are done in parts
-  bool repeats_ = false;    // and may be done as they were after that
-  bool departs_ = false;    // the last step may have left its branch
-  bool as_it_is_ = false;   // that step in parts did no better
-  bool doubted_ = false;    // of a branch, and told
-  bool told_ = false;       // of a singular end
+  bool settles_ = false;  // ends in singular positions are
+  bool divides_ = false;  // steps that fail are done in parts
+  bool repeats_ = false;  // and may be done as they were after that
+  bool doubted_ = false;  // of a branch, and told
+  bool told_ = false;     // of a singular end
   Index1Output output_;
 };
 

@@ -112,15 +112,13 @@ bool NewtonLoop::balanced(double position, const Vector& z, const Vector& q) {
 
 Status NewtonLoop::not_converged(double t, double correction) const {
   const char* try_first = divided_ ? "an integrator with error control" : "a smaller step";
+  const auto by_size = [](double x) { return std::isfinite(x) ? std::abs(x) : HUGE_VAL; };
+  const auto largest = std::ranges::max_element(delta_, {}, by_size) - delta_.begin();
   if (!std::isfinite(correction)) {
-    const auto first = std::ranges::find_if(delta_, [](double x) { return !std::isfinite(x); });
-    const std::string of =
-        first == delta_.end() ? "" : " of " + problem_.describe_unknown(static_cast<int>(first - delta_.begin()));
     return {Failure::not_finite, t,
-            fmt::format("at t = {:.9g} s Newton's correction{} is not finite; try {}", t, of, try_first)};
+            fmt::format("at t = {:.9g} s Newton's correction of {} is not finite; try {}", t,
+                        problem_.describe_unknown(static_cast<int>(largest)), try_first)};
   }
-  Eigen::Index largest = 0;
-  delta_.cwiseAbs().maxCoeff(&largest);
   // Corrections that do not come near ask for another step or matrix, whatever they are compared with.
   constexpr int kFew = 10;
   constexpr double kNear = 1e4, kClose = 0.01;

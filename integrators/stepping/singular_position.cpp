@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -67,7 +68,23 @@ std::string near_singular_position(Problem& problem, int rows, std::span<const d
       driven ? "; where a driver asks for more than the mechanism reaches nothing does: end before it" : "");
 }
 
-std::string vanished_distance(Problem& problem, const State& state) {
+std::string growing_motion(const Problem& problem, const State& state) {
+  if (problem.bodies() == 0) return {};
+  std::vector<BodyState> bodies(index(problem.bodies()));
+  problem.to_bodies(state.a(), bodies);
+  const auto fastest = std::ranges::max_element(
+      bodies, {}, [](const BodyState& body) { return body.rdd.squaredNorm() + body.wd.squaredNorm(); });
+  return fmt::format(
+      "body '{}' is accelerated most, by {:.3g} m/s^2 and {:.3g} rad/s^2: the mechanism comes to a singular position, "
+      "near which accelerations are lost to rounding, or the tolerances ask for more than the arithmetic has (where a "
+      "body is at rest, atol alone does), and larger tolerances or an implicit integrator with a fixed step may pass; "
+      "or "
+      "the motion jumps or grows without bound here: end before it",
+      problem.model().bodies[index(static_cast<int>(fastest - bodies.begin()))].name, fastest->rdd.norm(),
+      fastest->wd.norm());
+}
+
+std::string vanished_gradient(Problem& problem, const State& state) {
   constexpr double kVanished = 1e-3;
   const Model& model = problem.model();
   problem.set_position(state.t, span(state.q));
@@ -77,8 +94,20 @@ std::string vanished_distance(Problem& problem, const State& state) {
   const auto point = [&](int body, const Vector3& s) -> Vector3 {
     return body == kGround ? s : bodies[index(body)].r + bodies[index(body)].A * s;
   };
+  const auto direction = [&](int body, const Vector3& a) -> Vector3 {
+    return (body == kGround ? a : Vector3(bodies[index(body)].A * a)).normalized();
+  };
   for (const int k : problem.model_rows()) {
     const Row& row = model.rows[index(k)];
+    if (row.type == RowType::DP1 && !row.f.is_constant() && !row.alternate) {
+      const double sine = direction(row.i, row.a_i).cross(direction(row.j, row.a_j)).norm();
+      if (!(sine < kVanished)) continue;
+      return fmt::format(
+          "the directions of {} have come to {:.2g} rad of one another's line: in it its gradient vanishes, and it "
+          "does "
+          "not say to which side they turn; an angle driver in its place does",
+          describe_row(model, k), sine);
+    }
     if (row.type != RowType::D) continue;
     const Vector3 of_i = point(row.i, row.s_i), of_j = point(row.j, row.s_j);
     const double arm = std::max(row.s_i.norm(), row.s_j.norm()), length = (of_j - of_i).norm();

@@ -28,8 +28,12 @@ struct DependentRow {
 };
 DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q);
 
-// A sentence about a distance (D) that has come to zero where a run stopped, relative to the longer of its two arms, or
-// to a metre where it has none; else empty. The problem stands there afterwards.
-std::string vanished_distance(Problem& problem, const State& state);
+// A sentence about steps that became too small where no row says why: who moves, what it may be, what may help.
+std::string growing_motion(const Problem& problem, const State& state);
+
+// A sentence about a row whose gradient has vanished by itself where a run stopped: a distance (D) that has come to
+// zero, relative to the longer of its two arms, or to a metre where it has none, or two directions at a prescribed
+// cosine (DP1) that have come to lie in a line; else empty. The problem stands there afterwards.
+std::string vanished_gradient(Problem& problem, const State& state);
 
 }  // namespace poinsot

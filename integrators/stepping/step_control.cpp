@@ -17,6 +17,20 @@ double length(std::span<const double> x) {
   return std::sqrt(sum);
 }
 
+// What methods say of a step that is tried again: no words, which are allocated.
+std::string unsaid(Failure failure) {
+  switch (failure) {
+    case Failure::singular_position:
+      return "velocities jumped beside a singular position, to where rounding would lead";
+    case Failure::rotation_too_large:
+      return "a body turned further than can be followed";
+    case Failure::inconsistent_state:
+      return "the step led too far from the constraints to be projected onto them";
+    default:
+      return "Newton's method did not converge";
+  }
+}
+
 }  // namespace
 
 void component_sizes(const Problem& problem, std::span<const double> q, std::span<const double> v,
@@ -81,18 +95,10 @@ double first_step(double h0, double f, double second, int order, double end) {
 Status step_too_small(double t, double h, const Status& cause) {
   std::string last;
   if (!cause.ok()) {
-    const char* unsaid = cause.failure == Failure::singular_position
-                             ? "velocities jumped beside a singular position, to where rounding would lead"
-                             : "Newton's method did not converge";
-    last = "; the last attempt: " + (cause.message.empty() ? unsaid : cause.message);
+    last = "; the last attempt: " + (cause.message.empty() ? unsaid(cause.failure) : cause.message);
   }
   return {Failure::step_size_too_small, t,
-          fmt::format("at t = {:.9g} s the steps became too small to get on with ({:.3g} s): the motion jumps or grows "
-                      "without bound here, the mechanism comes to a singular position, near which accelerations are "
-                      "lost to rounding, or the tolerances ask for more than the arithmetic has (where a body is at "
-                      "rest, atol alone does); larger tolerances or an implicit integrator with a fixed step may "
-                      "pass{}",
-                      t, h, last)};
+          fmt::format("at t = {:.9g} s the steps became too small to get on with ({:.3g} s){}", t, h, last)};
 }
 
 Status singular_sample(double t, const std::string& row) {

@@ -2,7 +2,31 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/index.h"
+
 namespace poinsot {
+namespace {
+
+// The body whose velocity or position has no finite size or, of finite ones, the largest: whose motion grows.
+std::string of_fastest(const Problem& problem) {
+  if (problem.bodies() == 0) return {};
+  std::vector<BodyState> states(index(problem.bodies()));
+  problem.to_bodies(std::vector<double>(index(problem.nv()), 0.0), states);
+  const auto size = [](const BodyState& state) {
+    const double speed = state.rd.norm() + state.w.norm(), sum = speed + state.r.norm();
+    return std::isfinite(sum) ? speed : HUGE_VAL;
+  };
+  const auto body = std::ranges::max_element(states, {}, size);
+  return fmt::format(" (body '{}' moves at {:.3g} m/s and {:.3g} rad/s)",
+                     problem.model().bodies[index(static_cast<int>(body - states.begin()))].name, body->rd.norm(),
+                     body->w.norm());
+}
+
+}  // namespace
 
 TimedSystem::TimedSystem(const Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock)
     : problem_(problem), linear_(linear), statistics_(statistics), clock_(clock) {}
@@ -42,11 +66,17 @@ Status TimedSystem::explained(double t, LinearStatus status) const {
 Status explain(const Problem& problem, double t, const LinearStatus& status) {
   if (status.failure == LinearFailure::not_finite) {
     return {Failure::not_finite, t,
-            fmt::format("at t = {:.9g} s the matrix or the solution is not finite; try a smaller step", t)};
+            fmt::format("at t = {:.9g} s the matrix or the solution is not finite{}; try a smaller step, or an "
+                        "integrator with error control",
+                        t, of_fastest(problem))};
   }
   std::string where;
   if (status.unknown >= 0) where = fmt::format(" near {}", problem.describe_unknown(status.unknown));
-  if (status.failure == LinearFailure::refused) return {Failure::refused, t, status.message + where};
+  if (status.failure == LinearFailure::refused || status.failure == LinearFailure::out_of_memory) {
+    return {Failure::refused, t,
+            fmt::format("at t = {:.9g} s the linear solver refuses{}: {}; try another one, as auto", t, where,
+                        status.message)};
+  }
   return {Failure::singular_matrix, t,
           fmt::format("at t = {:.9g} s the linear system is singular{} ({}); a singular position of the mechanism, "
                       "dependent constraints or a body without inertia: `poinsot check` names them, a smaller step may "

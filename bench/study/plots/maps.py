@@ -12,7 +12,7 @@ LOOKS = {
     "stop": ("#C8C8C8", "", "stopped, with a status:"),
     "wrong": ("#D55E00", "×", "silently wrong"),
 }
-STATUS = {"not_converged": "n", "singular_matrix": "m", "orientation_singularity": "o", "not_finite": "f",
+STATUS = {"not_converged": "n", "singular_matrix": "m", "not_finite": "f",
           "inconsistent_state": "c", "constraint_lost": "l", "singular_position": "p", "rotation_too_large": "r",
           "step_size_too_small": "s", "refused": "d", "input_error": "i"}
 INK = {"told": "#000000", "stop": "#333333", "wrong": "#000000"}

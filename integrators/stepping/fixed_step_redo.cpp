@@ -1,0 +1,149 @@
+// A step that fails, done again from where it began. What is tried, until one of it leads on:
+//   other rows      once for where a step begins: what is kept may depend on one another where the step leads to
+//   parts           the two halves, each a step of its own that may fail in turn, down to h/2^10
+//   as it is        the step whose branch was in doubt, where parts did no better: it stands, and the doubt is told
+//   the beginning   is made the limit of states beside it, where it is a singular position; then all of this once more
+#include <algorithm>
+#include <utility>
+
+#include "integrators/stepping/fixed_steps.h"
+
+namespace poinsot {
+namespace {
+
+constexpr int kHalvings = 10;
+
+// What the size of a step has a part in.
+bool may_be_too_long(Failure failure) {
+  return failure == Failure::not_converged || failure == Failure::not_finite || failure == Failure::singular_matrix ||
+         failure == Failure::singular_position;
+}
+
+// Parts of a step creep up to a singular position, where a whole step goes over it: there rounding may choose the
+// branch, and velocities jump. Those of a step worth its name change by a fraction, as accelerations beside such a
+// position do not.
+bool jumps(std::span<const BodyState> before, std::span<const BodyState> after) {
+  constexpr double kFraction = 0.5;
+  double way = 0, turn = 0, speed = 0, rate = 0;
+  for (std::size_t b = 0; b < before.size(); ++b) {
+    way = std::max(way, (after[b].rd - before[b].rd).norm());
+    turn = std::max(turn, (after[b].w - before[b].w).norm());
+    speed = std::max(speed, before[b].rd.norm());
+    rate = std::max(rate, before[b].w.norm());
+  }
+  return way > kFraction * speed || turn > kFraction * rate;
+}
+
+}  // namespace
+
+Status FixedSteps::advance(double t, bool sampled) {
+  const int halvings = divides_ ? kHalvings : 0;
+  const double began = x_.t;
+  const Status status = reach_or_redo(t, sampled, halvings);
+  if (!may_be_too_long(status.failure) || x_.t > began || !settles_beginning()) return status;
+  return reach_or_redo(t, sampled, halvings);
+}
+
+Status FixedSteps::reach_or_redo(double t, bool sampled, int halvings) {
+  if (halvings > 0 || chooses_) z_began_ = x_.z;
+  const double began = x_.t;
+  const auto failed = [&](const Status& status) { return may_be_too_long(status.failure) && x_.t == began; };
+  on_branch_ = OnBranch::asked;
+  Status status = reach(t, sampled);
+  if (failed(status) && status.failure != Failure::not_finite && chooses_ && !std::exchange(rows_asked_, true)) {
+    if (Status back = take_back(); !back.ok()) return back;
+    const bool others = choose_rows();
+    if (others) {
+      rewrite();
+      z_began_ = x_.z;
+    }
+    if (others || status.message.empty()) status = reach(t, sampled);
+  }
+  if (!failed(status) || halvings == 0) return status;
+  const double half = began + 0.5 * (t - began);
+  if (!(began < half && half < t) || !take_back().ok()) return status;
+  return halvings == kHalvings ? redo_whole(t, half, sampled, std::move(status))
+                               : reach_in_halves(t, half, sampled, halvings);
+}
+
+// A step of the grid, which as one ended as it did.
+Status FixedSteps::redo_whole(double t, double half, bool sampled, Status as_one) {
+  const bool doubted = on_branch_ == OnBranch::doubted;
+  const Beginning beginning{x_, start_, rows_asked_, shortest_, run_.statistics.steps};
+  const std::vector<BodyState> before = bodies();
+  Status status = reach_in_halves(t, half, sampled, kHalvings);
+  if (status.ok() && jumps(before, bodies())) {
+    begin_from(beginning);
+    status = std::move(as_one);
+  }
+  if (status.ok() || !doubted) return status;
+  begin_from(beginning);
+  shortest_ = beginning.shortest;
+  run_.statistics.steps = beginning.steps;
+  if (!take_back().ok()) return status;
+  on_branch_ = OnBranch::granted;
+  return reach(t, sampled);
+}
+
+void FixedSteps::begin_from(const Beginning& beginning) {
+  x_ = beginning.x;
+  z_began_ = x_.z;
+  start_ = beginning.start;
+  rows_asked_ = beginning.rows_asked;
+}
+
+Status FixedSteps::reach_in_halves(double t, double half, bool sampled, int halvings) {
+  const double h = h_;
+  set_step(0.5 * h);
+  Status status = reach_or_redo(half, false, halvings - 1);
+  if (status.ok()) status = reach_or_redo(t, sampled, halvings - 1);
+  shortest_ = shortest_ > 0 ? std::min(shortest_, 0.5 * h) : 0.5 * h;
+  set_step(h);
+  return status;
+}
+
+// Of the rows or coordinates of where the next step begins.
+void FixedSteps::rewrite() {
+  if (start_ == Start::usual) start_ = Start::rewritten;
+}
+
+// After a step that failed, which left position and velocity as they were: x_ and the method stand where it began.
+Status FixedSteps::take_back() {
+  x_.z = z_began_;
+  if (start_ == Start::limit) return {};
+  start_ = Start::usual;
+  return forget();
+}
+
+// Where the step leads to the rows that are kept may depend on one another: looks whether others do not.
+bool FixedSteps::choose_rows() {
+  Vector ahead = h_ * x_.v, q(x_.q.size());
+  Problem& problem = last_seen();
+  problem.retract(span(x_.q), span(ahead), span(q));
+  problem.set_position(x_.t + h_, span(q));
+  return problem.choose_rows_here(x_.t, span(x_.q), span(x_.v), x_.lambda());
+}
+
+// The same for where a step begins that leads nowhere.
+bool FixedSteps::settles_beginning() {
+  if (!settles_ || start_ == Start::limit) return false;
+  const std::unique_ptr<Problem> problem = last_seen().clone();  // which goes on showing where it stopped
+  place(*problem);
+  SingularEnds ends(settings_);
+  if (!settle(ends, *problem, x_.v, x_)) return false;
+  start_ = Start::limit;
+  return true;
+}
+
+std::vector<BodyState> FixedSteps::bodies() {
+  std::vector<BodyState> states(index(problem_.bodies()));
+  stand().to_bodies(x_.a(), states);
+  return states;
+}
+
+void FixedSteps::set_step(double h) {
+  const double before = std::exchange(h_, h);
+  resize(before);
+}
+
+}  // namespace poinsot
