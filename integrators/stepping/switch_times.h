@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/model.h"
+#include "core/status.h"
 #include "integrators/integrator.h"
 
 namespace poinsot {
@@ -54,5 +55,10 @@ class SwitchTimes {
   double clear_to_ = 0;  // no switch between the last one that was asked for and here
   Switch found_;
 };
+
+// The last time before a prescribed position jumps, past the start and before `end`; none: infinity.
+double first_jump(const Model& model, double end);
+// Where it does, the stop.
+Status jump_of_positions(double t);
 
 }  // namespace poinsot
