@@ -49,8 +49,10 @@ struct TorsionElement {
   Vector3 a_i = Vector3::Zero(), b_i = Vector3::Zero(), c_j = Vector3::Zero();
 };
 
-// The angle of A_j c_j about a_i × b_i from A_i a_i towards A_i b_i. Its turns are counted; it applies no force.
+// The angle of A_j c_j about a_i × b_i from A_i a_i towards A_i b_i, of a joint. Its turns are counted; it applies no
+// force.
 struct FollowedAngle {
+  int group = 0;
   int i = kGround, j = kGround;
   Vector3 a_i = Vector3::Zero(), b_i = Vector3::Zero(), c_j = Vector3::Zero();
 };

@@ -49,6 +49,7 @@ class Configuration {
         dp1(elements->dp1),
         twist(elements->torsions.size(), 0.0),
         followed(elements->followed.size(), 0.0),
+        alternate_stood_in(elements->alternates.size(), 2),
         callbacks(elements->model->callbacks.begin(), elements->model->callbacks.end()) {
     for (std::size_t k = static_cast<std::size_t>(elements->ground_markers); k < s.size(); ++k) {
       s[k] = elements->markers[k].s_bar.template cast<T>();
@@ -180,11 +181,12 @@ class Configuration {
   std::vector<T> v;             // all velocities; what is kept is kept here, and nothing refers to the caller's vectors
   std::vector<typename F::template Position<T>> at;
   std::vector<typename F::template Velocity<T>> rate;
-  std::vector<Vec3<T>> s, s_dot;                 // of every marker, global
-  std::vector<Jet2<T>> f;                        // of every right-hand side
-  std::vector<DP1Row> dp1;                       // with the alternates that stand in at this time
-  std::vector<double> twist;                     // angle of every torsion spring at the last accepted step, rad
-  std::vector<double> followed;                  // the same of angles that are followed
+  std::vector<Vec3<T>> s, s_dot;         // of every marker, global
+  std::vector<Jet2<T>> f;                // of every right-hand side
+  std::vector<DP1Row> dp1;               // with the alternates that stand in at this time
+  std::vector<double> twist;             // angle of every torsion spring at the last accepted step, rad
+  std::vector<double> followed;          // the same of angles that are followed
+  std::vector<char> alternate_stood_in;  // at the last accepted step, by Elements::alternates; 2: there was none
   mutable std::vector<CallbackLoads> callbacks;  // room for what they are given and give
 
  private:

@@ -36,6 +36,7 @@ class MechanismProblem final : public Problem {
     auto copy = std::make_unique<MechanismProblem>(mechanism_.c.elements);
     copy->mechanism_.c.twist = mechanism_.c.twist;
     copy->mechanism_.c.followed = mechanism_.c.followed;
+    copy->mechanism_.c.alternate_stood_in = mechanism_.c.alternate_stood_in;
     return copy;
   }
   std::unique_ptr<Problem> clone_without(std::span<const int> dropped) const override {
@@ -165,11 +166,14 @@ class MechanismProblem final : public Problem {
   void lower(std::span<const double> dq, std::span<double> z) const override { M::lower(dq.data(), z.data(), bodies_); }
 
   bool has_discrete_state() const override {
-    return F::space == CoordinateSpace::charts || !mechanism_.c.twist.empty() || !mechanism_.c.followed.empty();
+    const auto& c = mechanism_.c;
+    return F::space == CoordinateSpace::charts || !c.twist.empty() || !c.followed.empty() ||
+           !c.alternate_stood_in.empty();
   }
-  Status accept(double, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double>,
+  Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double>,
                 bool& rewritten) override {
     auto& c = mechanism_.c;
+    if (Status status = exchange_alternates(t); !status.ok()) return status;
     for (std::size_t k = 0; k < c.twist.size(); ++k) {
       c.twist[k] = Torsion<F, double>::angle(c, c.elements->torsions[k], c.twist[k]);
     }
@@ -228,16 +232,24 @@ class MechanismProblem final : public Problem {
     const auto turn = [&](int body) {
       return body == kGround ? Vector3(Vector3::Zero()) : c.rate[static_cast<std::size_t>(body)].wg;
     };
+    const auto about = [&](int a, int b, int i, int j) {
+      const Vector3 axis = c.s[static_cast<std::size_t>(a)].cross(c.s[static_cast<std::size_t>(b)]);
+      return std::abs(axis.dot(turn(j) - turn(i)));
+    };
     CountedTurn fastest;
     for (std::size_t k = 0; k < e.torsions.size(); ++k) {
       const TorsionSpringElement& spring = e.torsions[k];
-      const Vector3 axis = c.s[static_cast<std::size_t>(spring.a)].cross(c.s[static_cast<std::size_t>(spring.b)]);
-      const double rate = std::abs(axis.dot(turn(spring.j) - turn(spring.i)));
-      if (rate > fastest.rate) fastest = {rate, static_cast<int>(k), -1};
+      const double rate = about(spring.a, spring.b, spring.i, spring.j);
+      if (rate > fastest.rate) fastest = {rate, static_cast<int>(k), -1, -1};
     }
     for (const AngleRow& k : e.angle) {
       const double rate = std::abs(c.f[static_cast<std::size_t>(k.f)].fd);
-      if (rate > fastest.rate) fastest = {rate, -1, e.model_row[static_cast<std::size_t>(k.row)]};
+      if (rate > fastest.rate) fastest = {rate, -1, e.model_row[static_cast<std::size_t>(k.row)], -1};
+    }
+    for (std::size_t k = 0; k < e.followed.size(); ++k) {
+      const FollowedAngle& angle = e.model->followed[k];
+      const double rate = about(e.followed[k].a, e.followed[k].b, angle.i, angle.j);
+      if (rate > fastest.rate) fastest = {rate, -1, -1, static_cast<int>(k)};
     }
     return fastest;
   }
@@ -250,6 +262,35 @@ class MechanismProblem final : public Problem {
   }
 
  private:
+  // A row and its alternate tell the same motion where one takes the other's place: with the one that stands now
+  // satisfied, so is the one that stood.
+  Status exchange_alternates(double t) {
+    constexpr double kLost = 1e-5;  // rad, as of rows set aside (integrators/start/over_constrained.h)
+    auto& c = mechanism_.c;
+    for (std::size_t k = 0; k < c.alternate_stood_in.size(); ++k) {
+      const AlternateRow& row = c.elements->alternates[k];
+      const DP1Row& now = c.dp1[static_cast<std::size_t>(row.primary)];
+      const char stands = now.u == row.alternate.u && now.v == row.alternate.v && now.f == row.alternate.f;
+      char& stood = c.alternate_stood_in[k];
+      if (stood == stands) continue;
+      const DP1Row& other = stands ? row.normal : row.alternate;
+      const Vector3 &u = c.s[static_cast<std::size_t>(other.u)], &v = c.s[static_cast<std::size_t>(other.v)];
+      const double off = std::abs(u.dot(v) - c.f[static_cast<std::size_t>(other.f)].f) / (u.norm() * v.norm());
+      if (stood == 2 || !(off > kLost)) {
+        stood = stands;
+        continue;
+      }
+      return {Failure::constraint_lost, t,
+              fmt::format(
+                  "at t = {:.9g} s, where |f| passes 0.9, {} and its alternate contradict one another: with one "
+                  "satisfied the other is violated by {:.3g}; f and the directions of both have to tell the "
+                  "same motion, or an angle driver takes the place of both",
+                  t, describe_row(*c.elements->model, c.elements->model_row[static_cast<std::size_t>(row.normal.row)]),
+                  off)};
+    }
+    return {};
+  }
+
   using M = Mechanism<F, double>;
   using Matrix = MechanismMatrix<F, double>;
 

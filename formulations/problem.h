@@ -45,10 +45,10 @@ struct StepScale {
 };
 
 // The angle that turns fastest of those a step must not turn by half a turn, because positions tell them up to full or
-// half turns only: of torsion springs and of driven angles.
+// half turns only: of torsion springs, driven angles, and angles of joints that are followed.
 struct CountedTurn {
-  double rate = 0;                // rad/s
-  int torsion = -1, driver = -1;  // which: index of the model's torsion spring, or of its row
+  double rate = 0;                               // rad/s
+  int torsion = -1, driver = -1, followed = -1;  // which: index of the model's torsion spring, row, or followed angle
 };
 
 class Problem {

@@ -29,7 +29,8 @@ LawValue<T> spring_force(const SpringLaw& k, const T& x, const T& v, const T& t)
   return {F, T(k.stiffness), T(k.damping)};
 }
 
-// ∫ F(s, 0, t) ds from 0 to x, J or its equal, to rounding.
+// ∫ F(s, 0, t) ds from 0 to x, J or its equal, to rounding; of a law without bounds at 0, as c/x^2, from 1 or −1 on the
+// side of x.
 double law_potential(const Expression& law, double x, double t);
 
 template <class T>

@@ -90,12 +90,13 @@ std::vector<std::string> Signals::names(const Model& model) {
 std::vector<FollowedAngle> joint_angles(const Model& model) {
   std::vector<FollowedAngle> angles;
   for_each_joint(model, [&](const Group& group, const JointFrames& f) {
+    const int of = static_cast<int>(&group - model.groups.data());
     const bool universal = group.type == type_name(JointType::universal);
     const bool turns = group.type == type_name(JointType::revolute) || group.type == type_name(JointType::cylindrical);
-    if (turns) angles.push_back({group.i, group.j, f.a_i, f.axis_i.cross(f.a_i), f.a_j});
+    if (turns) angles.push_back({of, group.i, group.j, f.a_i, f.axis_i.cross(f.a_i), f.a_j});
     if (!universal) return;
-    angles.push_back({group.i, group.j, f.a_i, f.axis_i.cross(f.a_i), f.axis_j});
-    angles.push_back({group.j, group.i, f.a_j, f.axis_j.cross(f.a_j), f.axis_i});  // of i relative to j
+    angles.push_back({of, group.i, group.j, f.a_i, f.axis_i.cross(f.a_i), f.axis_j});
+    angles.push_back({of, group.j, group.i, f.a_j, f.axis_j.cross(f.a_j), f.axis_i});  // of i relative to j
   });
   return angles;
 }

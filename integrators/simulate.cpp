@@ -137,13 +137,15 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     problem->set_velocity(span(state.v));
   }
   tell_of_switches(*model, integrator, settings, notice);
+  const double jumps_after =
+      integrator.controls_error ? std::numeric_limits<double>::infinity() : first_jump(*model, settings.end);
   const Eigen::VectorXd q_start = state.q;
   const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
   {
     const FlushSubnormals flush;
-    outcome.status =
-        integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, notice,
-                                rotation.senseless, start.rank.singular_position() ? start.rank.time_beside : 0});
+    outcome.status = integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, notice,
+                                             rotation.senseless,
+                                             start.rank.singular_position() ? start.rank.time_beside : 0, jumps_after});
   }
   explain(outcome.status, *problem);
   const double largest = outcome.statistics.largest_rotation;

@@ -121,6 +121,40 @@ TEST(Signals, TurnsAreCountedBetweenRows) {
   EXPECT_NEAR(c["bearing.slide"].back(), 0, 1e-12);
 }
 
+// Nor from step to step: error control would turn by sixty radians in one.
+TEST(Signals, TurnsAreCountedInStepsOfErrorControl) {
+  const Scene scene = scene_from(
+      R"json("bodies": [{"name": "rotor", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0], "angular_velocity": [0, 0, 60]},
+      {"name": "other", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 1], "angular_velocity": [0, 0, -40]}],
+    "joints": [{"type": "revolute", "name": "bearing", "bodies": ["ground", "rotor"], "point": [0, 0, 0], "axis": [0, 0, 1]},
+      {"type": "cylindrical", "name": "shaft", "bodies": ["rotor", "other"], "point": [0, 0, 0], "axis": [0, 0, 1]}])json",
+      "[0, 0, 0]");
+  for (const IntegratorEntry& integrator : integrators())
+    for (const char* formulation : {"rA", "rp", "reps"}) {
+      if (!integrator.controls_error || refusal_of(integrator, formulation)) continue;
+      Columns c = signals_of(scene, controlled(integrator.name, formulation, 1e-8, 1, 1));
+      EXPECT_NEAR(c["bearing.angle"].back(), 60, 1e-4) << integrator.name << ' ' << formulation;
+      EXPECT_NEAR(c["shaft.angle"].back(), -100, 1e-4) << integrator.name << ' ' << formulation;
+    }
+}
+
+// In a step of fixed length that turns one by more than half a turn nobody can, though each body turns by less.
+TEST(Signals, AnglesThatCannotBeCountedStopTheRun) {
+  const Scene scene = scene_from(
+      R"json("bodies": [{"name": "rotor", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0], "angular_velocity": [0, 0, 20]},
+      {"name": "other", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 1], "angular_velocity": [0, 0, -20]}],
+    "joints": [{"type": "revolute", "name": "bearing", "bodies": ["ground", "rotor"], "point": [0, 0, 0], "axis": [0, 0, 1]},
+      {"type": "revolute", "name": "shaft", "bodies": ["rotor", "other"], "point": [0, 0, 0], "axis": [0, 0, 1]}])json",
+      "[0, 0, 0]");
+  Settings settings = controlled("rattle", "rA", 1e-8, 1, 1);
+  settings.step = 0.1;
+  EXPECT_TRUE(simulate(scene, settings, {}).status.ok());
+  settings.signals = true;
+  const Outcome outcome = simulate(scene, settings, {});
+  EXPECT_EQ(outcome.status.failure, Failure::rotation_too_large);
+  EXPECT_THAT(outcome.status.message, testing::HasSubstr("joint 'shaft'"));
+}
+
 TEST(Signals, ASphericalJointTellsTheRelativeRotation) {
   const Scene scene = scene_from(
       R"json("bodies": [{"name": "ball", "mass": 1, "inertia": [2, 2, 2], "position": [0, 0, 0], "angular_velocity": [1, 2, 2]}],

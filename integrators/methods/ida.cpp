@@ -128,9 +128,21 @@ class Session {
       const double wanted = std::min({turn.before, t + kStages * reach, settings_.end});
       const double seen = course_.pulses.reach(t, wanted);
       if (seen < wanted) creeping.limited();
-      ida_.stop_at(seen < wanted ? t + (seen - t) / kStages : std::min(turn.before, settings_.end));
+      ida_.stop_at(
+          seen_by_laws(seen < wanted ? t + (seen - t) / kStages : std::min(turn.before, settings_.end), ahead));
     }
     return turn;
+  }
+
+  // A step is not offered back, so that what laws do within it is looked for before it, as the motion goes on now.
+  double seen_by_laws(double stop, double ahead) {
+    if (course_.laws.none() || !(ahead > at_t_)) return stop;
+    ida_.read_end(at_t_, next_);
+    problem_.set_position(at_t_, span(next_.q));
+    problem_.set_velocity(span(next_.v));
+    course_.laws.begin(problem_, next_);
+    const double seen = course_.laws.ahead(ahead);
+    return seen < ahead ? std::min(seen, stop) : stop;
   }
 
   // at_ stands at a switch.

@@ -103,6 +103,7 @@ void IdaSystem::read(double t, State& at) {
 
 void IdaSystem::read_end(double t, State& at) {
   copy(objects_.y.get(), t, at);
+  std::ranges::copy(form_->v(values(objects_.y_dot.get())), at.a().begin());
 }
 
 void IdaSystem::copy(N_Vector y, double t, State& at) const {

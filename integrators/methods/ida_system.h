@@ -40,7 +40,7 @@ class IdaSystem {
   double time() const;
   // Position and velocity at a time within the last step; as IDA has them, off the constraints by its tolerance.
   void read(double t, State& at);
-  void read_end(double t, State& at);                             // of the last step, t as it gave it
+  void read_end(double t, State& at);  // of the last step, t as it gave it; with accelerations
   const Status& linear_status() const { return linear_status_; }  // of the last matrix or solution
   void count(Statistics& statistics) const;
 

@@ -94,11 +94,8 @@ class Kinematics final : public FixedSteps {
 
   bool divides() const override { return false; }  // it does so itself, where it is not certain
   Problem& stand() override { return problem_; }   // it does after every step
-  // What turns far is followed in shorter steps, but for the torque of springs.
-  Status check_turns(Problem& problem, double t) override {
-    const bool counts = inverse_dynamics_ && !problem.model().torsions.empty();
-    return counts && turns_too_far(problem, h_) ? turned_too_far(problem, t, h_) : Status{};
-  }
+  // What turns far is followed in shorter steps.
+  Status check_turns(Problem&, double) override { return {}; }
 
   Status check_velocity(Problem&, double) override { return {}; }  // of certain steps
   bool integrates() const override { return false; }
@@ -139,8 +136,7 @@ class Kinematics final : public FixedSteps {
   // Whether x_ is where the motion from q_from_ leads, over a time h to t; if so it is what the next is compared with.
   bool certain(double h, double t) {
     if (contraction_ > kContraction) return false;
-    const CountedTurn turn = problem_.counted_turn();
-    if (turn.driver >= 0 && h * turn.rate > kFullTurn) return false;
+    if (h * problem_.counted_turn().rate > kFullTurn) return false;
     if (comes_to_singular_position(h, t)) return false;
     const std::uint64_t here = system_.orientation();
     if (here != orientation_ && !(rows_change_ && here == orientation_before(t))) return false;

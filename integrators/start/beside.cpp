@@ -166,6 +166,32 @@ void Beside::look(Trial& trial, Place& place) {
     place.off = std::abs(off[k]);
     place.worst = space_.rows()[k];
   }
+  if (place.holds && place.t > 0) look_at_rates(trial, place);
+}
+
+// Velocity rows have no place to be off: later on they hold where the velocities that the rows kept lead to satisfy
+// them.
+void Beside::look_at_rates(Trial& trial, Place& place) {
+  const std::size_t rows = space_.rows().size();
+  bool any = false;
+  for (std::size_t k = 0; k < rows && !any; ++k) any = space_.is_velocity_row(k);
+  if (!any) return;
+  std::vector<double> v = place.v, rate(rows), nu(rows);
+  trial.problem->set_position(place.t, place.q);
+  trial.problem->set_velocity(v);
+  if (!trial.consistent->project_velocity(place.t, v).ok()) return;
+  space_.rates(v, rate, nu);
+  const double speed = extent(v);
+  for (std::size_t k = 0; k < rows; ++k) {
+    if (!space_.is_velocity_row(k)) continue;
+    const double size = space_.size_of_row(k), norm = space_.norm_of_row(k), off = std::abs(rate[k]) / norm;
+    if (off <= kContradicts * std::max({speed * size, std::abs(nu[k]) / norm, kHolds * size}) || off <= place.off)
+      continue;
+    place.holds = false;
+    place.by_rate = true;
+    place.off = off;
+    place.worst = space_.rows()[k];
+  }
 }
 
 bool Beside::leads_on(const Place& start, const Place& along, const std::vector<int>& without) {

@@ -25,6 +25,7 @@ inline constexpr double kFreeBeside = 3e-5;
 // Part of a body's size: a row that holds beside is off by no more than the solution of the others, one that does not
 // by some 1e-6, the square of the move.
 inline constexpr double kHolds = 1e-9;
+inline constexpr double kContradicts = 1e-6;  // of a body's size, or of its speed: by what the scene says
 
 struct Place {
   double t = 0;
@@ -33,7 +34,8 @@ struct Place {
   std::size_t dependent = 0;            // of them; all suspects where it is as many
   bool holds = false;
   int worst = -1;  // the row that is off most, of those left out
-  double off = 0;  // m
+  double off = 0;  // m, or m/s
+  bool by_rate = false;
 };
 
 // The given state, put onto the rows of the model that are not left out.
@@ -73,6 +75,7 @@ class Beside {
   std::optional<Place> settle(Trial& trial, Place place, std::span<const double> dq, bool must_move);
   void stand(Problem& problem, const Place& place);
   void look(Trial& trial, Place& place);
+  void look_at_rates(Trial& trial, Place& place);
   bool all_follow(Trial& trial, double t) const;
   double distance(std::span<const double> q, std::span<const double> from) const;
 

@@ -59,6 +59,9 @@ void OverConstrained::watch() {
   aside_.emplace(model(), choice_->rows.aside());
   by_allowed_.clear();
   for (const int row : aside_->rows()) by_allowed_.push_back(1 / (kLost * choice_->rows.size_of(row)));
+  rates_aside_ =
+      std::ranges::any_of(aside_->rows(), [&](int row) { return model().rows[index(row)].type == RowType::pfaffian; });
+  kept_rates_.resize(rates_aside_ ? index(kept_->nc()) : 0);
 }
 
 void OverConstrained::set_position(double t, std::span<const double> q) {
@@ -81,19 +84,50 @@ Problem::LeftOut OverConstrained::left_out() const {
 }
 
 // The rows set aside, where the kept problem stands.
-Status OverConstrained::measure(double t) {
+Status OverConstrained::measure(double t, std::span<const double> a) {
   const std::span<const double> residual = aside_->position_residual(t, *kept_);
   std::size_t worst = 0;
   double most = 0;
   for (std::size_t k = 0; k < by_allowed_.size(); ++k)
     if (const double part = std::abs(residual[k]) * by_allowed_[k]; part > most) most = part, worst = k;
-  if (most <= 1) return {};
+  if (most <= 1) return rates_aside_ ? measure_rates(t, a) : Status{};
   return {Failure::constraint_lost, t,
           fmt::format("at t = {:.9g} s {} is violated by {:.3g}: it followed from the other constraints where the run "
                       "began and was set aside, and does not hold with them any more; the constraints contradict one "
                       "another from here on, and one of them has to go, or the steps leave them: try smaller steps or "
                       "a smaller tolerance",
                       t, describe_row(model(), aside_->rows()[worst]), std::abs(residual[worst]))};
+}
+
+// The velocity rows among them, beside what the others are off as the method leaves them.
+Status OverConstrained::measure_rates(double t, std::span<const double> a) {
+  constexpr double kLostRate = 1e-3;  // of the bodies' speed
+  constexpr double kFar = 10;         // times as far off as others
+  constexpr double kStill = 1e-9;     // of a body's size in a second
+  kept_->to_bodies(a, now_);
+  kept_->velocity_residual(kept_rates_);
+  double others = 0;
+  for (const double off : kept_rates_) others = std::max(others, std::abs(off));
+  const std::span<const double> residual = aside_->velocity_residual(now_);
+  for (std::size_t k = 0; k < residual.size(); ++k) {
+    const int of = aside_->rows()[k];
+    const Row& row = model().rows[index(of)];
+    if (row.type != RowType::pfaffian) continue;
+    double speed = 0;
+    for (const auto& [body, s] : {std::pair(row.i, row.s_i), std::pair(row.j, row.s_j)})
+      if (body != kGround) speed = std::max(speed, now_[index(body)].rd.norm() + now_[index(body)].w.norm() * s.norm());
+    const double rounding = kStill * choice_->rows.size_of(of) + kLost * std::abs(row.f.at(t).f);
+    const double allowed = kLostRate * row.a_j.norm() * speed + kFar * others + rounding;
+    const double off = std::abs(residual[k]);
+    if (off <= allowed) continue;
+    return {
+        Failure::constraint_lost, t,
+        fmt::format("at t = {:.9g} s {} is violated by {:.3g} m/s: it followed from the other constraints where the "
+                    "run began and was set aside, and does not hold with them any more; the constraints contradict "
+                    "one another from here on, and one of them has to go",
+                    t, describe_row(model(), of), off)};
+  }
+  return {};
 }
 
 // Since the choice was looked at, rad: by the body that has turned most.
@@ -110,7 +144,7 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
     kept_->set_position(t, q);
     kept_->set_velocity(v);
   }
-  if (Status status = measure(t); !status.ok()) return status;
+  if (Status status = measure(t, a); !status.ok()) return status;
   const double h = std::max(t - std::exchange(accepted_at_, t), 0.0), ahead = h * kept_->fastest_turn();
   const double good_for = std::min(choice_->rows.good_for(), kLookedAgain);
   way_ += std::max(ahead, std::exchange(ahead_, ahead));

@@ -95,7 +95,8 @@ class OverConstrained final : public Problem {
   OverConstrained(const OverConstrained& other);
   void keep();
   void watch();
-  Status measure(double t);
+  Status measure(double t, std::span<const double> a);
+  Status measure_rates(double t, std::span<const double> a);
   double turned() const;
   void exchange(double t, std::span<const double> q, std::span<const double> v, std::span<double> lambda);
   void normalize(std::span<const double> forces, std::span<double> lambda);
@@ -105,8 +106,10 @@ class OverConstrained final : public Problem {
   std::unique_ptr<Problem> kept_;
   mutable std::optional<RowsAside> aside_;
   std::vector<double> by_allowed_;  // 1 over what is allowed of |Φ|, by row set aside
-  double t_ = 0;                    // where the problem stands
-  double accepted_at_ = 0;          // the last step's end
+  bool rates_aside_ = false;        // velocity rows are among them
+  std::vector<double> kept_rates_;
+  double t_ = 0;                // where the problem stands
+  double accepted_at_ = 0;      // the last step's end
   double way_ = 0, ahead_ = 0;  // rad, what the fastest body has turned by since the last look, about; its last part
   mutable std::vector<BodyState> now_;
 };

@@ -21,9 +21,8 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double kContradicts = 1e-6;  // of a body's size: by what the scene says
-constexpr double kNoLoad = 1e-7;       // of a null vector on unit rows
-constexpr int kManyRows = 20'000;      // of loops: one random direction is looked at in the place of two
+constexpr double kNoLoad = 1e-7;   // of a null vector on unit rows
+constexpr int kManyRows = 20'000;  // of loops: one random direction is looked at in the place of two
 
 class Examination {
  public:
@@ -109,7 +108,8 @@ class Examination {
         std::optional<Place> place;
         if (other.regular) place = beside_->along_velocities(other);
         if (!place || place->holds) place = along;
-        result_.conflicts.push_back({place->worst, Conflict::Level::later, place->off, place->t});
+        const auto level = place->by_rate ? Conflict::Level::later_velocity : Conflict::Level::later;
+        result_.conflicts.push_back({place->worst, level, place->off, place->t});
       }
     }
   }
@@ -123,7 +123,7 @@ class Examination {
     const double speed = beside_->extent(start.v);
     for (const int row : without) {
       const std::size_t k = index(std::ranges::lower_bound(space_->rows(), row) - space_->rows().begin());
-      const double size = space_->size_of_row(k), length = space_->lengths()[k];
+      const double size = space_->size_of_row(k), length = space_->norm_of_row(k);
       const double rate_off = std::abs(rate[k]) / length;
       if (off[k] > kContradicts * size)
         result_.conflicts.push_back({row, Conflict::Level::position, off[k], 0});
@@ -241,6 +241,8 @@ std::vector<int> RankAnalysis::dependent_rows() const {
 
 std::string describe(const Conflict& conflict) {
   if (conflict.level == Conflict::Level::velocity) return fmt::format("{:.3g} m/s (velocity)", conflict.by);
+  if (conflict.level == Conflict::Level::later_velocity)
+    return fmt::format("{:.3g} m/s (velocity, at t = {:.3g} s)", conflict.by, conflict.time);
   if (conflict.level == Conflict::Level::position) return fmt::format("{:.3g} m (position)", conflict.by);
   return fmt::format("{:.3g} m (position, at t = {:.3g} s)", conflict.by, conflict.time);
 }

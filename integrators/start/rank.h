@@ -31,10 +31,10 @@ struct Dependency {
 
 // A redundant row that does not hold where those hold that it follows from.
 struct Conflict {
-  enum class Level { position, velocity, later };
+  enum class Level { position, velocity, later, later_velocity };
   int row;
   Level level;
-  double by;    // m or m/s that the bodies are off it; `later`: m, at `time`
+  double by;    // m or m/s that the bodies are off it; `later`: m, `later_velocity`: m/s, at `time`
   double time;  // s
 };
 

@@ -89,7 +89,7 @@ void RowSpace::stand(double t, std::span<const BodyState> states) {
       sum += it.value() * it.value();
     }
     const double rounding = rounding_of(model_->rows[index(rows_[index(k)])], states);
-    lengths_[index(k)] = std::max(std::sqrt(sum), rounding);
+    lengths_[index(k)] = (is_velocity_row(index(k)) ? kVelocityRow : 1) * std::max(std::sqrt(sum), rounding);
     const double by = sum > rounding * rounding ? 1 / lengths_[index(k)] : 0;
     for (Eigen::SparseMatrix<double>::InnerIterator it(Gt_, k); it; ++it) it.valueRef() *= by;
   }

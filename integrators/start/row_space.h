@@ -5,6 +5,9 @@
 // the bodies are off the constraint. A row is dependent where so little of its unit vector is left beside the others'
 // as kDependent; it is as good as independent from kIndependent on. What lies between is said.
 //
+// A velocity row (pfaffian) that follows from positions is the one to be set aside, since it does not keep them: its
+// vector is a kVelocityRow-th of the unit, so that its coefficients are larger than those of the others.
+//
 // In rA, whose variations are regular everywhere: rank does not depend on the formulation.
 #pragma once
 
@@ -14,12 +17,15 @@
 #include <vector>
 
 #include "core/body_state.h"
+#include "core/index.h"
+#include "core/model.h"
 #include "formulations/problem.h"
 #include "linsolve/csc_layout.h"
 
 namespace poinsot {
 
 inline constexpr double kDependent = 1e-9, kIndependent = 1e-5;
+inline constexpr double kVelocityRow = 32;
 
 // The numbers below `count` that are not among `some`; both ascending.
 std::vector<int> all_but(std::size_t count, const std::vector<int>& some);
@@ -38,14 +44,16 @@ class RowSpace {
   const std::vector<int>& rows() const { return rows_; }
   // Gᵀ, a column of unit length for each row; 0 where the gradient is nothing but rounding.
   const Eigen::SparseMatrix<double>& columns() const { return Gt_; }
-  // ‖g‖ by row; of a row that vanishes, that of its terms.
+  // ‖g‖ by row, of a velocity row kVelocityRow ‖g‖; of a row that vanishes, that of its terms.
   std::span<const double> lengths() const { return lengths_; }
   // What is left of the gradient of a row that can vanish, where it stands: 1 is as much as ever.
   double left_of(std::size_t k) const;
+  bool is_velocity_row(std::size_t k) const { return model_->rows[index(rows_[k])].type == RowType::pfaffian; }
   // Φ/‖g‖, m.
   void distances(std::span<double> out) const;
   // G v − ν and ν in the rows' own units, where it stands, with velocities v of intrinsic_formulation().
   void rates(std::span<const double> v, std::span<double> residual, std::span<double> nu);
+  double norm_of_row(std::size_t k) const { return is_velocity_row(k) ? lengths_[k] / kVelocityRow : lengths_[k]; }
   // m: of the larger of its bodies.
   double size_of_row(std::size_t k) const;
 

@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
@@ -216,10 +217,7 @@ Status Consistent::cross(State& at) {
   bool moved = false;
   const Status status = project(at, moved);
   if (!status.ok() || largest(span(moved_by_, 0, problem_.nv())) > kJump * std::max(1.0, largest(span(at.q)))) {
-    return {Failure::inconsistent_state, at.t,
-            fmt::format("at t = {:.9g} s {} prescribes a jump of positions, which no motion follows; let it pass "
-                        "through the values between",
-                        at.t, problem_.describe_unknown(problem_.nv() + static_cast<int>(jumping)))};
+    return jump_of_positions(at.t, problem_.describe_unknown(problem_.nv() + static_cast<int>(jumping)));
   }
   return moved ? accelerations(at) : Status{};  // velocities may have jumped: no refinement of those before
 }

@@ -1,5 +1,5 @@
 // A run of a one-step method under error control: steps tried, refused and accepted, samples between them, kinks and
-// jumps of the data stepped onto, pulses not stepped over, an exact end.
+// jumps of the data stepped onto, pulses and what laws do on the way not stepped over, an exact end.
 //
 // A Method is a stepper with: Status attempt(to, rejections, error), Status complete(error), Status interpolate(t),
 // interpolated(), take_back(), settle(), cross(t), state(); double first_step(end, singular_for), Run's; double
@@ -14,6 +14,7 @@
 #include "core/interruption.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
+#include "integrators/stepping/passed_laws.h"
 #include "integrators/stepping/pulses.h"
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/singular_position.h"
@@ -31,6 +32,7 @@ class Course {
         times(run.settings.every, run.settings.end),
         switches(run.problem.model(), run.settings.end, run.tell),
         pulses(run.problem.model(), run.settings.end, run.settings.rtol, run.tell),
+        laws(run.problem.model(), run.settings.end, run.settings.rtol, run.settings.absolute_tolerance(), run.tell),
         run_(run),
         clock_(clock) {}
 
@@ -49,6 +51,7 @@ class Course {
                                     row < 0 ? "" : run_.problem.describe_unknown(run_.problem.nv() + row));
   }
   double turned(double h) const { return h * run_.problem.fastest_turn(); }  // rad, the fastest body at its speed now
+  const Problem& problem() const { return run_.problem; }
   double end() const { return run_.settings.end; }
   // See Run::singular_for; 0 once the run is under way.
   double singular_for(double t) const { return t > 0 ? 0 : run_.singular_for; }
@@ -58,6 +61,7 @@ class Course {
   SampleTimes times;
   SwitchTimes switches;
   Pulses pulses;
+  PassedLaws laws;
 
  private:
   const Run& run_;
@@ -74,6 +78,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
   StepController controller(rule);
   Creeping creeping(end);
   const double singular_for = course.singular_for(method.state().t);
+  course.laws.begin(course.problem(), method.state());
   double h = method.first_step(end, singular_for);
   double usual = singular_for > 0 ? h : 0;  // length of the steps so far, those long ago forgotten
   int rejections = 0;                       // in a row
@@ -98,6 +103,13 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
         h = method.retry(h, ++rejections, usual);
         continue;
       }
+      if (const double seen = course.laws.reach(course.problem(), method.state()); seen < to) {
+        method.take_back();
+        ++course.statistics().rejected_steps;
+        creeping.limited();
+        h = seen - t;
+        continue;
+      }
       ++course.statistics().steps;
       course.statistics().largest_rotation = std::max(course.statistics().largest_rotation, course.turned(h));
       rejections = 0;
@@ -112,6 +124,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
         if (status.failure == Failure::refused) return status;
         if (status.failure == Failure::singular_position) return course.singular_sample(method.interpolated());
         method.take_back();
+        course.laws.take_back();
         --course.statistics().steps;
         ++course.statistics().rejected_steps;
         h = method.retry(controller.failed(to - t), ++rejections, 0);
@@ -133,6 +146,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
     if (crosses) {  // what error control has learnt is of the motion before
       controller = StepController(rule);
       creeping = Creeping(end);
+      course.laws.begin(course.problem(), method.state());
       h = method.first_step(end, 0);
     }
     if (leave()) return {};

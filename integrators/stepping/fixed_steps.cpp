@@ -6,6 +6,7 @@
 
 #include "core/interruption.h"
 #include "integrators/stepping/accept.h"
+#include "integrators/stepping/switch_times.h"
 
 namespace poinsot {
 
@@ -37,6 +38,10 @@ Status FixedSteps::march() {
   for (std::int64_t n = 1; n <= grid_.steps && status.ok(); ++n) {
     if (interruption_requested) {
       status = interrupted(x_.t);
+      break;
+    }
+    if (grid_.time(n) > run_.jumps_after) {
+      status = jump_of_positions(run_.jumps_after);
       break;
     }
     const bool sampled = grid_.sampled(n);

@@ -103,4 +103,35 @@ void SwitchTimes::say(Switching& of, const char* what, double t) const {
   if (tell_ && !std::exchange(of.told, true)) tell_(fmt::format("about t = {:.6g} s '{}' {}", t, of.f->text(), what));
 }
 
+double first_jump(const Model& model, double end) {
+  constexpr double kJump = 1e-9;  // relative, or of 1: more than rounding of a time leads to
+  const auto may_jump = [](const Expression& f) {
+    for (int k = 0; k < f.switch_count(); ++k)
+      if (f.switch_jumps(k)) return true;
+    return false;
+  };
+  std::vector<const Expression*> prescribed;
+  for (const Row& row : model.rows) {
+    if (row.type == RowType::pfaffian) continue;
+    if (may_jump(row.f)) prescribed.push_back(&row.f);
+    if (row.alternate && may_jump(row.alternate->f)) prescribed.push_back(&row.alternate->f);
+  }
+  if (prescribed.empty()) return std::numeric_limits<double>::infinity();
+  SwitchTimes times(model, end);
+  for (SwitchTimes::Switch at = times.first(0, end); at.before < end; at = times.first(at.after, end)) {
+    for (const Expression* f : prescribed) {
+      const double before = f->at(at.before).f, after = f->at(at.after).f;
+      if (at.before > 0 && std::abs(after - before) > kJump * std::max(1.0, std::abs(before))) return at.before;
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+Status jump_of_positions(double t, std::string_view what) {
+  return {Failure::inconsistent_state, t,
+          fmt::format("at t = {:.9g} s {} prescribes a jump of positions, which no motion follows; let it pass "
+                      "through the values between",
+                      t, what)};
+}
+
 }  // namespace poinsot

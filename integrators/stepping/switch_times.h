@@ -10,9 +10,11 @@
 #pragma once
 
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "core/model.h"
+#include "core/status.h"
 #include "integrators/integrator.h"
 
 namespace poinsot {
@@ -54,5 +56,10 @@ class SwitchTimes {
   double clear_to_ = 0;  // no switch between the last one that was asked for and here
   Switch found_;
 };
+
+// The last time before a prescribed position jumps, past the start and before `end`; none: infinity.
+double first_jump(const Model& model, double end);
+// The stop where it does, by `what`.
+Status jump_of_positions(double t, std::string_view what = "a driver or a constraint");
 
 }  // namespace poinsot

@@ -28,7 +28,8 @@ Status turned_too_far(const Problem& problem, double t, double h) {
   const Model& model = problem.model();
   const std::string name = turn.torsion >= 0
                                ? "torsion spring '" + model.torsions[index(turn.torsion)].spring.name + "'"
-                               : describe_row(model, turn.driver);
+                           : turn.driver >= 0 ? describe_row(model, turn.driver)
+                                              : describe_group(model, model.followed[index(turn.followed)].group);
   return {Failure::rotation_too_large, t,
           fmt::format("at t = {:.9g} s {} turns at {:.4g} rad/s, by {:.3g} rad in a step: beyond half a turn its turns "
                       "cannot be counted; try a step of at most {:.2g} s",

@@ -1,8 +1,8 @@
 // How far bodies turn in a step: what is measured, and what a step may not exceed.
 //
-// The angle of a torsion spring and a driven angle are told by positions up to full or half turns only; a step that
-// turns one by kMostCounted or more could miscount (a limit below π, because the rate varies within the step).
-// Methods with error control make their steps shorter, those with fixed steps stop.
+// The angle of a torsion spring, a driven angle and, where signals are asked for, that of a joint are told by positions
+// up to full or half turns only; a step that turns one by kMostCounted or more could miscount (a limit below π, because
+// the rate varies within the step). Methods with error control make their steps shorter, those with fixed steps stop.
 #pragma once
 
 #include "formulations/problem.h"

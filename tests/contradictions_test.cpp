@@ -1,0 +1,142 @@
+// Constraints that contradict one another, or themselves, later than the run begins: no run ends as if they held.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/input_error.h"
+#include "core/scene_reader.h"
+#include "integrators/start/rank.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+Scene contradicting(const std::string& rest, const char* pose = "") {
+  return parse_scene(R"json({"scene": 1, "name": "contradicting", "gravity": [0, -9.81, 0],
+    "bodies": [{"name": "rod", "mass": 1, "inertia": [0.1, 0.2, 0.3], "position": [0.5, 0, 0])json" +
+                         std::string(pose) + "}], " + rest + "}",
+                     "test");
+}
+const char* const kHinge = R"json("joints": [{"type": "revolute", "name": "hinge", "bodies": ["ground", "rod"],
+    "point": [0, 0, 0], "axis": [0, 0, 1]}])json";
+const char* const kClamp = R"json("joints": [{"type": "fixed", "name": "clamp", "bodies": ["ground", "rod"],
+    "point": [0, 0, 0]}])json";
+
+// All methods that take it, of dynamics and kinematics.
+std::vector<Settings> every_way(std::string_view formulation, double end) {
+  std::vector<Settings> all;
+  for (const IntegratorEntry& entry : integrators()) {
+    if (refusal_of(entry, formulation)) continue;
+    Settings s = controlled(entry.name, formulation, 1e-7, end, end / 10);
+    s.step = end / 500;
+    if (entry.analysis == Analysis::kinematics) {
+      s.integrator = Settings().integrator;
+      s.analysis = Analysis::kinematics;
+    }
+    all.push_back(s);
+  }
+  return all;
+}
+
+class Contradictions : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(All, Contradictions, ::testing::Values("rA", "rp", "reps"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_P(Contradictions, OfPositionsThatJumpEndTheRun) {
+  const Scene scene = contradicting(kHinge + std::string(R"json(, "drivers": [{"type": "angle", "bodies": ["ground",
+    "rod"], "axis": [0, 0, 1], "angle": "t^2 + 0.1*step(t - 0.505)"}])json"));
+  for (const Settings& settings : every_way(GetParam(), 1)) {
+    const Recorded r = run(scene, settings);
+    EXPECT_EQ(r.outcome.status.failure, Failure::inconsistent_state) << settings.integrator;
+    EXPECT_NEAR(r.outcome.status.time, 0.505, 1e-9) << settings.integrator;
+    EXPECT_THAT(r.outcome.status.message, HasSubstr("prescribes a jump of positions")) << settings.integrator;
+    EXPECT_EQ(r.samples.size(), 6u) << settings.integrator;
+  }
+}
+
+// A kink that a step() makes of something continuous is no jump.
+TEST_P(Contradictions, AreNotKinks) {
+  const Scene scene = contradicting(kHinge + std::string(R"json(, "drivers": [{"type": "angle", "bodies": ["ground",
+    "rod"], "axis": [0, 0, 1], "angle": "t^2 + (t - 0.505)*step(t - 0.505)"}])json"));
+  for (const Settings& settings : every_way(GetParam(), 1)) {
+    const Recorded r = run(scene, settings);
+    EXPECT_TRUE(r.outcome.status.ok()) << settings.integrator << r.outcome.status.message;
+  }
+}
+
+// −sin θ = sin t as a row, cos θ = g as its alternate: θ = −t.
+Scene with_alternate(const char* g) {
+  return contradicting(kHinge + std::string(R"json(, "constraints": [{"type": "DP1", "name": "motor",
+    "bodies": ["ground", "rod"], "a_i": [0, -1, 0], "a_j": [1, 0, 0], "f": "cos(t - pi/2)",
+    "alternate": {"a_i": [1, 0, 0], "a_j": [1, 0, 0], "f": ")json") +
+                       g + R"json("}}])json");
+}
+TEST_P(Contradictions, OfAnAlternateEndTheRun) {
+  for (const Settings& settings : every_way(GetParam(), 2)) {
+    const Recorded right = run(with_alternate("-sin(t - pi/2)"), settings);
+    EXPECT_TRUE(right.outcome.status.ok()) << settings.integrator << right.outcome.status.message;
+    const Recorded r = run(with_alternate("-sin(t - pi/2) + 0.01"), settings);
+    EXPECT_FALSE(r.outcome.status.ok()) << settings.integrator;
+    EXPECT_NEAR(r.outcome.status.time, std::asin(0.9), 0.2) << settings.integrator;
+    if (!integrators().require(settings.integrator).controls_error) {
+      EXPECT_THAT(r.outcome.status.message, HasSubstr("and its alternate contradict one another"))
+          << settings.integrator;
+    }
+  }
+}
+
+std::string blade(const char* a, const char* f) {
+  return std::string(R"json(, "constraints": [{"type": "pfaffian", "name": "blade", "bodies": ["ground", "rod"],
+    "a_j": )json") +
+         a + R"json(, "s_i": [0, 0, 0], "s_j": [0.3, 0.2, 0.1], "f": ")json" + f + R"json("}])json";
+}
+
+// A velocity row on a body that is held stands at zero where the run begins.
+TEST(VelocityRows, ThatContradictAreRefused) {
+  const Scene scene = contradicting(kClamp + blade("[1, 2, 3]", "0.2*t"));
+  try {
+    (void)simulate(scene, Settings(), {});
+    FAIL() << "nothing was said";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("m/s (velocity, at t = 0.001 s)"));
+  }
+}
+TEST_P(Contradictions, OfVelocitiesLaterEndTheRun) {
+  const Scene scene = contradicting(kClamp + blade("[1, 2, 3]", "0.2*max(0, t - 0.5)"));
+  for (const Settings& settings : every_way(GetParam(), 1)) {
+    if (settings.analysis == Analysis::kinematics) continue;
+    const Outcome outcome = simulate(scene, settings, {});
+    EXPECT_EQ(outcome.status.failure, Failure::constraint_lost) << settings.integrator;
+    EXPECT_THAT(outcome.status.message, HasSubstr("m/s: it followed from the other constraints"));
+  }
+}
+
+// Of a hinge and a velocity row that follows from it the latter is set aside: it keeps no positions.
+TEST_P(Contradictions, AreNotVelocityRowsThatFollow) {
+  for (const double angle : {0.3, 1.1, 2.0}) {
+    const std::string pose = fmt::format(R"(, "orientation": {{"axis": [1, 2, 2], "angle": {}}})", angle);
+    const Scene alone = contradicting(kHinge, pose.c_str());
+    const Vector3 axis = alone.bodies[0].orientation.transpose() * Vector3(0, 0, 1);
+    const std::string along = fmt::format("[{:.17g}, {:.17g}, {:.17g}]", axis.x(), axis.y(), axis.z());
+    const Scene scene = contradicting(kHinge + blade(along.c_str(), "0"), pose.c_str());
+    const auto model = std::make_shared<const Model>(compile(scene));
+    std::vector<BodyState> states(1);
+    states[0].r = scene.bodies[0].position, states[0].A = scene.bodies[0].orientation;
+    const RankAnalysis rank = analyze_rank(model, states, RankNames::none);
+    ASSERT_EQ(rank.aside.size(), 1u);
+    EXPECT_EQ(model->rows[static_cast<std::size_t>(rank.aside[0])].type, RowType::pfaffian) << angle;
+    for (const Settings& settings : every_way(GetParam(), 1)) {
+      if (settings.analysis == Analysis::kinematics) continue;
+      const Recorded with = run(scene, settings), without = run(alone, settings);
+      ASSERT_TRUE(with.outcome.status.ok()) << settings.integrator << with.outcome.status.message;
+      EXPECT_LT((with.samples.back().bodies[0].r - without.samples.back().bodies[0].r).norm(), 1e-6)
+          << settings.integrator;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace poinsot::test

@@ -1,0 +1,123 @@
+// Contacts and catches that a step could pass over: laws of springs that do much over little of the way.
+#include "integrators/stepping/passed_laws.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::IsEmpty;
+
+struct LawMethod {
+  std::string integrator, formulation;
+};
+std::vector<LawMethod> law_methods() {
+  std::vector<LawMethod> all;
+  for (const IntegratorEntry& entry : integrators())
+    for (const FormulationEntry& formulation : formulations())
+      if (entry.controls_error && !refusal_of(entry, formulation.name))
+        all.push_back({std::string(entry.name), std::string(formulation.name)});
+  return all;
+}
+
+Scene flying(const Vector3& velocity, const char* law, double length) {
+  Scene scene;
+  Body ball;
+  ball.name = "ball", ball.mass = 1, ball.inertia = Vector3(1, 1, 1).asDiagonal();
+  ball.position = {-1, 0, 0}, ball.velocity = velocity;
+  scene.bodies.push_back(ball);
+  Spring spring;
+  spring.j = 0, spring.length = length, spring.s_i = {-length, 0, 0};
+  spring.law = Expression::parse_law(law);
+  scene.forces.push_back(spring);
+  return scene;
+}
+
+Scene balls(const Vector3& gravity) {
+  Scene scene = flying({2, 0, 0}, "1e5*min(0, x)", 0.02);
+  scene.gravity = gravity;
+  Body other = scene.bodies[0];
+  other.name = "other", other.position.setZero(), other.velocity.setZero();
+  scene.bodies.push_back(other);
+  Spring& contact = std::get<Spring>(scene.forces[0]);
+  contact.i = 0, contact.j = 1;
+  contact.s_i.setZero();
+  return scene;
+}
+
+class PassedLawsTest : public ::testing::TestWithParam<LawMethod> {
+ protected:
+  Recorded moved(const Scene& scene, double end) const {
+    const Recorded r = run(scene, controlled(GetParam().integrator, GetParam().formulation, 1e-8, end, end));
+    EXPECT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    EXPECT_THAT(r.outcome.notices, IsEmpty());
+    return r;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, PassedLawsTest, ::testing::ValuesIn(law_methods()),
+                         [](const auto& test) { return test.param.integrator + "_" + test.param.formulation; });
+
+// Balls of equal mass that meet in line exchange their velocities, at rest in space as well as in free fall.
+TEST_P(PassedLawsTest, BallsThatMeetExchangeTheirVelocities) {
+  for (const double g : {0.0, 9.81}) {
+    const Recorded r = moved(balls({0, 0, -g}), 1);
+    ASSERT_EQ(r.samples.size(), 2u);
+    const auto& bodies = r.samples[1].bodies;
+    EXPECT_NEAR(bodies[0].rd.x(), 0, 1e-4) << g;
+    EXPECT_NEAR(bodies[1].rd.x(), 2, 1e-4) << g;
+    EXPECT_NEAR(bodies[0].r.x() + bodies[1].r.x(), 1, 1e-6) << g;
+    EXPECT_NEAR(bodies[0].rd.z(), -g, 1e-6) << g;
+    EXPECT_LT(r.outcome.statistics.steps, 2000) << g;
+  }
+}
+
+// A barrier of 10.6 or 5 J turns 2 J round, where it is smooth and where it has kinks; one of 1 J is passed.
+TEST_P(PassedLawsTest, BarriersThatAreThinTurnBodiesRound) {
+  for (const char* law : {"2000*exp(-(x/0.003)^2)", "5e6*max(0, 0.001 - abs(x))"}) {
+    const Recorded r = moved(flying({2, 0, 0}, law, 3), 1);
+    EXPECT_NEAR(r.samples.back().bodies[0].rd.x(), -2, 1e-4) << law;
+  }
+  const Recorded r = moved(flying({2, 0, 0}, "1e6*max(0, 0.001 - abs(x)) - 1e6*max(0, 0.001 - abs(x - 0.01))", 3), 1);
+  EXPECT_NEAR(r.samples.back().bodies[0].rd.x(), 2, 1e-4);
+}
+
+// A wheel that comes to a tooth of 0.8 J with 0.5 J turns back, whatever it carries.
+TEST_P(PassedLawsTest, CatchesTurnWheelsRound) {
+  Scene scene = flying({0, 0, 0}, "0", 0);
+  scene.forces.clear();
+  scene.bodies[0].position.setZero();
+  scene.bodies[0].angular_velocity = {0, 0, 1};
+  Joint hinge;
+  hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
+  scene.joints.push_back(hinge);
+  TorsionSpring tooth;
+  tooth.i = kGround, tooth.j = 0, tooth.axis = {0, 0, 1}, tooth.angle = 1;
+  tooth.law = Expression::parse_law("50*exp(-((x - 0.5)/0.01)^2)");
+  scene.forces.push_back(tooth);
+  const Recorded r = moved(scene, 3);
+  EXPECT_NEAR(r.samples.back().bodies[0].w.z(), -1, 1e-4);
+}
+
+// A point on a wheel comes to a post, in steps that could turn the wheel round and round.
+TEST_P(PassedLawsTest, PointsOnWheelsMeetPosts) {
+  Scene scene = flying({0, 0, 0}, "0", 0);
+  scene.forces.clear();
+  scene.bodies[0].position.setZero();
+  scene.bodies[0].angular_velocity = {0, 0, 10};
+  Joint hinge;
+  hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
+  scene.joints.push_back(hinge);
+  Spring post;
+  post.j = 0, post.s_i = {1, 0.001, 0}, post.s_j = Vector3(0, -1, 0), post.length = 0.01;
+  post.law = Expression::parse_law("1e7*min(0, x)");
+  scene.forces.push_back(post);
+  const Recorded r = moved(scene, 0.5);
+  EXPECT_NEAR(r.samples.back().bodies[0].w.z(), -10, 1e-4);  // 500 J hold 50
+}
+
+}  // namespace
+}  // namespace poinsot::test
