@@ -224,7 +224,7 @@ TEST(Rank, OfManyBodies) {
 // The hub is one by bodies that constrain nothing too often, and without its rows 204 of the others would be dependent,
 // with them 199: above and below the 200 that null vectors are found for.
 TEST(Rank, OfAHubBesideTheMostThatIsChosen) {
-  constexpr int kTriangles = 52, kPairs = 60, kBodies = kTriangles + 2 * kPairs;
+  constexpr int kTriangles = 52, kCouples = 60, kBodies = kTriangles + 2 * kCouples;
   Scene scene = hub(Hub::triangles, kTriangles - 1);
   const Scene free = free_bodies(kBodies);
   for (int b = kTriangles; b < kBodies; ++b)
@@ -237,7 +237,7 @@ TEST(Rank, OfAHubBesideTheMostThatIsChosen) {
   const auto model = std::make_shared<const Model>(compile(scene));
   const RankAnalysis found = analyze_rank(model, given_state(*model), RankNames::none);
   EXPECT_EQ(found.aside.size(), 199u);
-  EXPECT_EQ(found.rank, 6 * kTriangles - 1 + 9 * kPairs);
+  EXPECT_EQ(found.rank, 6 * kTriangles - 1 + 9 * kCouples);
   EXPECT_THAT(found.singular, IsEmpty());
 }
 
