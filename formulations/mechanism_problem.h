@@ -166,9 +166,13 @@ class MechanismProblem final : public Problem {
   void lower(std::span<const double> dq, std::span<double> z) const override { M::lower(dq.data(), z.data(), bodies_); }
 
   bool has_discrete_state() const override {
-    const auto& c = mechanism_.c;
-    return F::space == CoordinateSpace::charts || !c.twist.empty() || !c.followed.empty() ||
-           !c.alternate_stood_in.empty();
+    return F::space == CoordinateSpace::charts || !mechanism_.c.twist.empty() || !mechanism_.c.followed.empty();
+  }
+  bool exchanges_rows() const override {
+    const std::vector<char>& stood = mechanism_.c.alternate_stood_in;
+    for (std::size_t k = 0; k < stood.size(); ++k)
+      if (stood[k] != alternate_stands_in(k)) return true;
+    return false;
   }
   Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double>,
                 bool& rewritten) override {
@@ -262,6 +266,11 @@ class MechanismProblem final : public Problem {
   }
 
  private:
+  bool alternate_stands_in(std::size_t k) const {
+    const AlternateRow& row = mechanism_.c.elements->alternates[k];
+    const DP1Row& now = mechanism_.c.dp1[static_cast<std::size_t>(row.primary)];
+    return now.u == row.alternate.u && now.v == row.alternate.v && now.f == row.alternate.f;
+  }
   // A row and its alternate tell the same motion where one takes the other's place: with the one that stands now
   // satisfied, so is the one that stood.
   Status exchange_alternates(double t) {
@@ -269,8 +278,7 @@ class MechanismProblem final : public Problem {
     auto& c = mechanism_.c;
     for (std::size_t k = 0; k < c.alternate_stood_in.size(); ++k) {
       const AlternateRow& row = c.elements->alternates[k];
-      const DP1Row& now = c.dp1[static_cast<std::size_t>(row.primary)];
-      const char stands = now.u == row.alternate.u && now.v == row.alternate.v && now.f == row.alternate.f;
+      const char stands = alternate_stands_in(k);
       char& stood = c.alternate_stood_in[k];
       if (stood == stands) continue;
       const DP1Row& other = stands ? row.normal : row.alternate;

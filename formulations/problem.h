@@ -107,8 +107,10 @@ class Problem {
   // z ← T(dq)⁻¹ z for the body part of a solution: the acceleration correction δa.
   virtual void lower(std::span<const double> dq, std::span<double> z) const = 0;
 
-  // Whether accept() has anything to do.
+  // Whether accept() has something to do after every step.
   virtual bool has_discrete_state() const = 0;
+  // Whether it has where the problem stands: rows stand in for others than when it was called last.
+  virtual bool exchanges_rows() const = 0;
   // The step to (t, q, v) is accepted, and the problem stands there. What is discrete is brought up to date: turns of
   // torsion springs and angles that are followed, the body-fixed frames of reps, the choice among rows that depend on
   // one another. May rewrite q, v, a and λ (not what they mean) and says so; then set_position and set_velocity are due

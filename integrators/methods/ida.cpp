@@ -103,7 +103,7 @@ class Session {
   // What is discrete follows the motion as IDA has it, off the constraints by its tolerance. Where that seems to be off
   // rows that are set aside, a state on the constraints decides.
   Status keep_up(double t) {
-    if (!problem_.has_discrete_state()) return {};
+    if (!problem_.has_discrete_state() && !problem_.exchanges_rows()) return {};
     ida_.read_end(t, next_);
     problem_.set_position(t, span(next_.q));
     problem_.set_velocity(span(next_.v));

@@ -65,7 +65,7 @@ class Kinematics final : public FixedSteps {
     clock_.start();
     if (Status status = find(0, settings_.tolerance); !status.ok()) return status;
     orientation_ = system_.orientation();
-    if (problem_.has_discrete_state()) {
+    if (problem_.has_discrete_state() || problem_.exchanges_rows()) {
       if (Status status = accept(problem_); !status.ok()) return status;
     }
     return give_out(problem_);

@@ -78,6 +78,7 @@ class OverConstrained final : public Problem {
   std::string describe_unknown(int k) const override { return kept_->describe_unknown(k); }
 
   bool has_discrete_state() const override { return true; }
+  bool exchanges_rows() const override { return kept_->exchanges_rows(); }
   Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double> lambda,
                 bool& rewritten) override;
   bool choose_rows_here(double t, std::span<const double> q, std::span<const double> v,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "core/interruption.h"
@@ -22,6 +23,8 @@ FixedSteps::FixedSteps(const Run& run)
       q_n_(run.state.q),
       v_n_(run.state.v),
       discrete_(run.problem.has_discrete_state()),
+      has_alternates_(
+          std::ranges::any_of(run.problem.model().rows, [](const Row& row) { return row.alternate != nullptr; })),
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
       singular_ends_(run.settings),
       output_(run.settings) {}
@@ -82,9 +85,10 @@ Status FixedSteps::reach(double t, bool sampled) {
   start_ = settled ? Start::limit : Start::usual;
   rows_asked_ = false;
   ++run_.statistics.steps;
-  if (!discrete_ && !sampled) return {};
+  const bool due = discrete_ || (has_alternates_ && last_seen().exchanges_rows());
+  if (!due && !sampled) return {};
   standing_ = &stand();
-  return discrete_ ? accept(*standing_) : Status{};
+  return due ? accept(*standing_) : Status{};
 }
 
 Status FixedSteps::begin() {

@@ -133,7 +133,9 @@ class FixedSteps {
   // Whether the step ends on the branch that its velocities lead to.
   Status check_branch(Problem& problem);
 
-  const bool discrete_, chooses_;  // something is to be brought up to date; rows among those that are redundant
+  const bool discrete_;        // something is to be brought up to date after every step
+  const bool has_alternates_;  // or where rows stand in for others
+  const bool chooses_;         // rows among those that are redundant
   Start start_ = Start::usual;
   OnBranch on_branch_ = OnBranch::asked;
   bool rows_asked_ = false;      // other rows were asked for where the step under way begins
