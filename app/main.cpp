@@ -146,7 +146,8 @@ int main(int argc, char** argv) {
   CLI::App app("Poinsot: constrained rigid multibody dynamics in three formulations", "poinsot");
   app.footer(
       "Exit status: 0 done; 2 the input is wrong and nothing was written; 3 the numerics failed and what was computed\n"
-      "up to there is kept, marked incomplete; 128 + n ended by signal n (Ctrl-C 130), likewise.");
+      "up to there is kept, marked incomplete; 128 + n ended by signal n (Ctrl-C 130), which run,\n"
+      "chart, study, stability and figures do likewise.");
   app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   for (const auto add :

@@ -22,7 +22,10 @@ void print(std::FILE* out, const Verification& verification) {
     if (q.apart > 0) fmt::print(out, " {} at t = {:g} s", printable(q.where), q.t);
     if (q.order) fmt::print(out, ", order {:.2f}", *q.order);
     if (q.order_unseen) fmt::print(out, ", order not seen");
-    if (q.error) fmt::print(out, ", so the error is about {:.2g}", *q.error);
+    if (q.error)
+      fmt::print(out, ", so the error is about {:.2g}", *q.error);
+    else if (q.order)
+      fmt::print(out, ": the step is too long to tell the error");
     fmt::print(out, "\n");
   }
   if (!verification.failure.empty())
