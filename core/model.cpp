@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <utility>
 
 #include "core/check.h"
@@ -176,6 +177,10 @@ class Compiler {
 };
 
 }  // namespace
+
+bool has_alternates(const Model& model) {
+  return std::ranges::any_of(model.rows, [](const Row& row) { return row.alternate != nullptr; });
+}
 
 Model compile(const Scene& scene) {
   with_names_of_errors(scene, [&] { validate(scene); });

@@ -28,4 +28,9 @@ inline constexpr double kDerivativeTolerance = 1e-9;
 // The sensitivity that a callback gives is compared with differences of its loads, which rounding leaves eight digits.
 inline constexpr double kDifferenceTolerance = 1e-5;
 
+// Every constraint, joint, driver and force of the model at the states, in formulation F. Defined in
+// derivative_checker.h; for the formulations in the list derivative_checks.cpp has them all.
+template <class F>
+std::vector<DerivativeCheck> check_derivatives_in(const Model& model, std::span<const BodyState> states);
+
 }  // namespace poinsot

@@ -173,8 +173,7 @@ class DerivativeChecker {
   DualVector dual_q_, dual_v_;
 };
 
-// Every constraint, joint, driver and force of the model at the states.
-template <Formulation F>
+template <class F>
 std::vector<DerivativeCheck> check_derivatives_in(const Model& model, std::span<const BodyState> states) {
   check(states.size() == model.bodies.size(), "the derivative check has a state for every body");
   static constexpr std::string_view kKinds[] = {"constraint", "joint", "driver"};

@@ -1,14 +1,18 @@
-// The derivative checks of the formulations in the list, which need not be as fast as what runs.
-#include <span>
-#include <vector>
+// The derivative checks of the formulations in the list. They stand apart, since optimized as what runs is they would
+// take as long to compile.
+#include <array>
 
 #include "formulations/derivative_checker.h"
 #include "formulations/list.h"
 
 namespace poinsot {
+namespace {
 
-template std::vector<DerivativeCheck> check_derivatives_in<RA>(const Model&, std::span<const BodyState>);
-template std::vector<DerivativeCheck> check_derivatives_in<RP>(const Model&, std::span<const BodyState>);
-template std::vector<DerivativeCheck> check_derivatives_in<REPS>(const Model&, std::span<const BodyState>);
+template <class... F>
+struct Checks {
+  static constexpr std::array all{&check_derivatives_in<F>...};
+};
+[[gnu::used]] constexpr auto kChecks = WithFormulations<Checks>::all;  // instantiates them
 
+}  // namespace
 }  // namespace poinsot

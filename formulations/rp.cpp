@@ -4,9 +4,6 @@
 
 namespace poinsot {
 
-// In derivative_checks.cpp: optimized as what runs is, it would take as long to compile as that.
-extern template std::vector<DerivativeCheck> check_derivatives_in<RP>(const Model&, std::span<const BodyState>);
-
 template FormulationEntry formulation_entry<RP>();
 
 }  // namespace poinsot

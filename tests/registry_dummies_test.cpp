@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "core/input_error.h"
+#include "formulations/derivative_checker.h"
 #include "formulations/formulation_entry.h"
 #include "formulations/rA.h"
 #include "integrators/settings_reader.h"

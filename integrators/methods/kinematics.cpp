@@ -41,8 +41,7 @@ class Kinematics final : public FixedSteps {
         refresh_(jacobians().require(settings_.jacobian).refresh),
         // (auto answers this hint with klu or dense, which know determinants' signs)
         system_(problem_, run.systems.add(Workload::transposed), MatrixKind::kinematic, run.statistics, clock_),
-        rows_change_(
-            std::ranges::any_of(problem_.model().rows, [](const Row& row) { return row.alternate != nullptr; })),
+        rows_change_(has_alternates(problem_.model())),
         delta_(nc_),
         q_next_(problem_.nq()),
         dq_(nv_),

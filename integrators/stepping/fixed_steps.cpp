@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "core/interruption.h"
@@ -23,8 +22,7 @@ FixedSteps::FixedSteps(const Run& run)
       q_n_(run.state.q),
       v_n_(run.state.v),
       discrete_(run.problem.has_discrete_state()),
-      has_alternates_(
-          std::ranges::any_of(run.problem.model().rows, [](const Row& row) { return row.alternate != nullptr; })),
+      has_alternates_(has_alternates(run.problem.model())),
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
       singular_ends_(run.settings),
       output_(run.settings) {}
