@@ -68,6 +68,20 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   return fmt::format("{}; see {} --help", what, command);
 }
 
+// Files, folders and lists whose name is empty, as of a variable of the shell that is not set, are not those that were
+// left out.
+void refuse_nothing(CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const char* expected = type == "DIR"                                                    ? "a folder"
+                         : type == "NAMES"                                                ? "names"
+                         : type.starts_with("FILE") || type == "SCENE" || type == "STUDY" ? "a file"
+                                                                                          : nullptr;
+  if (!expected) return;
+  option.check([expected](const std::string& value) {
+    return value.empty() ? fmt::format("found \"\", expected {}", expected) : std::string();
+  });
+}
+
 // A descriptor that was closed would become that of the next file opened. What is put in its place takes nothing and
 // gives nothing, so that text that is lost is noticed.
 void hold_standard_descriptors() {
@@ -155,8 +169,10 @@ int main(int argc, char** argv) {
         add_chart, add_advise, add_study, add_stability, add_figures, add_completion, add_manual})
     add(app, status);
   for (CLI::App* command : app.get_subcommands({}))
-    for (CLI::Option* option : command->get_options())
+    for (CLI::Option* option : command->get_options()) {
       if (option->get_items_expected_max() == 0) option->disable_flag_override();
+      refuse_nothing(*option);
+    }
 
   return run_program(app, argc, argv, status);
 }

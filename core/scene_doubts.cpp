@@ -130,14 +130,33 @@ void tell_axes(const Model& model, std::vector<std::string>& sentences) {
   if (doubts > 0) sentences.push_back(first);
 }
 
+const double kSquareOverflows = std::sqrt(std::numeric_limits<double>::max());
+
+std::string too_large(const std::string& whose, std::string_view what, double size) {
+  return fmt::format("{} has a {} of {:.3g}, whose square is beyond the numbers of a computer", whose, what, size);
+}
+
 }  // namespace
 
+std::string overflowing_length(const Model& model) {
+  for (std::size_t k = 0; k < model.rows.size(); ++k) {
+    const Row& row = model.rows[k];
+    const double size = std::max(row.s_i.cwiseAbs().maxCoeff(), row.s_j.cwiseAbs().maxCoeff());
+    if (size > kSquareOverflows) return too_large(describe_row(model, static_cast<int>(k)), "length", size);
+    for (const int b : {row.i, row.j}) {
+      if (b == kGround) continue;
+      const Body& body = model.bodies[static_cast<std::size_t>(b)];
+      const double far = body.position.cwiseAbs().maxCoeff();
+      if (far > kSquareOverflows) return too_large(fmt::format("body '{}'", body.name), "coordinate", far);
+    }
+  }
+  return {};
+}
+
 std::string overflowing(const Model& model, double t) {
-  const double limit = std::sqrt(std::numeric_limits<double>::max());
   std::string found;
   const auto look = [&](const std::string& whose, std::string_view what, double size) {
-    if (found.empty() && size > limit)
-      found = fmt::format("{} has a {} of {:.3g}, whose square is beyond the numbers of a computer", whose, what, size);
+    if (found.empty() && size > kSquareOverflows) found = too_large(whose, what, size);
   };
   for (const Body& body : model.bodies) {
     const std::string name = fmt::format("body '{}'", body.name);
@@ -151,7 +170,7 @@ std::string overflowing(const Model& model, double t) {
     const Row& row = model.rows[k];
     const double size =
         std::max({row.s_i.cwiseAbs().maxCoeff(), row.s_j.cwiseAbs().maxCoeff(), std::abs(row.f.at(t).f)});
-    if (size > limit) look(describe_row(model, static_cast<int>(k)), "length", size);
+    if (size > kSquareOverflows) look(describe_row(model, static_cast<int>(k)), "length", size);
   }
   for (const Spring& spring : model.springs) {
     look(fmt::format("force '{}'", spring.name), "stiffness", std::abs(spring.stiffness));

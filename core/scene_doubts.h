@@ -1,4 +1,4 @@
-// What a sound scene holds that nobody would mean: told, never refused.
+// What a sound scene holds that nobody would mean: told, and not refused but for lengths that no run can judge.
 #pragma once
 
 #include <string>
@@ -14,5 +14,8 @@ std::vector<std::string> scene_doubts(const Model& model);
 // The last of these alone, with functions of time as they stand at t: why a run of the model is not finite, or finds no
 // step short enough. Empty where there is none.
 std::string overflowing(const Model& model, double t = 0);
+// A length of a constraint, or of a body that one holds, whose square overflows: what rows are worth is judged by those
+// squares, so that no motion of the model can be trusted. Empty where there is none.
+std::string overflowing_length(const Model& model);
 
 }  // namespace poinsot

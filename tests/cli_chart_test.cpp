@@ -173,7 +173,7 @@ TEST_F(Chart, SaysWhatIsWrong) {
   says({"chart", "pendulum.json", "--formulations", "rA,reps", "--integrators", "ida"},
        "--integrators, --formulations: integrator 'ida' refuses formulation 'rA': it needs a vector space of "
        "coordinates with their rates as velocities, which is rp");
-  says({"chart", "pendulum.json", "--out", ""}, "--out: found \"\", expected a folder");
+  says({"chart", "pendulum.json", "--out", ""}, "--out: found \"\", expected a folder; see poinsot chart --help");
   says({"chart", "pendulum.json", "--end", "0"}, "--end: found \"0\", expected a number greater than 0");
   EXPECT_EQ(files(), before);
   write("conflicting.json", kConflicting);

@@ -57,6 +57,14 @@ TEST_F(WrongInput, Usage) {
                  "poinsot: --step: expected one value, once; see poinsot run --help");
   expect_refused({"run", "pendulum.json", "--step", "1", "--step", "2"},
                  "poinsot: --step: expected one value, once; see poinsot run --help");
+  for (const char* file : {"--out", "--reactions", "--signals", "--save-state", "--config"})
+    expect_refused({"run", "pendulum.json", file, ""},
+                   fmt::format("poinsot: {}: found \"\", expected a file; see poinsot run --help", file));
+  expect_refused({"run", "pendulum.json", "--bodies", ""},
+                 "poinsot: --bodies: found \"\", expected names; see poinsot run --help");
+  expect_refused({"advise", "pendulum.json", "--cache", ""},
+                 "poinsot: --cache: found \"\", expected a folder; see poinsot advise --help");
+  expect_refused({"run", ""}, "poinsot: scene: found \"\", expected a file; see poinsot run --help");
   expect_refused({"run", "pendulum.json", "--quiet=no"}, "poinsot: --quiet: expected no value; see poinsot run --help");
   expect_refused({"make"}, "poinsot: found no structure, expected poinsot make STRUCTURE; see poinsot make --help");
   expect_refused({"make", "chain", "--bodies", "2.5"},

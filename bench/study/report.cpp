@@ -67,7 +67,6 @@ std::string csv(const Table& table, const std::vector<std::string>& foot) {
 }
 
 void make_folder(const fs::path& directory) {
-  if (directory.empty()) throw InputError("--out: found \"\", expected a folder");
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) throw InputError(fmt::format("{}: the folder cannot be made: {}", directory.string(), error.message()));

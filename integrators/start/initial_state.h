@@ -28,7 +28,8 @@ struct InitialState {
 };
 
 // Throws InputError where the scene asks for what cannot be: conflicting constraints, a pose far from the constraints,
-// a violated state with Assembly::never. `rank`: that of the given state, where it is known already.
+// a violated state with Assembly::never, lengths whose squares overflow. `rank`: that of the given state, where it is
+// known already.
 InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings,
                                 const RankAnalysis* rank = nullptr);
 
