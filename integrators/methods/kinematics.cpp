@@ -24,6 +24,9 @@ constexpr double kSlow = 0.1;
 // one about the prediction then), and up to this turn of a driven angle.
 constexpr double kContraction = 0.25;
 constexpr double kFullTurn = 1;
+// So far from its prediction a body may as well be turned over: a hinge holds with its axis reversed, too, and no sign
+// of a determinant tells. In coordinates of orientation.
+constexpr double kFarOff = 0.25;
 // Where so small a part of a step is not certain the position is examined, and is singular where a row is independent
 // of the others by no more than kSingular of its length: beside a singular position others are known to rounding's
 // root.
@@ -64,6 +67,7 @@ class Kinematics final : public FixedSteps {
     clock_.start();
     if (Status status = find(0, settings_.tolerance); !status.ok()) return status;
     orientation_ = system_.orientation();
+    rate_from_ = problem_.counted_turn().rate;
     if (problem_.has_discrete_state() || problem_.exchanges_rows()) {
       if (Status status = accept(problem_); !status.ok()) return status;
     }
@@ -135,11 +139,14 @@ class Kinematics final : public FixedSteps {
   // Whether x_ is where the motion from q_from_ leads, over a time h to t; if so it is what the next is compared with.
   bool certain(double h, double t) {
     if (contraction_ > kContraction) return false;
-    if (h * problem_.counted_turn().rate > kFullTurn) return false;
+    const double rate = problem_.counted_turn().rate;
+    if (h * std::max(rate, rate_from_) > kFullTurn) return false;
+    if (problem_.leads_through_singularity(span(q_from_), span(x_.q))) return false;  // nor do signs below tell a fold
     if (comes_to_singular_position(h, t)) return false;
     const std::uint64_t here = system_.orientation();
     if (here != orientation_ && !(rows_change_ && here == orientation_before(t))) return false;
     orientation_ = here;
+    rate_from_ = rate;
     return true;
   }
 
@@ -267,10 +274,11 @@ class Kinematics final : public FixedSteps {
         // Beside a singular position corrections are as large as can be, and what they shrink by says nothing.
         first = correction;
         if (first > std::sqrt(problem_.bodies()) * std::max(1.0, x_.q.cwiseAbs().maxCoeff())) contraction_ = INFINITY;
+        if (first > kFarOff && largest_turn() > kFarOff) contraction_ = INFINITY;
       }
       if (k == 1 && first > kStill) contraction_ = std::max(contraction_, correction / first);
       if (correction < tolerance) return {};
-      if (careful_ && k > 1 && correction > 0.5 * before && correction < kRounding) return {};
+      if (careful_ && k > 1 && correction > 0.9 * before && correction < kRounding) return {};
     }
     Eigen::Index largest = 0;
     delta_.cwiseAbs().maxCoeff(&largest);
@@ -280,6 +288,12 @@ class Kinematics final : public FixedSteps {
                         "than it can reach; else try more iterations or a larger tolerance",
                         t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
                         problem_.describe_unknown(static_cast<int>(largest)))};
+  }
+
+  // Of a body, by a correction.
+  double largest_turn() const {
+    const Eigen::Index bodies = problem_.bodies(), size = nv_ / bodies;
+    return delta_.head(nv_).reshaped(size, bodies).bottomRows(size - 3).colwise().norm().maxCoeff();
   }
 
   Status find_rates(double t) {
@@ -307,6 +321,7 @@ class Kinematics final : public FixedSteps {
   bool slow_ = false;            // corrections did not shrink as they should
   double contraction_ = 0;       // second correction over the first
   std::uint64_t orientation_ = 0;
+  double rate_from_ = 0;  // rad/s, of counted turns, where a step begins
 };
 
 }  // namespace

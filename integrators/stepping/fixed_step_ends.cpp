@@ -62,7 +62,11 @@ Status FixedSteps::check_turns(Problem& problem, double t) {
 // The rotation in a step is h ω; that of the one before is what the motion leads to.
 Status FixedSteps::check_velocity(Problem& problem, double t) {
   change_ = x_.v - v_n_;
-  problem.set_velocity(span(change_));
+  return check_moved(problem, change_, t);
+}
+
+Status FixedSteps::check_moved(Problem& problem, const Vector& by, double t) {
+  problem.set_velocity(span(by));
   const double unexpected = h_ * problem.fastest_turn();
   if (unexpected < kMostUnexpected) {
     problem.set_velocity(span(x_.v));

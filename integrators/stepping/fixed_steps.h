@@ -47,6 +47,9 @@ class FixedSteps {
   virtual Status check_turns(Problem& problem, double t);
   // Whether its velocity goes on from that before, as far as it turns bodies.
   virtual Status check_velocity(Problem& problem, double t);
+  // Whether h times this, by which a step goes beyond what its beginning leads to, turns bodies too little for another
+  // branch.
+  Status check_moved(Problem& problem, const Vector& by, double t);
   // Brings the discrete state up to date; `problem` stands at x_ before and after.
   virtual Status accept(Problem& problem);
   // Before the step that follows an accept() which has rewritten coordinates or rows.
