@@ -85,14 +85,11 @@ concept FormulationOn = FormulationState<F, T> &&
   { F::angular_acceleration(at, rate, xd, xdd) } -> std::same_as<Vec3<T>>;
 };
 
-// Charts are changed between steps, on doubles only: x, ẋ and ẍ rewritten in place, true where they were; and whether
-// the way from x to y in a chart leads through where it is singular.
+// Charts are changed between steps, on doubles only: x, ẋ and ẍ rewritten in place, true where they were.
 template <class F>
 concept Rechartable = requires(const typename F::template Position<double>& at,
-                               const typename F::template Velocity<double>& rate, const double* y, double* x,
-                               double* xd, double* xdd) {
+                               const typename F::template Velocity<double>& rate, double* x, double* xd, double* xdd) {
   { F::rechart(at, rate, x, xd, xdd) } -> std::same_as<bool>;
-  { F::leads_through_singularity(x, y) } -> std::same_as<bool>;
 };
 
 template <class F>

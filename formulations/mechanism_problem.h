@@ -165,16 +165,6 @@ class MechanismProblem final : public Problem {
   }
   void lower(std::span<const double> dq, std::span<double> z) const override { M::lower(dq.data(), z.data(), bodies_); }
 
-  bool leads_through_singularity(std::span<const double> q, std::span<const double> to) const override {
-    if constexpr (F::space == CoordinateSpace::charts) {
-      for (int b = 0; b < bodies_; ++b) {
-        const int x = b * M::kQ + 3;
-        if (F::leads_through_singularity(q.data() + x, to.data() + x)) return true;
-      }
-    }
-    return false;
-  }
-
   bool has_discrete_state() const override {
     return F::space == CoordinateSpace::charts || !mechanism_.c.twist.empty() || !mechanism_.c.followed.empty();
   }

@@ -107,10 +107,6 @@ class Problem {
   // z ← T(dq)⁻¹ z for the body part of a solution: the acceleration correction δa.
   virtual void lower(std::span<const double> dq, std::span<double> z) const = 0;
 
-  // Whether the way from q to another position leads through where coordinates are singular: there they can fold over,
-  // and determinants of matrices in them change their signs.
-  virtual bool leads_through_singularity(std::span<const double> q, std::span<const double> to) const = 0;
-
   // Whether accept() has something to do after every step.
   virtual bool has_discrete_state() const = 0;
   // Whether it has where the problem stands: rows stand in for others than when it was called last.

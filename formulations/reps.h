@@ -209,10 +209,6 @@ struct REPS {
     rates_from<double>(there, wd - bias, xdd);
     return true;
   }
-  // sin θ, and with it det W, changes its sign.
-  static bool leads_through_singularity(const double* x, const double* y) {
-    return !(std::sin(x[1]) * std::sin(y[1]) > 0);
-  }
 
  private:
   // ∂W_k/∂ε_l: a later axis is turned by an earlier angle, W_l × W_k for l < k, else 0.

@@ -141,7 +141,6 @@ class Kinematics final : public FixedSteps {
     if (contraction_ > kContraction) return false;
     const double rate = problem_.counted_turn().rate;
     if (h * std::max(rate, rate_from_) > kFullTurn) return false;
-    if (problem_.leads_through_singularity(span(q_from_), span(x_.q))) return false;  // nor do signs below tell a fold
     if (comes_to_singular_position(h, t)) return false;
     const std::uint64_t here = system_.orientation();
     if (here != orientation_ && !(rows_change_ && here == orientation_before(t))) return false;

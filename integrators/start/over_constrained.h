@@ -77,9 +77,6 @@ class OverConstrained final : public Problem {
   CountedTurn counted_turn() const override { return kept_->counted_turn(); }
   std::string describe_unknown(int k) const override { return kept_->describe_unknown(k); }
 
-  bool leads_through_singularity(std::span<const double> q, std::span<const double> to) const override {
-    return kept_->leads_through_singularity(q, to);
-  }
   bool has_discrete_state() const override { return true; }
   bool exchanges_rows() const override { return kept_->exchanges_rows(); }
   Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double> lambda,
