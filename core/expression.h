@@ -115,6 +115,10 @@ class Expression {
     if (parsed_->function) return {Bounds::unknown(), Bounds::unknown(), Bounds::unknown()};
     return tape_range(parsed_->tape, at);
   }
+  // Of a law, by x in the place of time.
+  Jet2<Bounds> law_range(const Arguments<Bounds>& at) const {
+    return parsed_ ? tape_range(parsed_->tape, at, TapeOp::elongation) : range(at);
+  }
 
   // Why f, or one of its first `derivatives` derivatives with time, is not finite at t, as a sentence's part:
   // "'1/(t - 1)' is not finite", "'road(t)': table 'road' has no value at 2.5: its points go from 0 to 2"; empty where

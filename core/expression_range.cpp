@@ -145,9 +145,10 @@ Jet operation(TapeOp op, const Jet& x, const Jet& y) {
   }
 }
 
-// watch(instruction, x, y) sees every function and operator before it is applied, until it returns true.
+// The derivatives are those by `by`. watch(instruction, x, y) sees every function and operator before it
+// is applied, until it returns true.
 template <class Watch>
-Jet run(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, Watch watch) {
+Jet run(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, TapeOp by, Watch watch) {
   constexpr Jet unknown{Bounds::unknown(), Bounds::unknown(), Bounds::unknown()};
   Jet stack[kTapeStack];
   Jet* top = stack;  // one past the topmost value
@@ -155,8 +156,8 @@ Jet run(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, Watc
     if (instruction.op == TapeOp::constant) {
       *top++ = {{instruction.value, instruction.value}, {}, {}};
     } else if (arity(instruction.op) == 0) {
-      const bool time = instruction.op == TapeOp::time;
-      *top++ = {time ? at.t : instruction.op == TapeOp::rate ? at.v : at.x, time ? Bounds{1, 1} : Bounds{}, {}};
+      const TapeOp op = instruction.op;
+      *top++ = {op == TapeOp::time ? at.t : op == TapeOp::rate ? at.v : at.x, op == by ? Bounds{1, 1} : Bounds{}, {}};
     } else if (arity(instruction.op) == 1) {
       if (watch(instruction, top[-1].f, Bounds{})) break;
       top[-1] = top[-1].f.is_unknown() ? unknown : after(top[-1], function(instruction, top[-1].f));
@@ -172,13 +173,13 @@ Jet run(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, Watc
 
 }  // namespace
 
-Jet2<Bounds> tape_range(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at) {
-  return run(tape, at, [](const TapeInstruction&, Bounds, Bounds) { return false; });
+Jet2<Bounds> tape_range(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, TapeOp by) {
+  return run(tape, at, by, [](const TapeInstruction&, Bounds, Bounds) { return false; });
 }
 
 Bounds tape_switch_range(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, int k) {
   Bounds found = Bounds::unknown();
-  run(tape, at, [&](const TapeInstruction& instruction, Bounds x, Bounds y) {
+  run(tape, at, TapeOp::time, [&](const TapeInstruction& instruction, Bounds x, Bounds y) {
     if (!has_switch(instruction.op) || k-- > 0) return false;
     const bool known = !x.is_unknown() && !y.is_unknown();
     if (known) found = arity(instruction.op) == 1 ? x : x - y;

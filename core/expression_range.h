@@ -13,7 +13,8 @@
 
 namespace poinsot {
 
-Jet2<Bounds> tape_range(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at);
+// The derivatives are those by one of the variables.
+Jet2<Bounds> tape_range(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, TapeOp by = TapeOp::time);
 
 // Of the switch k, in the order of the tape.
 Bounds tape_switch_range(std::span<const TapeInstruction> tape, const Arguments<Bounds>& at, int k);

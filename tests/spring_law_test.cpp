@@ -98,6 +98,7 @@ TEST(SpringLaw, stores_the_integral_of_its_force) {
   EXPECT_NEAR(stored("-2000*exp(-(x/0.003)^2)", -1), 3 * std::sqrt(M_PI), 1e-13);
   EXPECT_NEAR(stored("1e6*min(0, abs(x) - 0.001)", 1), -0.5, 1e-13);
   EXPECT_NEAR(stored("1e6*max(0, 0.001 - abs(x - 0.3))", 1), 1, 1e-12);
+  EXPECT_NEAR(stored("1 - 2000*exp(-((x - 0.33)/0.003)^2)", 1), 1 - 6 * std::sqrt(M_PI), 1e-12);
   // From 0 these are infinite.
   EXPECT_NEAR(stored("0.001/x^2", 2), 0.0005, 1e-17);
   EXPECT_NEAR(stored("0.001/x^2", 1e-3), -0.999, 1e-13);

@@ -25,6 +25,7 @@ FixedSteps::FixedSteps(const Run& run)
       has_alternates_(has_alternates(run.problem.model())),
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
       singular_ends_(run.settings),
+      passed_(run.problem.model(), run.settings.end, run.tell),
       output_(run.settings) {}
 
 Status FixedSteps::march() {
@@ -33,6 +34,7 @@ Status FixedSteps::march() {
   if (status.ok()) status = measure_rotation(problem_, 0);
   settles_ = settings_.retry && integrates();
   branch_.begin(problem_, x_.a());
+  if (integrates() && passed_.due(h_)) passed_.look(problem_, x_, h_);
   if (run_.singular_for > 0) start_ = Start::limit;
   divides_ = settings_.retry && divides();
   repeats_ = divides_ && !remembers();
@@ -80,6 +82,7 @@ Status FixedSteps::reach(double t, bool sampled) {
     return status;
   }
   branch_.follow();
+  if (integrates() && passed_.due(h_)) passed_.look(last_seen(), x_, h_);
   start_ = settled ? Start::limit : Start::usual;
   rows_asked_ = false;
   ++run_.statistics.steps;

@@ -14,6 +14,7 @@
 #include "integrators/stepping/branch.h"
 #include "integrators/stepping/index1_output.h"
 #include "integrators/stepping/observe.h"
+#include "integrators/stepping/passed_in_steps.h"
 #include "integrators/stepping/singular_ends.h"
 #include "integrators/stepping/time_grid.h"
 #include "integrators/stepping/vectors.h"
@@ -149,6 +150,7 @@ class FixedSteps {
   Vector change_;
   BranchWatch branch_;
   SingularEnds singular_ends_;
+  PassedInSteps passed_;
   std::optional<State> given_;  // a sample in a singular position
   OpenMultipliers open_multipliers_;
   bool settles_ = false;  // ends in singular positions are

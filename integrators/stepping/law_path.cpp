@@ -1,0 +1,183 @@
+#include "integrators/stepping/law_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/bounds.h"
+#include "core/index.h"
+
+namespace poinsot {
+namespace {
+
+constexpr double kSwitchInstant = 1e-14;  // of the time: what rounding may make of it
+constexpr int kLawPartings = 12;          // of a step
+constexpr int kLawPieces = 300;           // of one look
+constexpr int kTowardsEntry = 8;          // towards where F comes to more
+constexpr double kBeyondSeen = 2;         // of the range that is seen
+constexpr int kShownPlaces = 4;           // that stages do not miss
+constexpr double kLookedAt[] = {0, 0.11, 0.23, 0.36, 0.49, 0.63, 0.77, 0.89, 1};  // no period goes with them
+
+// What a body carries: a point, or its turn.
+struct Carried {
+  Vector3 x = Vector3::Zero(), rate = Vector3::Zero(), second = Vector3::Zero();
+  double turning = 0;  // of the second
+};
+Carried carried_by(std::span<const BodyState> bodies, int body, const Vector3& s) {
+  if (body == kGround) return {s};
+  const BodyState& b = bodies[index(body)];
+  const Vector3 ws = b.w.cross(s);
+  return {b.r + b.A * s, b.rd + b.A * ws, b.rdd + b.A * (b.wd.cross(s) + b.w.cross(ws)), b.w.cross(ws).norm()};
+}
+
+double mass_that_moves(const Model& model, int body) {
+  return body == kGround ? HUGE_VAL : model.bodies[index(body)].mass;
+}
+double moment_that_turns(const Model& model, int body) {
+  return body == kGround ? HUGE_VAL : model.bodies[index(body)].inertia.trace();
+}
+
+// What F comes to at the ends of a step and at several places of it, widened to either side.
+class SeenForce {
+ public:
+  SeenForce(Bounds values, double nothing) : values_(values), nothing_(nothing) {}
+  void add(double F) { values_ = hull(values_, {F, F}); }
+  bool holds(Bounds F) const {
+    const double beyond = kBeyondSeen * (values_.most - values_.least) + nothing_;
+    return !(F.least < values_.least - beyond) && !(F.most > values_.most + beyond);
+  }
+
+ private:
+  Bounds values_;
+  double nothing_;
+};
+
+// Where F comes to more, about: shortly after `from`, where it does not, or before `to`, where it does. In the middle
+// of it a force may have no direction.
+double entry_into(const LawPath& path, const SeenForce& seen, double from, double to) {
+  for (int k = 0; k < kTowardsEntry; ++k) {
+    const double middle = from + 0.5 * (to - from), there = path.force(middle);
+    (seen.holds({there, there}) ? from : to) = middle;
+  }
+  return to;
+}
+
+UnseenForce first_in_part(const LawPath& path, const SeenForce& seen, double from, double to, int partings,
+                          int& pieces) {
+  if (seen.holds(path.force(from, to))) return {};
+  const double middle = from + 0.5 * (to - from), there = path.force(middle);
+  if (!seen.holds({there, there})) return {entry_into(path, seen, from, middle), true};
+  if (partings == 0 || --pieces < 0) return {from, false};
+  const UnseenForce sooner = first_in_part(path, seen, from, middle, partings - 1, pieces);
+  return sooner.s < 1 ? sooner : first_in_part(path, seen, middle, to, partings - 1, pieces);
+}
+
+}  // namespace
+
+std::vector<SpringLaw> spring_laws(const Model& model) {
+  std::vector<SpringLaw> laws;
+  const auto add = [&](const std::optional<Expression>& law, int spring, int torsion, double zero, double inertia) {
+    if (law && !law->is_constant() && !law->is_function()) laws.push_back({&*law, spring, torsion, zero, inertia});
+  };
+  for (std::size_t k = 0; k < model.springs.size(); ++k) {
+    const Spring& s = model.springs[k];
+    add(s.law, static_cast<int>(k), -1, s.length, std::min(mass_that_moves(model, s.i), mass_that_moves(model, s.j)));
+  }
+  for (std::size_t k = 0; k < model.torsions.size(); ++k) {
+    const TorsionSpring& s = model.torsions[k].spring;
+    add(s.law, -1, static_cast<int>(k), s.angle,
+        std::min(moment_that_turns(model, s.i), moment_that_turns(model, s.j)));
+  }
+  return laws;
+}
+
+LawPlace SpringLaw::place(const Model& model, const Problem& problem, std::span<const BodyState> bodies) const {
+  if (spring >= 0) {
+    const Spring& s = model.springs[index(spring)];
+    const Carried i = carried_by(bodies, s.i, s.s_i), j = carried_by(bodies, s.j, s.s_j);
+    return {j.x - i.x, j.rate - i.rate, j.second - i.second, i.turning + j.turning};
+  }
+  const TorsionElement& e = model.torsions[index(torsion)];
+  const auto turn = [&](int body) {
+    return body == kGround
+               ? Carried{}
+               : Carried{
+                     {}, bodies[index(body)].A * bodies[index(body)].w, bodies[index(body)].A * bodies[index(body)].wd};
+  };
+  const Carried i = turn(e.spring.i), j = turn(e.spring.j);
+  Vector3 axis = e.a_i.cross(e.b_i);
+  if (e.spring.i != kGround) axis = bodies[index(e.spring.i)].A * axis;
+  return {{problem.twist(torsion), 0, 0}, {axis.dot(j.rate - i.rate), 0, 0}, {axis.dot(j.second - i.second), 0, 0}};
+}
+
+LawPath::LawPath(const SpringLaw& of, const LawPlace& from, double t_from, double t_to)
+    : of_(of), t_(t_from), h_(t_to - t_from) {
+  lead(from.d, from.rate, h_ * from.rate + 0.5 * h_ * h_ * from.second, from.rate + h_ * from.second);
+}
+
+LawPath::LawPath(const SpringLaw& of, const LawPlace& from, const LawPlace& to, double t_from, double t_to)
+    : of_(of), t_(t_from), h_(t_to - t_from) {
+  constexpr double kError = 0.02;  // of a second derivative that is wrong at an end
+  lead(from.d, from.rate, to.d - from.d, to.rate);
+  const double most = 4 * h_ * (to.rate - from.rate).norm() + h_ * h_ * std::max(from.turning, to.turning);
+  const auto wrong = [&](const Vector& bend, const LawPlace& end) {
+    return std::min((bend - h_ * h_ * end.second).norm(), most);
+  };
+  error_ = kError * (wrong(2 * c_[2], from) + wrong(2 * c_[2] + 6 * c_[3], to));
+}
+
+void LawPath::lead(const Vector& from, const Vector& from_rate, const Vector& step, const Vector& end_rate) {
+  c_[0] = from;
+  c_[1] = h_ * from_rate;
+  c_[2] = 3 * step - h_ * (2 * from_rate + end_rate);
+  c_[3] = h_ * (from_rate + end_rate) - 2 * step;
+  const Vector d = at(0.5), rate = derivative(0.5) / h_;
+  v_ = of_.torsion >= 0 ? rate.x() : d.norm() > 0 ? d.dot(rate) / d.norm() : rate.norm();
+}
+
+Arguments<double> LawPath::arguments(double s) const {
+  const Vector d = at(s);
+  return {t_ + s * h_, (of_.torsion >= 0 ? d.x() : d.norm()) - of_.zero, v_};
+}
+
+double LawPath::force(double s) const {
+  return of_.F->law(arguments(s)).F;
+}
+
+double LawPath::slope(double s) const {
+  return of_.F->law(arguments(s)).F_x;
+}
+
+Bounds LawPath::force(double from, double to) const {
+  Bounds x;
+  if (of_.torsion >= 0) {
+    x = component(0, from, to);
+  } else {
+    x = square(component(0, from, to)) + square(component(1, from, to)) + square(component(2, from, to));
+    x = rising({std::max(x.least, 0.0), x.most}, [](double y) { return std::sqrt(y); });
+  }
+  const double least = x.least - of_.zero, most = x.most - of_.zero;
+  // At its ends the step may touch switches of time, which are not within it.
+  const double instant = std::min(kSwitchInstant * (std::abs(t_) + h_), 0.25 * (to - from) * h_);
+  const double begin = t_ + from * h_ + (from == 0 ? instant : 0), end = t_ + to * h_ - (to == 1 ? instant : 0);
+  return of_.F->range({{begin, end}, {least, most}, {v_, v_}}).f;
+}
+
+// A cubic stays within its Bézier points.
+Bounds LawPath::component(int k, double from, double to) const {
+  const double third = (to - from) / 3, first = at(from)[k], last = at(to)[k];
+  const double second = first + third * derivative(from)[k], before = last - third * derivative(to)[k];
+  return {std::min({first, second, before, last}) - error_, std::max({first, second, before, last}) + error_};
+}
+
+UnseenForce first_unseen(const LawPath& path, Bounds ends, double nothing) {
+  SeenForce seen(ends, nothing);
+  if (seen.holds(path.force(0, 1))) return {};
+  std::array<double, std::size(kLookedAt)> there;
+  std::ranges::transform(kLookedAt, there.begin(), [&](double s) { return path.force(s); });
+  std::ranges::sort(there);
+  seen.add(there[kShownPlaces - 1]), seen.add(there[there.size() - kShownPlaces]);
+  int pieces = kLawPieces;
+  return first_in_part(path, seen, 0, 1, kLawPartings, pieces);
+}
+
+}  // namespace poinsot

@@ -1,0 +1,73 @@
+// A spring that has a law over one step: the way its ends go, and where the law comes to more on it than a method sees.
+//
+// Over a step the ends of a spring go by d(s) = the cubic of Hermite through d and ḋ at both ends, s = (t − t_n)/h. It
+// errs by no more than e ≈ h²/50 (|δ_n| + |δ_{n+1}|), δ what its second derivative and the true one differ by at an
+// end, no more than the turning of bodies and the change of ḋ account for: stiff forces make noise of accelerations.
+// With x(s) = |d(s)| − length (an angle less its zero for a torsion spring), F(s) = law(x(s), v, t), v that of the
+// middle: the step sees F where interval arithmetic holds it, piece by piece, within what it comes to at its ends or at
+// four of nine places in between, widened by twice as much to either side.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/body_state.h"
+#include "core/model.h"
+#include "formulations/problem.h"
+
+namespace poinsot {
+
+// What a law depends on: the span of a spring, the angle of a torsion spring in its first component.
+struct LawPlace {
+  Vector3 d = Vector3::Zero(), rate = Vector3::Zero(), second = Vector3::Zero();
+  double turning = 0;  // m/s², of the second derivative what points owe to how their bodies turn
+};
+
+struct SpringLaw {
+  const Expression* F;
+  int spring, torsion;  // of the model; one is −1
+  double zero;          // m, rad
+  double inertia;       // kg, kg m², of the lighter body
+
+  // As it is where the problem, and the bodies, stand.
+  LawPlace place(const Model& model, const Problem& problem, std::span<const BodyState> bodies) const;
+};
+// Those that a step may pass over: neither constants nor functions of the program.
+std::vector<SpringLaw> spring_laws(const Model& model);
+
+// F by s from 0 to 1.
+class LawPath {
+ public:
+  // From a place to another one.
+  LawPath(const SpringLaw& of, const LawPlace& from, const LawPlace& to, double t_from, double t_to);
+  // As the motion goes on from a place.
+  LawPath(const SpringLaw& of, const LawPlace& from, double t_from, double t_to);
+
+  double force(double s) const;
+  Bounds force(double from, double to) const;
+  double slope(double s) const;  // of F by x
+
+ private:
+  using Vector = Vector3;
+  void lead(const Vector& from, const Vector& from_rate, const Vector& step, const Vector& end_rate);
+  Vector at(double s) const { return c_[0] + s * (c_[1] + s * (c_[2] + s * c_[3])); }
+  Vector derivative(double s) const { return c_[1] + s * (2 * c_[2] + 3 * s * c_[3]); }
+  Arguments<double> arguments(double s) const;
+  Bounds component(int k, double from, double to) const;
+
+  const SpringLaw& of_;
+  const double t_, h_;
+  std::array<Vector, 4> c_;
+  double error_ = 0, v_ = 0;
+};
+
+// The first place of a step at which F may come to more than is seen, by more than `nothing`; known: it does.
+struct UnseenForce {
+  double s = 1;
+  bool known = false;
+};
+// `ends`: of F at the ends of the step.
+UnseenForce first_unseen(const LawPath& path, Bounds ends, double nothing);
+
+}  // namespace poinsot
