@@ -107,9 +107,9 @@ class GeneralizedAlpha : public FixedSteps {
   Status check_turns(Problem& problem, double t) override {
     constexpr double kSmall = 0.05;  // squared: by less no body turns far in any coordinates
     if (Status status = FixedSteps::check_turns(problem, t); !status.ok()) return status;
-    if (!corrects_velocity_ || t == 0) return {};
+    if (!(y_.squaredNorm() > kSmall)) return {};
     held_dq_ = dq_ / h_ - 0.5 * (v_n_ + x_.v);
-    return held_dq_.squaredNorm() * h_ * h_ > kSmall ? check_moved(problem, held_dq_, t) : Status{};
+    return check_moved(problem, held_dq_, t);
   }
   // Where the velocity constraints say nothing, what they make of the step is rounding.
   Status repeat_singular(double t) override {
