@@ -103,8 +103,8 @@ TEST_F(ReferenceCommand, TakesRoundingForNoMotion) {
     {"name": "ball", "mass": 1.3, "inertia": [0.1, 0.1, 0.1], "position": [0.1, 0.2, 0.3], "velocity": [1, 0.3, 0.7],
      "angular_velocity": [2, 0.1, 7]}]})");
   for (const std::string scene : {"at_origin", "at_rest", "drifting"}) {
-    const Result result =
-        poinsot({"reference", scene + ".json", "--end", "1", "--cache", "", "--quiet", "--out", scene + "_motion.csv"});
+    const Result result = poinsot(
+        {"reference", scene + ".json", "--end", "1", "--cache", "cache", "--quiet", "--out", scene + "_motion.csv"});
     ASSERT_EQ(result.status, 0) << result.err;
     const auto record = read_json(scene + "_motion.run.json");
     for (const char* quantity : {"position", "velocity", "acceleration", "multiplier"})
@@ -120,7 +120,7 @@ TEST_F(ReferenceCommand, WhereTheTolerancesAskForTooMuchGoesBackToSuchAsPass) {
     "forces": [{"type": "force", "body": "sledge", "point": [0, 0, 0],
                 "force": ["1e4*(1 + abs(t - 0.1)/(t - 0.1))", "0", "0"]}]})~");
   const Result result =
-      poinsot({"reference", "jump.json", "--end", "0.3", "--every", "0.3", "--cache", "", "--out", "motion.csv"});
+      poinsot({"reference", "jump.json", "--end", "0.3", "--every", "0.3", "--cache", "cache", "--out", "motion.csv"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NEAR(std::stod(fields(lines(read("motion.csv")).back())[1]), 1e4 * 0.2 * 0.2, 1e-8);
   const auto record = read_json("motion.run.json");
@@ -133,7 +133,8 @@ TEST_F(ReferenceCommand, WhereTheTolerancesAskForTooMuchGoesBackToSuchAsPass) {
 
 TEST_F(ReferenceCommand, SaysWhyThereIsNone) {
   write("overstretched.json", kOverstretched);
-  const Result none = poinsot({"reference", "overstretched.json", "--end", "2", "--cache", "", "--out", "motion.csv"});
+  const Result none =
+      poinsot({"reference", "overstretched.json", "--end", "2", "--cache", "cache", "--out", "motion.csv"});
   EXPECT_EQ(none.status, 3);
   EXPECT_TRUE(none.err.starts_with("poinsot: no reference could be computed; ")) << none.err;
   EXPECT_FALSE(std::filesystem::exists(folder() / "motion.csv"));

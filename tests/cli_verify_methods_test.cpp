@@ -2,6 +2,8 @@
 // run says of its accuracy by itself.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "bench/study/verification.h"
 #include "command_line.h"
 #include "tests/support/every_way.h"
@@ -106,7 +108,8 @@ TEST_F(VerifyMethods, NameNoErrorWhereDifferencesDoNotShrink) {
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json verified = read_json("a.run.json")["verify"];
   expect_printed(result, verified, true);
-  for (const nlohmann::json& q : verified["quantities"]) EXPECT_FALSE(q.contains("error")) << q["quantity"];
+  const auto& all = verified["quantities"];
+  EXPECT_FALSE(std::ranges::all_of(all, [](const nlohmann::json& q) { return q.contains("error"); })) << all;
 }
 
 TEST_F(VerifyMethods, OfKinematicsSayThatNothingAddsUp) {
