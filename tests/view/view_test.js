@@ -39,7 +39,7 @@ class Looker {
 
   async open(file, options = {}) {
     Object.assign(this, await openPage(this.browser, join(folder, file), options));
-    await this.page.waitForFunction(() => window.poinsot?.drawn > 0, null, { timeout: 20000 });
+    await this.page.waitForFunction(() => window.poinsot?.drawn > 0, null, { timeout: 60000 });
   }
 
   seek(t) {
