@@ -11,7 +11,7 @@
 namespace poinsot {
 namespace {
 
-constexpr double kNegligible = 1e-9;              // of a coefficient beside the largest of its vector
+constexpr double kNegligibleBeside = 1e-9;        // of a coefficient beside the largest of its vector
 constexpr std::size_t kMostCombined = 2'000'000;  // entries: a second's work
 constexpr double kGood = 0.1;                     // the least entry that a group's pivot is worth
 constexpr double kBetter = 1.2;                   // of another pivot of the group, beside the one it has
@@ -188,7 +188,7 @@ double largest(const SparseEntries& z) {
 }
 
 void drop_nothing(SparseEntries& z) {
-  const double nothing = kNegligible * largest(z);
+  const double nothing = kNegligibleBeside * largest(z);
   std::erase_if(z, [&](const auto& entry) { return std::abs(entry.second) <= nothing; });
 }
 

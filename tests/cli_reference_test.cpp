@@ -143,7 +143,7 @@ TEST_F(ReferenceCommand, SaysWhyThereIsNone) {
   EXPECT_EQ(wrong.status, 2);
   EXPECT_TRUE(wrong.err.starts_with("poinsot: conflicting.json: the constraints conflict: ")) << wrong.err;
   EXPECT_EQ(wrong.err.find("dop853"), std::string::npos) << wrong.err;
-  EXPECT_EQ(files(), (std::vector<std::string>{"conflicting.json", "overstretched.json", "pendulum.json"}));
+  EXPECT_EQ(files(), (std::vector<std::string>{"cache", "conflicting.json", "overstretched.json", "pendulum.json"}));
   const Result many = poinsot({"reference", "pendulum.json", "--digits", "30"});
   EXPECT_EQ(many.status, 2);
   EXPECT_EQ(many.err, "poinsot: --digits: found 30, expected a whole number from 4 to 12\n");
