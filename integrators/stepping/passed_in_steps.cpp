@@ -31,9 +31,9 @@ bool jumps_with_x(const Expression& F, Bounds x) {
 }
 
 bool keeps_its_sign(Bounds slope) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kRoundingOfForces = 1e-9;
   return std::isfinite(slope.least) && std::isfinite(slope.most) &&
-         (slope.least >= -kRounding * slope.most || slope.most <= -kRounding * slope.least);
+         (slope.least >= -kRoundingOfForces * slope.most || slope.most <= -kRoundingOfForces * slope.least);
 }
 
 // How to call it, and in which unit its force is.
