@@ -6,8 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/counted.h"
-#include "integrators/jacobian_policy.h"
+#include "integrators/methods/prescribed_state.h"
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/extrapolation.h"
@@ -18,15 +17,9 @@
 namespace poinsot {
 namespace {
 
-// A matrix of a position before is made anew where corrections shrink by less than this.
-constexpr double kSlow = 0.1;
-// A step is certain up to this ratio of the first two corrections (by Newton and Kantorovich the solution is the only
-// one about the prediction then), and up to this turn of a driven angle.
+// A step is certain up to this ratio of the first two corrections and up to this turn of a body or a driven angle, rad.
 constexpr double kContraction = 0.25;
 constexpr double kFullTurn = 1;
-// So far from its prediction a body may as well be turned over: a hinge holds with its axis reversed, too, and no sign
-// of a determinant tells. In coordinates of orientation.
-constexpr double kFarOff = 0.25;
 // Where so small a part of a step is not certain the position is examined, and is singular where a row is independent
 // of the others by no more than kSingular of its length: beside a singular position others are known to rounding's
 // root.
@@ -41,12 +34,8 @@ class Kinematics final : public FixedSteps {
  public:
   explicit Kinematics(const Run& run)
       : FixedSteps(run),
-        refresh_(jacobians().require(settings_.jacobian).refresh),
-        // (auto answers this hint with klu or dense, which know determinants' signs)
-        system_(problem_, run.systems.add(Workload::transposed), MatrixKind::kinematic, run.statistics, clock_),
+        solver_(run, clock_),
         rows_change_(has_alternates(problem_.model())),
-        delta_(nc_),
-        q_next_(problem_.nq()),
         dq_(nv_),
         q_from_(problem_.nq()),
         v_from_(nv_),
@@ -60,14 +49,14 @@ class Kinematics final : public FixedSteps {
     }
   }
 
-  Status prepare() override { return system_.prepare(); }
+  Status prepare() override { return solver_.prepare(); }
 
   // The start as given is only where the iteration begins.
   Status begin() override {
     clock_.start();
-    if (Status status = find(0, settings_.tolerance); !status.ok()) return status;
-    orientation_ = system_.orientation();
-    rate_from_ = problem_.counted_turn().rate;
+    if (Status status = solver_.find(0, settings_.tolerance, careful_, x_, beyond_); !status.ok()) return status;
+    orientation_ = solver_.orientation();
+    rate_from_ = problem_.counted_turn().rate, turn_from_ = problem_.fastest_turn();
     if (problem_.has_discrete_state() || problem_.exchanges_rows()) {
       if (Status status = accept(problem_); !status.ok()) return status;
     }
@@ -90,8 +79,8 @@ class Kinematics final : public FixedSteps {
   // Coordinates or rows are others: so is what the determinant's sign is compared with.
   Status resume() override {
     extrapolate_anew(0);
-    if (Status status = system_.refresh(x_.t, {}, {}, {}, {}); !status.ok()) return status;
-    orientation_ = system_.orientation();
+    if (Status status = solver_.refresh(x_.t); !status.ok()) return status;
+    orientation_ = solver_.orientation();
     return {};
   }
 
@@ -114,7 +103,7 @@ class Kinematics final : public FixedSteps {
  private:
   // From (q_from_, v_from_) at `from` to x_ at t.
   Status advance(double from, double t, double tolerance) {
-    if (refresh_ == Refresh::before_step) {  // the original study's codes predict nothing
+    if (!solver_.predicts()) {
       x_.q = q_from_;
     } else {
       const double h = t - from;
@@ -126,7 +115,7 @@ class Kinematics final : public FixedSteps {
         extrapolate_anew(0);
       problem_.retract(span(q_from_), span(dq_), span(x_.q));  // (11)
     }
-    return find(t, tolerance);
+    return solver_.find(t, tolerance, careful_, x_, beyond_);
   }
 
   // Steps of this length begin, of which nothing is known.
@@ -138,14 +127,14 @@ class Kinematics final : public FixedSteps {
 
   // Whether x_ is where the motion from q_from_ leads, over a time h to t; if so it is what the next is compared with.
   bool certain(double h, double t) {
-    if (contraction_ > kContraction) return false;
-    const double rate = problem_.counted_turn().rate;
-    if (h * std::max(rate, rate_from_) > kFullTurn) return false;
+    if (solver_.contraction() > kContraction) return false;
+    const double rate = problem_.counted_turn().rate, turn = problem_.fastest_turn();
+    if (h * std::max({rate, rate_from_, turn, turn_from_}) > kFullTurn) return false;
     if (comes_to_singular_position(h, t)) return false;
-    const std::uint64_t here = system_.orientation();
+    const std::uint64_t here = solver_.orientation();
     if (here != orientation_ && !(rows_change_ && here == orientation_before(t))) return false;
     orientation_ = here;
-    rate_from_ = rate;
+    rate_from_ = rate, turn_from_ = turn;
     return true;
   }
 
@@ -165,8 +154,8 @@ class Kinematics final : public FixedSteps {
   // Where rows stand in for others at t: the orientation of the position before with the rows of now.
   std::uint64_t orientation_before(double t) {
     problem_.set_position(t, span(q_from_));
-    const bool regular = system_.refresh(t, {}, {}, {}, {}).ok();
-    const std::uint64_t before = regular ? system_.orientation() : 0;
+    const bool regular = solver_.refresh(t).ok();
+    const std::uint64_t before = regular ? solver_.orientation() : 0;
     problem_.set_position(t, span(x_.q));
     problem_.set_velocity(span(x_.v));
     return before;
@@ -242,74 +231,10 @@ class Kinematics final : public FixedSteps {
                         t, which)};
   }
 
-  Status find(double t, double tolerance) {
-    if (Status status = find_position(t, tolerance); !status.ok()) return status;
-    return find_rates(t);
-  }
-
-  Status find_position(double t, double tolerance) {
-    constexpr double kRounding = 1e-7;  // near a singular position, at worst
-    constexpr double kStill = 1e-10;    // no motion to be uncertain of
-    double correction = 0, first = 0;
-    contraction_ = 0;
-    slow_ = false;
-    for (int k = 0; k < settings_.max_iterations; ++k) {
-      problem_.set_position(t, span(x_.q));
-      problem_.position_residual(span(delta_));
-      // Where a matrix of a position before serves too little to be certain of a step, its parts have their own.
-      if (due(refresh_, k, careful_ || slow_ || !system_.ready())) {
-        if (Status status = system_.refresh(t, {}, {}, {}, {}); !status.ok()) return status;
-      }
-      delta_ = -delta_;
-      if (Status status = system_.solve(t, span(delta_)); !status.ok()) return status;  // (14d)
-      problem_.retract(span(x_.q), span(delta_), span(q_next_));                        // (14a), (12)
-      beyond_ += delta_;
-      x_.q.swap(q_next_);
-      ++run_.statistics.newton_iterations;
-      const double before = correction;
-      correction = delta_.norm();
-      slow_ = k > 0 && !(correction < kSlow * before);
-      if (k == 0) {
-        // Beside a singular position corrections are as large as can be, and what they shrink by says nothing.
-        first = correction;
-        if (first > std::sqrt(problem_.bodies()) * std::max(1.0, x_.q.cwiseAbs().maxCoeff())) contraction_ = INFINITY;
-        if (first > kFarOff && largest_turn() > kFarOff) contraction_ = INFINITY;
-      }
-      if (k == 1 && first > kStill) contraction_ = std::max(contraction_, correction / first);
-      if (correction < tolerance) return {};
-      if (careful_ && k > 1 && correction > 0.9 * before && correction < kRounding) return {};
-    }
-    Eigen::Index largest = 0;
-    delta_.cwiseAbs().maxCoeff(&largest);
-    return {Failure::not_converged, t,
-            fmt::format("at t = {:.9g} s the position did not converge: after {} the correction is {:.3g}, the "
-                        "tolerance {:.3g}; {} moves most; the mechanism may be locked here or the driver ask for more "
-                        "than it can reach; else try more iterations or a larger tolerance",
-                        t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
-                        problem_.describe_unknown(static_cast<int>(largest)))};
-  }
-
-  // Of a body, by a correction.
-  double largest_turn() const {
-    const Eigen::Index bodies = problem_.bodies(), size = nv_ / bodies;
-    return delta_.head(nv_).reshaped(size, bodies).bottomRows(size - 3).colwise().norm().maxCoeff();
-  }
-
-  Status find_rates(double t) {
-    problem_.set_position(t, span(x_.q));
-    if (Status status = system_.refresh(t, {}, {}, {}, {}); !status.ok()) return status;
-    problem_.nu(span(x_.v));
-    if (Status status = system_.solve(t, span(x_.v)); !status.ok()) return status;  // (15b)
-    problem_.set_velocity(span(x_.v));
-    problem_.gamma(x_.a());
-    return system_.solve(t, x_.a());  // (16)
-  }
-
-  const Refresh refresh_;
-  StepSystem system_;
+  PrescribedState solver_;
   const bool rows_change_;
   std::unique_ptr<Consistent> inverse_dynamics_;
-  Vector delta_, q_next_, dq_;
+  Vector dq_;
   Vector q_from_, v_from_;  // where a step, or a part of it, begins
   Vector a_from_;           // of a step
   Vector beyond_;           // what lies beyond h v + h²/2 a: as steps before have it, then as this one finds it
@@ -317,10 +242,8 @@ class Kinematics final : public FixedSteps {
   double extrapolates_for_ = 0;  // length of these steps
   double chose_at_ = -1;         // time of the part for which other rows were asked for
   bool careful_ = false;         // in parts of a step
-  bool slow_ = false;            // corrections did not shrink as they should
-  double contraction_ = 0;       // second correction over the first
   std::uint64_t orientation_ = 0;
-  double rate_from_ = 0;  // rad/s, of counted turns, where a step begins
+  double rate_from_ = 0, turn_from_ = 0;  // rad/s, of counted turns and of bodies, where a step begins
 };
 
 }  // namespace
