@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs every test: the release build first, then the build with address and
-# undefined-behaviour sanitizers, whose readers of files are fuzzed for a minute before its tests. Ends with ctest's
+# undefined-behaviour sanitizers, whose readers of files are fuzzed for half a minute before its tests. Ends with ctest's
 # summary, or at the first thing that fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -24,6 +24,6 @@ jobs=$(nproc)
 for preset in release debug; do
   cmake --preset "$preset" -G Ninja --log-level=WARNING
   cmake --build --preset "$preset" --parallel "$jobs"
-  if [ "$preset" = debug ]; then python3 -B tests/fuzz/run.py; fi
+  if [ "$preset" = debug ]; then python3 -B tests/fuzz/run.py --seconds 30; fi
   ctest --preset "$preset" --parallel "$jobs"
 done
