@@ -97,6 +97,11 @@ void tell_of_switches(const Model& model, const IntegratorEntry& integrator, con
                     pulse->function, pulse->t));
 }
 
+// Of "the step failed; try a shorter one".
+void withdraw_remedy(std::string& message) {
+  message.resize(std::min(message.size(), message.find("; try ")));
+}
+
 Outcome run(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
   check_numbers(settings);
   const FormulationEntry& formulation = formulations().require(settings.formulation);
@@ -163,8 +168,12 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   if (settings.analysis == Analysis::dynamics && (unexplained || failure == Failure::singular_position)) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
     std::string why = vanished_gradient(*problem, state);
-    if (why.empty() && unexplained)
-      why = near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
+    if (why.empty()) {
+      const NearSingular near =
+          near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
+      if (unexplained || near.barred) why = near.sentence;
+      if (near.barred) withdraw_remedy(outcome.status.message);  // it does not help there
+    }
     if (why.empty() && failure == Failure::step_size_too_small) why = growing_motion(*problem, state);
     if (!why.empty()) outcome.status.message += "; " + why;
   }

@@ -10,6 +10,7 @@
 namespace poinsot::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -196,6 +197,8 @@ TEST_P(SingularRemedies, OfADriverThatAsksForTooMuchIsToEndBefore) {
     ASSERT_FALSE(r.outcome.status.ok());
     EXPECT_NEAR(r.outcome.status.time, 1, 0.02);
     EXPECT_THAT(r.outcome.status.message, HasSubstr("end before it"));
+    EXPECT_THAT(r.outcome.status.message, HasSubstr("no method passes"));
+    EXPECT_THAT(r.outcome.status.message, AllOf(Not(HasSubstr("try ")), Not(HasSubstr("step over"))));
     EXPECT_LT(r.outcome.statistics.violation.position, 1e-6) << "what is given out is on the constraints";
     settings.end = 0.97;
     expect_helped(scene, settings);

@@ -196,7 +196,7 @@ class Kinematics final : public FixedSteps {
           h = 0.5 * (t - at);
           continue;
         }
-        if (found.share < kSingular || (ends && status.ok())) status = branching(at, found.row);
+        if (found.share < kSingular || (ends && status.ok())) status = branching(at, found);
         if (status.failure == Failure::not_converged && !as_one.ok()) status = as_one;
         if (ends || found.share < kSingular) break;
       }
@@ -221,14 +221,15 @@ class Kinematics final : public FixedSteps {
     return resume().ok();
   }
 
-  Status branching(double t, int row) const {
-    const std::string which = row < 0 ? ""
-                                      : fmt::format(", where {} depends on the other constraints",
-                                                    problem_.describe_unknown(problem_.nv() + row));
+  Status branching(double t, const DependentRow& found) const {
+    const std::string which = found.row < 0 ? ""
+                                            : fmt::format(", where {} depends on the other constraints",
+                                                          problem_.describe_unknown(problem_.nv() + found.row));
     return {Failure::singular_position, t,
-            fmt::format("at t = {:.9g} s the mechanism comes to a singular position{}: its motion can go on in more "
-                        "than one way, or not at all; end before it, or start beyond it on the branch that is meant",
-                        t, which)};
+            fmt::format("at t = {:.9g} s the mechanism comes to a singular position{}: {}", t, which,
+                        found.barred ? kBarred
+                                     : "its motion can go on in more than one way, or not at all; end before it, or "
+                                       "start beyond it on the branch that is meant")};
   }
 
   PrescribedState solver_;

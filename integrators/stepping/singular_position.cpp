@@ -15,19 +15,40 @@
 namespace poinsot {
 namespace {
 
-// Of every row of G, how much of its length is independent of the others.
-Eigen::VectorXd independent_parts(Problem& problem, double t, std::span<const double> q) {
+// G with rows of unit length.
+struct UnitRows {
+  Eigen::VectorXd lengths;
+  Eigen::MatrixXd inverse;  // of G Gᵀ
+
+  // Of every row, how much of its length is independent of the others.
+  Eigen::VectorXd shares() const {
+    return inverse.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();  // rounding may make such a row's negative
+  }
+};
+UnitRows unit_rows(Problem& problem, double t, std::span<const double> q) {
   problem.set_position(t, q);
   problem.set_velocity(std::vector<double>(static_cast<std::size_t>(problem.nv()), 0.0));
   const std::vector<Eigen::Triplet<double>> entries = gradient(problem);
   Eigen::SparseMatrix<double> sparse(problem.nc(), problem.nv());
   sparse.setFromTriplets(entries.begin(), entries.end());
   Eigen::MatrixXd G = sparse;
+  const Eigen::VectorXd lengths = G.rowwise().norm();
   G.rowwise().normalize();
   Eigen::MatrixXd square = G * G.transpose();
   square.diagonal().array() += 8 * std::numeric_limits<double>::epsilon();  // regular where a row depends altogether
-  const Eigen::MatrixXd inverse = square.ldlt().solve(Eigen::MatrixXd::Identity(problem.nc(), problem.nc()));
-  return inverse.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();  // rounding may make such a row's negative
+  return {lengths, square.ldlt().solve(Eigen::MatrixXd::Identity(problem.nc(), problem.nc()))};
+}
+
+// Whether drivers bar the position where the problem stands, in which `row` all but depends on others. Where drivers of
+// other rows are much faster it is not seen.
+bool bars(const Problem& problem, const UnitRows& rows, Eigen::Index row) {
+  constexpr double kNone = 0.01, kTimesShare = 10;  // a regular position has a part as small as the share
+  const double share = rows.shares()[row];
+  Eigen::VectorXd nu(problem.nc());
+  problem.nu(span(nu));
+  nu = nu.cwiseQuotient(rows.lengths);
+  const auto mu = rows.inverse.col(row);
+  return std::abs(mu.dot(nu)) > (kNone + kTimesShare * share) * mu.norm() * nu.norm();
 }
 
 constexpr int kLargest = 600;  // of G: a second's work
@@ -37,7 +58,8 @@ constexpr int kLargest = 600;  // of G: a second's work
 DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q) {
   if (rows < 1 || problem.nc() > kLargest) return {};
   Eigen::Index row = 0;
-  Eigen::VectorXd shares = independent_parts(problem, t, q).head(rows);
+  const UnitRows here = unit_rows(problem, t, q);
+  Eigen::VectorXd shares = here.shares().head(rows);
   // A DP1 row between parallel directions vanishes: of unit vectors, it is shorter than 1 by that alone.
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(problem.nc());
   for (const Eigen::Triplet<double>& entry : gradient(problem)) squares[entry.row()] += entry.value() * entry.value();
@@ -47,25 +69,27 @@ DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<
       shares[k] *= std::min(1.0, std::sqrt(squares[k]));
   }
   const double share = shares.minCoeff(&row);
-  return {static_cast<int>(row), share};
+  return {static_cast<int>(row), share, bars(problem, here, row)};
 }
 
-std::string near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
-                                   std::span<const double> q) {
+NearSingular near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
+                                    std::span<const double> q) {
   constexpr double kNear = 0.05;
   if (rows < 2 || problem.nc() > kLargest) return {};
-  const Eigen::VectorXd before = independent_parts(problem, 0, q_start), now = independent_parts(problem, t, q);
+  const Eigen::VectorXd before = unit_rows(problem, 0, q_start).shares();
+  const UnitRows here = unit_rows(problem, t, q);
+  const Eigen::VectorXd now = here.shares();
   Eigen::Index row = 0;
   const double share = now.cwiseQuotient(before).head(rows).minCoeff(&row);
   if (!(share < kNear)) return {};
-  // Beyond the longest reach of a mechanism there is no position for any method.
-  const bool driven = std::ranges::any_of(problem.model().rows, [](const Row& r) { return !r.f.is_constant(); });
-  return fmt::format(
+  const std::string where = fmt::format(
       "it stopped beside a singular position of the mechanism, where the gradient of {} is a combination of the other "
-      "constraints' but for {:.1g} of its length (at the start for {:.1g}); dopri5 and dop853 step over most of such "
-      "positions at larger tolerances, fixed steps may{}",
-      problem.describe_unknown(problem.nv() + static_cast<int>(row)), now[row], before[row],
-      driven ? "; where a driver asks for more than the mechanism reaches nothing does: end before it" : "");
+      "constraints' but for {:.1g} of its length (at the start for {:.1g})",
+      problem.describe_unknown(problem.nv() + static_cast<int>(row)), now[row], before[row]);
+  if (bars(problem, here, row)) return {where + "; " + kBarred, true};
+  const bool driven = std::ranges::any_of(problem.model().rows, [](const Row& r) { return !r.f.is_constant(); });
+  return {where + "; dopri5 and dop853 step over most of such positions at larger tolerances, fixed steps may" +
+          (driven ? "; where a driver asks for more than the mechanism reaches nothing does: end before it" : "")};
 }
 
 std::string growing_motion(const Problem& problem, const State& state) {

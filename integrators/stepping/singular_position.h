@@ -14,19 +14,30 @@
 
 namespace poinsot {
 
-// A sentence; empty where every row is as independent as at the start, or nearly, and for mechanisms too large to look
-// at densely. `rows`: rows of G that are constraints of the scene (before normalizations). The problem stands at (t, q)
-// afterwards, at rest.
-std::string near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
-                                   std::span<const double> q);
-
 // The row of the first `rows` of G that is the least independent of the others at (t, q), and the part of its length
 // that is; row −1 where the mechanism is too large to look at densely. The problem stands there afterwards, at rest.
 struct DependentRow {
   int row = -1;
   double share = 1;
+  // Drivers ask there for velocities that the rows do not have: of μᵀG = 0 besides, which is what makes the row
+  // dependent, μᵀν is not 0. Velocities grow without bound towards such a position, and none lies beyond.
+  bool barred = false;
 };
 DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q);
+
+// A sentence; empty where every row is as independent as at the start, or nearly, and for mechanisms too large to look
+// at densely. `rows`: rows of G that are constraints of the scene (before normalizations). The problem stands at (t, q)
+// afterwards, at rest.
+struct NearSingular {
+  std::string sentence;
+  bool barred = false;  // see DependentRow: no method passes
+};
+NearSingular near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
+                                    std::span<const double> q);
+// What to do where a position is barred.
+inline constexpr const char* kBarred =
+    "drivers ask there for more than the mechanism reaches: its velocities grow without bound, and no method passes; "
+    "end before it, or change the drivers";
 
 // A sentence about steps that became too small where no row says why: who moves, what it may be, what may help.
 std::string growing_motion(const Problem& problem, const State& state);
