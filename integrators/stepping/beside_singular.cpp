@@ -40,8 +40,39 @@ bool Consistent::made_of_rounding(const State& at) {
   return acceleration > kAccounted * gamma && largest(moves()) > kAccounted * loads;
 }
 
+// A mechanism that comes to rest in a singular position goes on by any of its branches as far as the velocities say.
+// Beyond it accelerations of another one differ altogether from those before, in the direction that the constraints
+// leave free there, though bodies have turned by little and did not lead to expect it.
+bool Consistent::turns_back(const State& at) {
+  constexpr double kTrusted = 1e4;  // times as steep as usual, beyond which rounding makes accelerations
+  constexpr double kLittle = 0.1;   // rad
+  constexpr double kAltogether = 0.5, kExpected = 0.25;
+  if (!(amplification_ > 1 && amplification_ < kTrusted) || approach_.rate < 0 || approach_.turned > kLittle)
+    return false;
+  const Eigen::Index nv = at.v.size();
+  const Eigen::VectorXd change = at.z.head(nv) - approach_.a;
+  const double by = change.cwiseAbs().maxCoeff();
+  if (!(by > kAltogether * std::max(largest(at.a()), largest(span(approach_.a)))) ||
+      !(approach_.rate * (at.t - approach_.t) < kExpected * by))
+    return false;
+  return lies_free(at.t, change);
+}
+
+bool Consistent::lies_free(double t, const Eigen::VectorXd& x) {
+  constexpr double kAlong = 0.9;
+  if (steepness(t) == HUGE_VAL) return false;
+  const Eigen::VectorXd free = rhs_.head(x.size());
+  const auto product = [&](const Eigen::VectorXd& with, const Eigen::VectorXd& of) {
+    problem_.momentum(span(of), moves());
+    return rhs_.head(x.size()).dot(with);
+  };
+  const double along = product(x, free);
+  return along * along > kAlong * product(free, free) * product(x, x);
+}
+
 bool Consistent::leaves_branch(const State& at) {
   constexpr double kJumped = 0.01, kExplained = 10;
+  if (turns_back(at)) return true;
   if (!made_of_rounding(at)) return false;
   double jump = 0, size = 0;
   for (Eigen::Index k = 0; k < at.v.size(); ++k) {
@@ -51,10 +82,20 @@ bool Consistent::leaves_branch(const State& at) {
   return jump > kJumped * size + kExplained * calm_.usual * std::abs(at.t - calm_.t);
 }
 
+void Consistent::approach(const State& at) {
+  if (at.t > approach_.t && approach_.a.size() > 0)
+    approach_.rate = (at.z.head(at.v.size()) - approach_.a).cwiseAbs().maxCoeff() / (at.t - approach_.t);
+  approach_.a = at.z.head(at.v.size());
+  approach_.t = at.t;
+  approach_.turned = 0;
+}
+
 void Consistent::follow(const State& at) {
   constexpr double kGrows = 10, kSlow = 0.1;
   constexpr int kSeldom = 4;
-  turned_ += problem_.fastest_turn() * (at.t - std::exchange(followed_, at.t));
+  const double turned = problem_.fastest_turn() * (at.t - std::exchange(followed_, at.t));
+  turned_ += turned;
+  approach_.turned += turned;
   if (++not_looked_ == kSeldom || amplification_ > 1 || usual_steepness_ == 0) {
     const double now = steepness(at.t);
     if (usual_steepness_ == 0 || now < usual_steepness_) usual_steepness_ = now;
@@ -63,6 +104,7 @@ void Consistent::follow(const State& at) {
     not_looked_ = 0;
     turned_ = 0;
   }
+  if (amplification_ == 1) approach(at);
   const double acceleration = largest(at.a());
   if (calm_.usual == 0) calm_.usual = std::max(acceleration, problem_.model().gravity.norm());
   if (acceleration > kGrows * calm_.usual) return;

@@ -211,6 +211,7 @@ Status Consistent::complete(State& at) {
 }
 
 Status Consistent::cross(State& at) {
+  forget_approach();
   if (Status status = accelerations(at); !status.ok()) return status;
   problem_.position_residual(rows());
   const auto jumping = std::ranges::max_element(rows(), {}, [](double x) { return std::abs(x); }) - rows().begin();

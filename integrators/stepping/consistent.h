@@ -69,11 +69,17 @@ class Consistent {
   // Whether accelerations where the problem stands are far larger than they were, and than forces and γ account for, so
   // that [M Gᵀ; G 0]⁻¹ is what makes them, next to a singular position.
   bool made_of_rounding(const State& at);
-  // Whether such a state has gone another way than the velocities led: they differ by a hundredth from what they were
-  // before. Rounding has then chosen among branches.
+  // Whether a state has gone another way than the motion led: such a one whose velocities differ by a hundredth from
+  // what they were before, or one whose accelerations have turned round where velocities vanish. Rounding has then
+  // chosen among branches.
   bool leaves_branch(const State& at);
+  // Whether most of x, nv numbers, lies in the direction in which rows that are off by one move positions, in M; that
+  // is where beside a singular position the constraints leave free more than elsewhere. With the factorization at hand.
+  bool lies_free(double t, const Eigen::VectorXd& x);
   // A step ends there that leaves none.
   void follow(const State& at);
+  // Coordinates or the data are others: accelerations of before are not to be compared with.
+  void forget_approach() { approach_ = {}; }
   // x ← its part along the constraints, M-orthogonally, with the factorization at hand; nv numbers. The problem stands
   // at `at`, before and after.
   Status along_constraints(const State& at, std::span<double> x);
@@ -96,6 +102,9 @@ class Consistent {
   Consistent(Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock,
              std::unique_ptr<Aside>&& aside);
 
+  bool turns_back(const State& at);
+  void approach(const State& at);
+
   // δq and δv for the constraints' residuals at the problem's point, in moves().
   Status position_correction(double t);
   Status velocity_correction(double t);
@@ -116,6 +125,11 @@ class Consistent {
     double t = 0, usual = 0;
     Eigen::VectorXd v;
   } calm_;
+  struct Approach {  // the last state that had no singular position near, as was last seen
+    double t = 0, turned = 0;
+    double rate = -1;  // at which accelerations changed before it; below 0: not known
+    Eigen::VectorXd a;
+  } approach_;
   double off_ = 0;  // largest |Φ| or |G v − ν| that the last correction was for
   const std::size_t nv_, nc_;
   Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_, off_by_one_;

@@ -59,6 +59,7 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
 }
 
 Status ExplicitStepper::start(const State& state) {
+  consistent_.forget_approach();
   state_ = state;
   elsewhere_ = true;
   stiffness_ = StiffnessTest(pair_.rule.safety * pair_.stability);
@@ -70,6 +71,7 @@ Status ExplicitStepper::settle() {
   elsewhere_ = false;
   bool rewritten = false;
   if (Status status = accept(problem_, state_, rewritten); !status.ok()) return status;
+  if (rewritten) consistent_.forget_approach();
   component_sizes(problem_, span(state_.q), span(state_.v), span(sizes_));
   return {};
 }

@@ -105,6 +105,7 @@ Status FixedSteps::reach_in_halves(double t, double half, bool sampled, int halv
 // Of the rows or coordinates of where the next step begins.
 void FixedSteps::rewrite() {
   if (start_ == Start::usual) start_ = Start::rewritten;
+  rests_.forget();
 }
 
 // After a step that failed, which left position and velocity as they were: x_ and the method stand where it began.

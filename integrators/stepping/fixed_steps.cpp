@@ -51,6 +51,7 @@ Status FixedSteps::march() {
     const std::int64_t before = run_.statistics.steps;
     status = advance(grid_.time(n), sampled);
     if (run_.statistics.steps > before + 1) ++run_.statistics.divided_steps;
+    if (status.ok() && integrates() && rests_.due()) status = rests_.look(problem_, settings_.linear(), x_);
     if (status.ok() && sampled) status = give_out(*standing_);
   }
   finish(clock_, run_.statistics);

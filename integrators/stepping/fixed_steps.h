@@ -15,6 +15,7 @@
 #include "integrators/stepping/index1_output.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/passed_in_steps.h"
+#include "integrators/stepping/rest_watch.h"
 #include "integrators/stepping/singular_ends.h"
 #include "integrators/stepping/time_grid.h"
 #include "integrators/stepping/vectors.h"
@@ -149,6 +150,7 @@ class FixedSteps {
   double rotation_ = 0;          // of the last step, the largest of a body
   Vector change_;
   BranchWatch branch_;
+  RestWatch rests_;
   SingularEnds singular_ends_;
   PassedInSteps passed_;
   std::optional<State> given_;  // a sample in a singular position

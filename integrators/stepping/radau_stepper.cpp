@@ -54,6 +54,7 @@ Status RadauStepper::settle() {
   if (rewritten) {
     h_before_ = step_.h = 0;  // the stages are those of other coordinates or rows
     convergence_ = 1;
+    consistent_.forget_approach();
   }
   if (problem_.revision() != revision) {
     step_ = Linearized(problem_), within_ = Linearized(problem_);

@@ -39,16 +39,21 @@ UnitRows unit_rows(Problem& problem, double t, std::span<const double> q) {
   return {lengths, square.ldlt().solve(Eigen::MatrixXd::Identity(problem.nc(), problem.nc()))};
 }
 
-// Whether drivers bar the position where the problem stands, in which `row` all but depends on others. Where drivers of
-// other rows are much faster it is not seen.
-bool bars(const Problem& problem, const UnitRows& rows, Eigen::Index row) {
+// Whether drivers bar the position (t, q), where the problem stands and `row` all but depends on others. What they ask
+// for is measured by what they asked for before: a driver that comes to rest with the mechanism bars nothing. Where
+// drivers of other rows are much faster it is not seen.
+bool bars(Problem& problem, const UnitRows& rows, Eigen::Index row, double t, std::span<const double> q) {
   constexpr double kNone = 0.01, kTimesShare = 10;  // a regular position has a part as small as the share
-  const double share = rows.shares()[row];
-  Eigen::VectorXd nu(problem.nc());
-  problem.nu(span(nu));
-  nu = nu.cwiseQuotient(rows.lengths);
+  constexpr int kTimes = 16;
+  Eigen::VectorXd nu(problem.nc()), usual = Eigen::VectorXd::Zero(problem.nc());
+  for (int k = 0; k <= kTimes; ++k) {
+    problem.set_position(t * k / kTimes, q);  // the last one is t
+    problem.nu(span(nu));
+    usual = usual.cwiseMax(nu.cwiseAbs());
+  }
   const auto mu = rows.inverse.col(row);
-  return std::abs(mu.dot(nu)) > (kNone + kTimesShare * share) * mu.norm() * nu.norm();
+  return std::abs(mu.dot(nu.cwiseQuotient(rows.lengths))) >
+         (kNone + kTimesShare * rows.shares()[row]) * mu.norm() * usual.cwiseQuotient(rows.lengths).norm();
 }
 
 constexpr int kLargest = 600;  // of G: a second's work
@@ -69,7 +74,7 @@ DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<
       shares[k] *= std::min(1.0, std::sqrt(squares[k]));
   }
   const double share = shares.minCoeff(&row);
-  return {static_cast<int>(row), share, bars(problem, here, row)};
+  return {static_cast<int>(row), share, bars(problem, here, row, t, q)};
 }
 
 NearSingular near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
@@ -86,7 +91,7 @@ NearSingular near_singular_position(Problem& problem, int rows, std::span<const 
       "it stopped beside a singular position of the mechanism, where the gradient of {} is a combination of the other "
       "constraints' but for {:.1g} of its length (at the start for {:.1g})",
       problem.describe_unknown(problem.nv() + static_cast<int>(row)), now[row], before[row]);
-  if (bars(problem, here, row)) return {where + "; " + kBarred, true};
+  if (bars(problem, here, row, t, q)) return {where + "; " + kBarred, true};
   const bool driven = std::ranges::any_of(problem.model().rows, [](const Row& r) { return !r.f.is_constant(); });
   return {where + "; dopri5 and dop853 step over most of such positions at larger tolerances, fixed steps may" +
           (driven ? "; where a driver asks for more than the mechanism reaches nothing does: end before it" : "")};

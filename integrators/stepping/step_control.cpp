@@ -21,7 +21,7 @@ double length(std::span<const double> x) {
 std::string unsaid(Failure failure) {
   switch (failure) {
     case Failure::singular_position:
-      return "velocities jumped beside a singular position, to where rounding would lead";
+      return "velocities or accelerations jumped beside a singular position, to where rounding would lead";
     case Failure::rotation_too_large:
       return "a body turned further than can be followed";
     case Failure::inconsistent_state:

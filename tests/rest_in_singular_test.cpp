@@ -1,0 +1,90 @@
+// Motions that come to rest in a singular position and turn back: to first order they may go on by any branch. A run
+// follows the one that accelerations lead along, or says that it does not know.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "tests/support/every_way.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+// An angle that comes down to 0 and goes up again.
+struct Turn {
+  const char* text;
+  std::function<double(double)> angle;
+  double end;
+};
+const std::array kTurns{
+    Turn{"(1 - t)^2", [](double t) { return (1 - t) * (1 - t); }, 1.5},
+    Turn{"0.3*(1 - t)^2*(1 + t)", [](double t) { return 0.3 * (1 - t) * (1 - t) * (1 + t); }, 1.5},
+    Turn{"1 - sin(3*t)", [](double t) { return 1 - std::sin(3 * t); }, 0.9},
+    Turn{"0.5*(1 - sin(5*t + 1))", [](double t) { return 0.5 * (1 - std::sin(5 * t + 1)); }, 0.5},
+};
+
+// A wheel driven by the cosine of its angle, which does not say to which side it turns.
+Scene cosine_of(const Turn& turn) {
+  Scene scene;
+  Body& wheel = scene.bodies.emplace_back();
+  wheel.name = "wheel", wheel.mass = 1, wheel.inertia = Matrix3::Identity();
+  wheel.orientation = Eigen::AngleAxisd(turn.angle(0), Vector3::UnitZ()).toRotationMatrix();
+  wheel.angular_velocity = {0, 0, (turn.angle(1e-5) - turn.angle(-1e-5)) / 2e-5};
+  Joint& hinge = scene.joints.emplace_back();
+  hinge.name = "hinge", hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
+  Constraint& row = scene.constraints.emplace_back();
+  row.name = "cosine", row.type = ConstraintType::DP1, row.i = kGround, row.j = 0;
+  row.a_i = row.a_j = {1, 0, 0};
+  row.f = Expression::parse(std::string("cos(") + turn.text + ")");
+  return scene;
+}
+
+class RestInSingular : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(All, RestInSingular, ::testing::ValuesIn(formulation_names()),
+                         [](const auto& test) { return test.param; });
+
+TEST_P(RestInSingular, IsLeftAlongTheAccelerationsOrEndsTheRun) {
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (refusal_of(integrator, GetParam()) || integrator.analysis != Analysis::dynamics) continue;
+    int followed = 0;
+    for (const Turn& turn : kTurns)
+      for (const double fine : {1e-3, 1e-5}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", integrator.name, turn.text, fine));
+        Settings settings;
+        settings.integrator = integrator.name, settings.formulation = GetParam();
+        settings.rtol = 1e-5 * fine, settings.tolerance = 1e-8;
+        settings.step = turn.end / std::round(turn.end / (0.01 * std::pow(fine, 0.2)));
+        settings.end = settings.every = turn.end;
+        const Recorded r = run(cosine_of(turn), settings);
+        if (!r.outcome.status.ok()) {
+          EXPECT_THAT(r.outcome.status.message, ::testing::HasSubstr("'cosine'"));
+          continue;
+        }
+        ++followed;
+        const Matrix3& A = r.samples.back().bodies[0].A;
+        EXPECT_NEAR(std::atan2(A(1, 0), A(0, 0)), turn.angle(turn.end), 1e-3);
+      }
+    if (!integrator.controls_error) {
+      EXPECT_GE(followed, 6) << integrator.name;
+    }
+    if (integrator.name == "dop853") {
+      EXPECT_EQ(followed, 8) << "its steps are long enough to go over it";
+    }
+  }
+}
+
+TEST_P(RestInSingular, IsNotSaidToBeBarred) {
+  for (const Turn& turn : kTurns) {
+    Settings settings = kinematics(GetParam(), turn.end / 100, turn.end);
+    const Recorded r = run(cosine_of(turn), settings);
+    if (r.outcome.status.ok()) continue;
+    EXPECT_THAT(r.outcome.status.message, ::testing::HasSubstr("in more than one way")) << turn.text;
+  }
+}
+
+}  // namespace
+}  // namespace poinsot::test
