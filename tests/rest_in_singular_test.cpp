@@ -77,6 +77,26 @@ TEST_P(RestInSingular, IsLeftAlongTheAccelerationsOrEndsTheRun) {
   }
 }
 
+// A wheel that stays there, by a kink of its driver, has left no branch.
+TEST_P(RestInSingular, MayLast) {
+  const Turn stay{"max(1 - t, 0)^2", [](double t) { return std::pow(std::max(1 - t, 0.0), 2); }, 2};
+  int stayed = 0;
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.controls_error || integrator.analysis != Analysis::dynamics) continue;
+    for (const double tolerance : {1e-3, 1e-8}) {
+      Settings settings;
+      settings.integrator = integrator.name, settings.formulation = GetParam();
+      settings.step = 5e-3, settings.tolerance = tolerance, settings.end = stay.end;
+      const Recorded r = run(cosine_of(stay), settings);
+      EXPECT_THAT(r.outcome.status.message, ::testing::Not(::testing::HasSubstr("accelerations led to")));
+      if (!r.outcome.status.ok()) continue;
+      ++stayed;
+      EXPECT_LT((r.samples.back().bodies[0].A - Matrix3::Identity()).norm(), 1e-6) << integrator.name;
+    }
+  }
+  EXPECT_GE(stayed, 6);
+}
+
 TEST_P(RestInSingular, IsNotSaidToBeBarred) {
   for (const Turn& turn : kTurns) {
     Settings settings = kinematics(GetParam(), turn.end / 100, turn.end);

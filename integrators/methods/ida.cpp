@@ -13,6 +13,7 @@
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/controlled_methods.h"
 #include "integrators/stepping/controlled_run.h"
+#include "integrators/stepping/rest_watch.h"
 
 namespace poinsot {
 namespace {
@@ -20,6 +21,8 @@ namespace {
 constexpr int kPasses = 2;        // one soon after the other that see no singular position: then none is the cause
 constexpr double kNear = 0.5;     // rad: so soon after one failure another has the same cause
 constexpr double kOnward = 1e-4;  // and so little of the run later
+constexpr double kMark = 0.01;    // rad, between two points that are remembered
+constexpr double kTurned = 0.1;   // rad: beyond, accelerations may be others
 
 class Session {
  public:
@@ -40,6 +43,8 @@ class Session {
     if (Status status = consistent_.prepare(); !status.ok()) return status;
     clock_.start();
     consistent_.stand(at_);
+    if (run_.singular_for == 0 && consistent_.factor(at_.t).ok()) consistent_.follow(at_);
+    last_.a = at_.z.head(problem_.nv());
     ida_.turn_at_most(problem_.counted_turn().rate);
     course_.give_out(at_);
     Status status = run_.singular_for > 0 ? pass() : Status{};
@@ -73,6 +78,7 @@ class Session {
       const double h = ida_.last_step(), t = at_t_;
       statistics_.largest_rotation = std::max(statistics_.largest_rotation, course_.turned(h));
       since_pass_ += course_.turned(h);
+      if (Status status = remember(t, course_.turned(h)); !status.ok()) return status;
       ida_.turn_at_most(problem_.counted_turn().rate);
       Status status;
       for (; !course_.every_step && times.next() < t; times.pass()) {
@@ -98,6 +104,22 @@ class Session {
       }
     }
     return {};
+  }
+
+  // Accelerations, by which the branch is known beyond a singular position in which the motion came to rest.
+  Status remember(double t, double turned) {
+    way_ += turned;
+    if (way_ < kMark) return {};
+    ida_.read_end(t, next_);
+    std::swap(before_, last_);
+    last_.t = t, last_.a = next_.z.head(problem_.nv()), last_.way = way_;
+    way_ = 0;
+    if (before_.a.size() == 0 || last_.way > kTurned || !turned_round(before_.a, last_.a)) return {};
+    consistent_.stand(next_);
+    if (!consistent_.factor(t).ok()) return {};
+    consistent_.look(consistent_.steepness(t));
+    const bool left = consistent_.amplification() > 1 && consistent_.lies_free(t, last_.a - before_.a);
+    return left ? other_branch_after_rest(t, before_.t) : Status{};
   }
 
   // What is discrete follows the motion as IDA has it, off the constraints by its tolerance. Where that seems to be off
@@ -189,6 +211,8 @@ class Session {
       if (Status status = passing_->prepare(); !status.ok()) return status;
     }
     if (Status status = passing_->start(at_); !status.ok()) return status;
+    if (before_.a.size() > 0 && before_.t < at_.t)
+      passing_->expect(before_.t, span(before_.a), last_.way + way_, consistent_);
     if (!std::exchange(told_, true)) {
       run_.tell(fmt::format(
           "at t = {:.6g} s, as beside a singular position, steps of ida come to nothing: those of {} lead on "
@@ -230,6 +254,8 @@ class Session {
     ida_.count(statistics_);
     ida_.begin_again(at_);
     at_t_ = at_.t;
+    for (Mark* mark : {&before_, &last_})
+      if (mark->t > at_.t) *mark = {};
   }
 
   const Run& run_;
@@ -249,6 +275,11 @@ class Session {
   bool told_ = false;
   bool by_singular_ = false;      // the last pass came by one
   double since_pass_ = HUGE_VAL;  // rad
+  struct Mark {
+    double t = 0, way = 0;  // rad, since the one before
+    Eigen::VectorXd a;
+  } before_, last_;
+  double way_ = 0;  // since the last one
 };
 
 class Ida final : public Integrator {

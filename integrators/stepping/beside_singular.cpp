@@ -40,21 +40,25 @@ bool Consistent::made_of_rounding(const State& at) {
   return acceleration > kAccounted * gamma && largest(moves()) > kAccounted * loads;
 }
 
+bool turned_round(const Eigen::VectorXd& before, const Eigen::VectorXd& now) {
+  constexpr double kReverse = 0.1;
+  return now.dot(before) < -kReverse * std::max(now.squaredNorm(), before.squaredNorm());
+}
+
 // A mechanism that comes to rest in a singular position goes on by any of its branches as far as the velocities say.
 // Beyond it accelerations of another one differ altogether from those before, in the direction that the constraints
 // leave free there, though bodies have turned by little and did not lead to expect it.
 bool Consistent::turns_back(const State& at) {
   constexpr double kTrusted = 1e4;  // times as steep as usual, beyond which rounding makes accelerations
   constexpr double kLittle = 0.1;   // rad
-  constexpr double kAltogether = 0.5, kExpected = 0.25;
+  constexpr double kExpected = 0.25;
   if (!(amplification_ > 1 && amplification_ < kTrusted) || approach_.rate < 0 || approach_.turned > kLittle)
     return false;
   const Eigen::Index nv = at.v.size();
-  const Eigen::VectorXd change = at.z.head(nv) - approach_.a;
-  const double by = change.cwiseAbs().maxCoeff();
-  if (!(by > kAltogether * std::max(largest(at.a()), largest(span(approach_.a)))) ||
-      !(approach_.rate * (at.t - approach_.t) < kExpected * by))
-    return false;
+  const Eigen::VectorXd now = at.z.head(nv);
+  if (!turned_round(approach_.a, now)) return false;
+  const Eigen::VectorXd change = now - approach_.a;
+  if (!(approach_.rate * (at.t - approach_.t) < kExpected * change.cwiseAbs().maxCoeff())) return false;
   return lies_free(at.t, change);
 }
 
@@ -82,6 +86,13 @@ bool Consistent::leaves_branch(const State& at) {
   return jump > kJumped * size + kExplained * calm_.usual * std::abs(at.t - calm_.t);
 }
 
+void Consistent::expect(double t, std::span<const double> a, double turned, const Consistent& other) {
+  usual_steepness_ = other.usual_steepness_;
+  not_looked_ = kSeldom - 1;
+  approach_.t = t, approach_.turned = turned, approach_.rate = 0;
+  approach_.a = Eigen::Map<const Eigen::VectorXd>(a.data(), static_cast<Eigen::Index>(a.size()));
+}
+
 void Consistent::approach(const State& at) {
   if (at.t > approach_.t && approach_.a.size() > 0)
     approach_.rate = (at.z.head(at.v.size()) - approach_.a).cwiseAbs().maxCoeff() / (at.t - approach_.t);
@@ -92,7 +103,6 @@ void Consistent::approach(const State& at) {
 
 void Consistent::follow(const State& at) {
   constexpr double kGrows = 10, kSlow = 0.1;
-  constexpr int kSeldom = 4;
   const double turned = problem_.fastest_turn() * (at.t - std::exchange(followed_, at.t));
   turned_ += turned;
   approach_.turned += turned;

@@ -78,6 +78,9 @@ class Consistent {
   bool lies_free(double t, const Eigen::VectorXd& x);
   // A step ends there that leaves none.
   void follow(const State& at);
+  // Instead of what was followed: accelerations were a at a time t, bodies have turned since, and how steep the
+  // constraints usually are another one knows.
+  void expect(double t, std::span<const double> a, double turned, const Consistent& other);
   // Coordinates or the data are others: accelerations of before are not to be compared with.
   void forget_approach() { approach_ = {}; }
   // x ← its part along the constraints, M-orthogonally, with the factorization at hand; nv numbers. The problem stands
@@ -115,6 +118,7 @@ class Consistent {
   std::unique_ptr<Aside> aside_;
   StepSystem system_;
   bool prepared_ = false;
+  static constexpr int kSeldom = 4;     // steps, of which one is looked at where no singular position is near
   static constexpr double kSteep = 30;  // times the usual steepness: a singular position is near
   double steepness_ = 0, usual_steepness_ = 0, amplification_ = 1;
   bool beside_singular_ = false;
@@ -134,5 +138,8 @@ class Consistent {
   const std::size_t nv_, nc_;
   Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_, off_by_one_;
 };
+
+// Whether accelerations are about the reverse of what they were.
+bool turned_round(const Eigen::VectorXd& before, const Eigen::VectorXd& now);
 
 }  // namespace poinsot

@@ -35,6 +35,11 @@ class ExplicitStepper {
   // From a consistent state. The problem stands there afterwards.
   Status start(const State& state);
 
+  // After start(): see Consistent.
+  void expect(double t, std::span<const double> a, double turned, const Consistent& other) {
+    consistent_.expect(t, a, turned, other);
+  }
+
   // Hairer's automatic choice; one evaluation.
   Status first_step(double end, double& h);
   enum class Stages { as_they_come, projected };

@@ -3,39 +3,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
 
+Status other_branch_after_rest(double t, double since) {
+  return {Failure::singular_position, t,
+          fmt::format("at t = {:.9g} s the motion, which had come to rest in a singular position of the constraints "
+                      "after {:.9g} s, goes on along another branch than its accelerations led to; try another step "
+                      "or dop853",
+                      t, since)};
+}
+
 Status RestWatch::look(const Problem& problem, const LinearChoice& choice, const State& at) {
+  constexpr int kAccelerations = 3;  // looks, of which the last two know theirs
+  // A motion that lasts in the position moves by rounding, to and fro.
+  constexpr double kMoves = 0.1, kForgotten = 0.99;
   wait_ = kApart;
-  if (looks_ == 2 && turned_round(at) && left_branch(problem, choice, at)) {
-    return {Failure::singular_position, at.t,
-            fmt::format("at t = {:.9g} s the motion, which had come to rest in a singular position of the constraints "
-                        "after {:.9g} s, goes on along another branch than its accelerations led to; try another step "
-                        "or dop853",
-                        at.t, before_.t)};
+  double size = 0;
+  if (looks_ > 0) {
+    a_ = (at.v - before_[0].v) / (at.t - before_[0].t);
+    size = largest(span(a_));
+    usual_ = std::max(size, kForgotten * usual_);
   }
-  std::swap(before_, last_);
-  last_.t = at.t, last_.q = at.q, last_.v = at.v;
-  looks_ = std::min(looks_ + 1, 2);
+  if (looks_ == kAccelerations && size > kMoves * usual_) {
+    // The last stretch may have turned round in its midst, so that its mean is nothing.
+    const auto then = std::ranges::find_if(before_, [&](const Look& look) { return turned_round(look.a, a_); });
+    if (then != before_.end() && left_branch(problem, choice, at, *then)) {
+      return other_branch_after_rest(at.t, before_[1].t);
+    }
+  }
+  std::swap(before_[0], before_[1]);
+  before_[0].t = at.t, before_[0].q = at.q, before_[0].v = at.v, before_[0].a = a_;
+  looks_ = std::min(looks_ + 1, kAccelerations);
   return {};
 }
 
-bool RestWatch::turned_round(const State& at) const {
-  constexpr double kAltogether = 0.5, kStretches = 3;
-  const double h = at.t - last_.t, h_before = last_.t - before_.t;
-  const auto now = (at.v - last_.v) / h, then = (last_.v - before_.v) / h_before;
-  const double most = std::max(now.cwiseAbs().maxCoeff(), then.cwiseAbs().maxCoeff());
-  if (!((now - then).cwiseAbs().maxCoeff() > kAltogether * most)) return false;
-  return std::max(largest(span(at.v)), largest(span(last_.v))) < kStretches * h * most;
-}
-
-bool RestWatch::left_branch(const Problem& problem, const LinearChoice& choice, const State& at) const {
-  constexpr double kSteeper = 4;
+bool RestWatch::left_branch(const Problem& problem, const LinearChoice& choice, const State& at,
+                            const Look& then) const {
+  constexpr double kStretches = 3, kSteeper = 4;
+  const double fastest = std::max(largest(span(at.v)), largest(span(before_[0].v)));
+  if (!(fastest < kStretches * (at.t - before_[0].t) * std::max(largest(span(a_)), largest(span(then.a)))))
+    return false;
   const std::unique_ptr<Problem> own = problem.clone();
   Consistent consistent(*own, choice);
   const auto steepness = [&](double t, const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
@@ -43,11 +54,10 @@ bool RestWatch::left_branch(const Problem& problem, const LinearChoice& choice, 
     own->set_velocity(span(v));
     return consistent.factor(t).ok() ? consistent.steepness(t) : HUGE_VAL;
   };
-  const double before = steepness(before_.t, before_.q, before_.v), last = steepness(last_.t, last_.q, last_.v);
-  const double now = steepness(at.t, at.q, at.v);
-  if (!(std::max({before, last, now}) > kSteeper * std::min({before, last, now}))) return false;
-  const double h = at.t - last_.t, h_before = last_.t - before_.t;
-  return now < HUGE_VAL && consistent.lies_free(at.t, (at.v - last_.v) / h - (last_.v - before_.v) / h_before);
+  const auto of = [&](const Look& look) { return steepness(look.t, look.q, look.v); };
+  const double first = of(before_[1]), last = of(before_[0]), now = steepness(at.t, at.q, at.v);
+  if (!(std::max({first, last, now}) > kSteeper * std::min({first, last, now}))) return false;
+  return now < HUGE_VAL && consistent.lies_free(at.t, a_ - then.a);
 }
 
 }  // namespace poinsot

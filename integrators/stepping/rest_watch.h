@@ -2,16 +2,21 @@
 //
 // Where branches meet and velocities vanish, velocities do not tell branches apart (branch.h), accelerations do: those
 // of another branch differ altogether from those before, in the direction that the constraints leave free there. Every
-// eighth step the mean acceleration since the last look is compared with that before; where it turned round, velocities
-// are what one such stretch makes of them, and the constraints are much steeper at one of the looks than at another, it
-// was left. (With error control: Consistent::leaves_branch.)
+// eighth step the mean acceleration since the last look is compared with those before; where it turned round,
+// velocities are what such stretches make of them, and the constraints are much steeper at one of the looks than at
+// another, it was left. (With error control: Consistent::leaves_branch.)
 #pragma once
+
+#include <array>
 
 #include "formulations/problem.h"
 #include "integrators/state.h"
 #include "linsolve/linear_system.h"
 
 namespace poinsot {
+
+// What is said of a motion seen at t, which was on its branch at `since`.
+Status other_branch_after_rest(double t, double since);
 
 class RestWatch {
  public:
@@ -27,13 +32,14 @@ class RestWatch {
 
   struct Look {
     double t = 0;
-    Eigen::VectorXd q, v;
+    Eigen::VectorXd q, v, a;  // a: the mean since the look before
   };
-  bool turned_round(const State& at) const;
-  bool left_branch(const Problem& problem, const LinearChoice& choice, const State& at) const;
+  bool left_branch(const Problem& problem, const LinearChoice& choice, const State& at, const Look& then) const;
 
   int wait_ = kApart, looks_ = 0;
-  Look last_, before_;
+  std::array<Look, 2> before_;  // the last one first
+  Eigen::VectorXd a_;           // as of a look, now
+  double usual_ = 0;            // largest of the looks so far, those long ago forgotten
 };
 
 }  // namespace poinsot
