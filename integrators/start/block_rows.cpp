@@ -17,7 +17,7 @@ int body_of(const Column& entry) {
 
 }  // namespace
 
-BlockRows::BlockRows(const RowSpace& space, std::vector<int> rows) : rows_(std::move(rows)), parts_(rows_.size()) {
+BlockRows::BlockRows(const RowSpace& space, std::vector<int> rows) : rows_(std::move(rows)), ends_(rows_.size()) {
   const auto visit = [&](auto&& take) {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       int last = -1;
@@ -29,14 +29,21 @@ BlockRows::BlockRows(const RowSpace& space, std::vector<int> rows) : rows_(std::
   std::ranges::sort(bodies_);
   bodies_.erase(std::unique(bodies_.begin(), bodies_.end()), bodies_.end());
   visit([&](std::size_t k, int body) {
-    Parts& of = parts_[k];
+    Ends& of = ends_[k];
     of.body[of.body[0] < 0 ? 0 : 1] = place_of_body(body);
   });
   of_body_ = Lists::collect(static_cast<int>(bodies_.size()), [&](auto&& emit) {
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      for (const int body : parts_[k].body)
+      for (const int body : ends_[k].body)
         if (body >= 0) emit(body, static_cast<int>(k));
   });
+  int next = 0;
+  for (int body = 0; body < of_body_.size(); ++body)
+    for (const int k : of_body_[body]) {
+      Ends& of = ends_[index(k)];
+      of.part[of.body[0] == body ? 0 : 1] = next++;
+    }
+  parts_.resize(index(next));
 }
 
 int BlockRows::place_of_body(int body) const {
@@ -50,35 +57,34 @@ double BlockRows::products() const {
 }
 
 void BlockRows::stand(const RowSpace& space) {
+  std::ranges::fill(parts_, Part::Zero());
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    Parts& of = parts_[k];
-    of.part[0].setZero(), of.part[1].setZero();
     int at = -1, last = -1;
     for (Column it(space.columns(), rows_[k]); it; ++it) {
       if (body_of(it) != last) ++at, last = body_of(it);
-      of.part[at][it.row() % 6] = it.value();
+      parts_[index(ends_[k].part[at])][it.row() % 6] = it.value();
     }
   }
 }
 
 double BlockRows::dot(int k, int l) const {
-  const Parts &a = parts_[index(k)], &b = parts_[index(l)];
+  const Ends &a = ends_[index(k)], &b = ends_[index(l)];
   double sum = 0;
   for (int i = 0; i < 2 && a.body[i] >= 0; ++i)
     for (int j = 0; j < 2; ++j)
-      if (a.body[i] == b.body[j]) sum += a.part[i].dot(b.part[j]);
+      if (a.body[i] == b.body[j]) sum += part(a, i).dot(part(b, j));
   return sum;
 }
 
 void BlockRows::add(double factor, int k, Eigen::Ref<Eigen::VectorXd> f) const {
-  const Parts& of = parts_[index(k)];
-  for (int i = 0; i < 2 && of.body[i] >= 0; ++i) f.segment<6>(6 * of.body[i]) += factor * of.part[i];
+  const Ends& of = ends_[index(k)];
+  for (int i = 0; i < 2 && of.body[i] >= 0; ++i) f.segment<6>(6 * of.body[i]) += factor * part(of, i);
 }
 
 double BlockRows::share(int k, const Eigen::Ref<const Eigen::VectorXd>& f) const {
-  const Parts& of = parts_[index(k)];
+  const Ends& of = ends_[index(k)];
   double sum = 0;
-  for (int i = 0; i < 2 && of.body[i] >= 0; ++i) sum += of.part[i].dot(f.segment<6>(6 * of.body[i]));
+  for (int i = 0; i < 2 && of.body[i] >= 0; ++i) sum += part(of, i).dot(f.segment<6>(6 * of.body[i]));
   return sum;
 }
 

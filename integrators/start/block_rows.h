@@ -26,7 +26,7 @@ class BlockRows {
   // Rows that share a body with row k, itself among them; some of them twice.
   template <typename Function>
   void for_each_beside(int k, Function&& function) const {
-    for (const int body : parts_[static_cast<std::size_t>(k)].body)
+    for (const int body : ends_[static_cast<std::size_t>(k)].body)
       if (body >= 0)
         for (const int l : of_body_[body]) function(l);
   }
@@ -34,10 +34,12 @@ class BlockRows {
   // Calls function(k, l, product) for what each body has to g_k · g_l, every pair of rows on it once.
   template <typename Function>
   void for_each_product(Function&& function) const {
+    const Part* part = parts_.data();
     for (int body = 0; body < of_body_.size(); ++body) {
       const std::span<const int> rows = of_body_[body];
-      for (auto k = rows.begin(); k != rows.end(); ++k)
-        for (auto l = k; l != rows.end(); ++l) function(*k, *l, part(*k, body).dot(part(*l, body)));
+      for (std::size_t k = 0; k < rows.size(); ++k)
+        for (std::size_t l = k; l < rows.size(); ++l) function(rows[k], rows[l], part[k].dot(part[l]));
+      part += rows.size();
     }
   }
   // f ← f + factor g_k
@@ -51,18 +53,16 @@ class BlockRows {
   int place_of_body(int body) const;
 
   using Part = Eigen::Matrix<double, 6, 1>;
-  struct Parts {
+  struct Ends {
     int body[2] = {-1, -1};  // place of it, −1: none
-    Part part[2];
+    int part[2] = {-1, -1};
   };
-  const Part& part(int k, int body) const {
-    const Parts& of = parts_[static_cast<std::size_t>(k)];
-    return of.part[of.body[0] == body ? 0 : 1];
-  }
+  const Part& part(const Ends& of, int i) const { return parts_[static_cast<std::size_t>(of.part[i])]; }
   std::vector<int> rows_;    // of the space
   std::vector<int> bodies_;  // ascending
   Lists of_body_;            // rows
-  std::vector<Parts> parts_;
+  std::vector<Ends> ends_;
+  std::vector<Part> parts_;  // of rows, in the order of of_body_
 };
 
 }  // namespace poinsot

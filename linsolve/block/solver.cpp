@@ -175,9 +175,10 @@ class Solver final : public LinearSolver {
       return Pivots::bad;
     }
     if (cancelled(weight_, kCancelled).empty()) return Pivots::good;
-    near_ = Answer::checked;
+    near_ = std::max(near_, Answer::sampled);
     bad = cancelled(weight_, kRounding);  // may still pass for pivots, in a system of very different masses
     if (bad.empty()) return Pivots::good;
+    near_ = Answer::checked;
     return cancelled(weight_, 1 / kSingularCondition).empty() ? Pivots::doubtful : Pivots::bad;
   }
 
