@@ -171,6 +171,7 @@ class Session {
   Status cross(double t) {
     at_.t = t;
     if (Status status = consistent_.cross(at_); !status.ok()) return status;
+    before_ = last_ = {};
     bool other_rows = false;
     if (Status status = poinsot::accept(problem_, at_, other_rows); !status.ok()) return status;
     if (other_rows) return renew();
