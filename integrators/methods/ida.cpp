@@ -36,7 +36,9 @@ class Session {
         passage_(problem_, consistent_),
         at_(run.state),
         next_(problem_),
-        course_(run, clock_) {}
+        course_(run, clock_) {
+    before_.a = last_.a.setZero(problem_.nv());
+  }
 
   Status integrate() {
     if (Status status = ida_.begin(at_); !status.ok()) return status;
@@ -44,7 +46,7 @@ class Session {
     clock_.start();
     consistent_.stand(at_);
     if (run_.singular_for == 0 && consistent_.factor(at_.t).ok()) consistent_.follow(at_);
-    last_.a = at_.z.head(problem_.nv());
+    last_.a = at_.z.head(problem_.nv()), last_.known = true;
     ida_.turn_at_most(problem_.counted_turn().rate);
     course_.give_out(at_);
     Status status = run_.singular_for > 0 ? pass() : Status{};
@@ -112,9 +114,9 @@ class Session {
     if (way_ < kMark) return {};
     ida_.read_end(t, next_);
     std::swap(before_, last_);
-    last_.t = t, last_.a = next_.z.head(problem_.nv()), last_.way = way_;
+    last_.t = t, last_.a = next_.z.head(problem_.nv()), last_.way = way_, last_.known = true;
     way_ = 0;
-    if (before_.a.size() == 0 || last_.way > kTurned || !turned_round(before_.a, last_.a)) return {};
+    if (!before_.known || last_.way > kTurned || !turned_round(before_.a, last_.a)) return {};
     consistent_.stand(next_);
     if (!consistent_.factor(t).ok()) return {};
     consistent_.look(consistent_.steepness(t));
@@ -171,7 +173,7 @@ class Session {
   Status cross(double t) {
     at_.t = t;
     if (Status status = consistent_.cross(at_); !status.ok()) return status;
-    before_ = last_ = {};
+    before_.known = last_.known = false;
     bool other_rows = false;
     if (Status status = poinsot::accept(problem_, at_, other_rows); !status.ok()) return status;
     if (other_rows) return renew();
@@ -212,8 +214,7 @@ class Session {
       if (Status status = passing_->prepare(); !status.ok()) return status;
     }
     if (Status status = passing_->start(at_); !status.ok()) return status;
-    if (before_.a.size() > 0 && before_.t < at_.t)
-      passing_->expect(before_.t, span(before_.a), last_.way + way_, consistent_);
+    if (before_.known && before_.t < at_.t) passing_->expect(before_.t, span(before_.a), last_.way + way_, consistent_);
     if (!std::exchange(told_, true)) {
       run_.tell(fmt::format(
           "at t = {:.6g} s, as beside a singular position, steps of ida come to nothing: those of {} lead on "
@@ -255,8 +256,7 @@ class Session {
     ida_.count(statistics_);
     ida_.begin_again(at_);
     at_t_ = at_.t;
-    for (Mark* mark : {&before_, &last_})
-      if (mark->t > at_.t) *mark = {};
+    for (Mark* mark : {&before_, &last_}) mark->known = mark->known && mark->t <= at_.t;
   }
 
   const Run& run_;
@@ -277,6 +277,7 @@ class Session {
   bool by_singular_ = false;      // the last pass came by one
   double since_pass_ = HUGE_VAL;  // rad
   struct Mark {
+    bool known = false;
     double t = 0, way = 0;  // rad, since the one before
     Eigen::VectorXd a;
   } before_, last_;

@@ -89,16 +89,17 @@ bool Consistent::leaves_branch(const State& at) {
 void Consistent::expect(double t, std::span<const double> a, double turned, const Consistent& other) {
   usual_steepness_ = other.usual_steepness_;
   not_looked_ = kSeldom - 1;
-  approach_.t = t, approach_.turned = turned, approach_.rate = 0;
+  approach_.t = t, approach_.turned = turned, approach_.rate = 0, approach_.known = true;
   approach_.a = Eigen::Map<const Eigen::VectorXd>(a.data(), static_cast<Eigen::Index>(a.size()));
 }
 
 void Consistent::approach(const State& at) {
-  if (at.t > approach_.t && approach_.a.size() > 0)
+  if (approach_.known && at.t > approach_.t)
     approach_.rate = (at.z.head(at.v.size()) - approach_.a).cwiseAbs().maxCoeff() / (at.t - approach_.t);
   approach_.a = at.z.head(at.v.size());
   approach_.t = at.t;
   approach_.turned = 0;
+  approach_.known = true;
 }
 
 void Consistent::follow(const State& at) {

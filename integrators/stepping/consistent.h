@@ -82,7 +82,7 @@ class Consistent {
   // constraints usually are another one knows.
   void expect(double t, std::span<const double> a, double turned, const Consistent& other);
   // Coordinates or the data are others: accelerations of before are not to be compared with.
-  void forget_approach() { approach_ = {}; }
+  void forget_approach() { approach_.known = false, approach_.rate = -1; }
   // x ← its part along the constraints, M-orthogonally, with the factorization at hand; nv numbers. The problem stands
   // at `at`, before and after.
   Status along_constraints(const State& at, std::span<double> x);
@@ -130,6 +130,7 @@ class Consistent {
     Eigen::VectorXd v;
   } calm_;
   struct Approach {  // the last state that had no singular position near, as was last seen
+    bool known = false;
     double t = 0, turned = 0;
     double rate = -1;  // at which accelerations changed before it; below 0: not known
     Eigen::VectorXd a;

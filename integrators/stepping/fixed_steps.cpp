@@ -24,6 +24,7 @@ FixedSteps::FixedSteps(const Run& run)
       discrete_(run.problem.has_discrete_state()),
       has_alternates_(has_alternates(run.problem.model())),
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
+      rests_(run.problem),
       singular_ends_(run.settings),
       passed_(run.problem.model(), run.settings.end, run.tell),
       output_(run.settings) {}

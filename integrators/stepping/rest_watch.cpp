@@ -17,6 +17,10 @@ Status other_branch_after_rest(double t, double since) {
                       t, since)};
 }
 
+RestWatch::RestWatch(const Problem& problem) : a_(Eigen::VectorXd::Zero(problem.nv())) {
+  before_.fill({0, Eigen::VectorXd::Zero(problem.nq()), a_, a_});
+}
+
 Status RestWatch::look(const Problem& problem, const LinearChoice& choice, const State& at) {
   constexpr int kAccelerations = 3;  // looks, of which the last two know theirs
   // A motion that lasts in the position moves by rounding, to and fro.

@@ -20,6 +20,8 @@ Status other_branch_after_rest(double t, double since);
 
 class RestWatch {
  public:
+  explicit RestWatch(const Problem& problem);  // steps allocate nothing
+
   // Whether the end of the step that was done is to be looked at.
   bool due() { return --wait_ == 0; }
   // That end, `at`; failed where the branch was left. The problem is not touched.
