@@ -48,7 +48,7 @@ inline Vec vector(F&& f) {
   (std::make_integer_sequence<int, kLanes>());
 }
 
-// Number `lane` everywhere; another number or zero there.
+// Number `lane` everywhere; another number there, that of another vector, or zero.
 template <int lane>
 inline Vec spread(Vec x) {
   return [&]<int... i>(std::integer_sequence<int, i...>) {
@@ -60,6 +60,13 @@ template <int lane>
 inline Vec with(Vec x, double number) {
   return [&]<int... i>(std::integer_sequence<int, i...>) {
     return __builtin_shufflevector(x, number - Vec{}, (i == lane ? kLanes + i : i)...);
+  }
+  (std::make_integer_sequence<int, kLanes>());
+}
+template <int lane>
+inline Vec with(Vec x, Vec other) {
+  return [&]<int... i>(std::integer_sequence<int, i...>) {
+    return __builtin_shufflevector(x, other, (i == lane ? kLanes + i : i)...);
   }
   (std::make_integer_sequence<int, kLanes>());
 }

@@ -3,7 +3,8 @@
 // 1. analyze(pattern) is called once: it fixes the layout and does all symbolic work. state() becomes analyzed.
 // 2. The caller writes the values of A: it zeroes values(), then adds every block at the slots() (see
 // linsolve/pattern.h).
-// 3. factor() factorizes what values() holds; values() stays as it is. state() becomes factored when it answers ok.
+// 3. factor() factorizes what values() holds, and values() holds it afterwards, though slots() may be others then.
+// state() becomes factored when it answers ok.
 // 4. solve(b) replaces b by A⁻¹ b, solve_transposed(b) by A⁻ᵀ b, as often as wanted, for the values of the last
 // factor(). Not every solver knows the second (linsolve/registry.h).
 // 5. 2 to 4 repeat; nothing is allocated in them after the first round.

@@ -35,6 +35,11 @@ struct Drift {
     largest = std::max(largest, ratio);
     poison += ratio * 0;
   }
+  bool within(double range) const { return poison == 0 && least * range >= 1 && largest <= range; }
+  // No farther than others, give or take a factor.
+  bool like(const Drift& seen, double factor) const {
+    return least * factor >= seen.least && largest <= factor * seen.largest;
+  }
 };
 
 // Kernels are written out for fewer pivots.

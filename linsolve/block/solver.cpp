@@ -8,6 +8,11 @@
 //              then Bauer's condition (condition.h) and the residual of a solve decide;
 //   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
 //
+// Where the fresh one left rounding, and few constraints are as well eliminated after all bodies (schur.h), that is
+// done in the place of the kept ones while its own pivots stay within a decade; each time that they have not, it is
+// examined. To find out costs as much as it saves in a hundred solutions: it begins after so many, and ends for good
+// where it served for less.
+//
 // Where the fresh one left more than rounding, solutions are looked at, too: all of them where it left much, else all
 // until they turn out good without refinement. Where too many did not, pivot blocks are inverted no more (pivots.h).
 //
@@ -17,7 +22,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "core/check.h"
@@ -25,9 +29,11 @@
 #include "linsolve/back_ends.h"
 #include "linsolve/block/cancellation.h"
 #include "linsolve/block/factor.h"
+#include "linsolve/block/fusion.h"
 #include "linsolve/block/graph.h"
 #include "linsolve/block/schedule.h"
 #include "linsolve/block/schedules.h"
+#include "linsolve/block/schur.h"
 #include "linsolve/condition.h"
 #include "linsolve/csc_layout.h"
 #include "linsolve/equilibration.h"
@@ -58,15 +64,16 @@ constexpr int kCalm = 8, kSeldom = 7, kLongCalm = 15 * kSeldom, kRarely = 3 * kS
 // Where so many solutions needed refinement, and of those looked at one in so many, inverses of pivot blocks may be the
 // cause; to factor these in their place costs about as much as that refinement.
 constexpr int kOften = 8, kShare = 10;
+constexpr int kWorthwhile = 64;  // good solutions, after which bodies first are examined
 constexpr int kRefinements = 3;  // each gains three digits or more of kFairResidual; beyond, they do not converge
 constexpr int kRepairs = 8;      // each fuses all that is bad at the time and costs an analysis
-constexpr std::size_t kMostTakenIn = 128;  // groups by one body: a front of some hundred unknowns
-constexpr int kPatience = 3;               // times in a row that klu has to help before it takes over
+constexpr int kPatience = 3;     // times in a row that klu has to help before it takes over
 
 // How solutions are made of the values at hand.
 enum class Answer {
   open,         // pivots are examined at the next factorization
   trusted,      // given out unseen
+  by_schur,     // the same, by bodies first
   sampled,      // the residual of each is looked at until many in a row were good, then of a few
   checked,      // the residual of each is looked at
   helped,       // by klu; the next values are tried here again
@@ -80,13 +87,17 @@ enum class Pivots {
   bad,       // or some are nothing else
 };
 
+enum class BodiesFirst { unfit, unexamined, serve };
+
 class Solver final : public LinearSolver {
+ public:
+  std::span<const int> slots() const override { return bodies_first() ? schur_.slots() : LinearSolver::slots(); }
+  std::span<double> values() override { return bodies_first() ? schur_.values() : LinearSolver::values(); }
+
  private:
   LinearStatus do_analyze(const Pattern& pattern) override {
     if (LinearStatus status = layout_.build(pattern); !status.ok()) return status;
     if (LinearStatus status = layout_.matching(); !status.ok()) return status;
-    slots_ = layout_.slots;
-    std::vector<int>().swap(layout_.slots);
     node_ = pattern.node;
     residual_.resize(layout_);
     values_.assign(index(layout_.nonzeros()), 0);
@@ -95,6 +106,9 @@ class Solver final : public LinearSolver {
     helped_ = 0;
     fused_.assign(index(1 + *std::ranges::max_element(node_)), -1);
     answer_ = symmetry(layout_) >= kSymmetric && order() ? Answer::open : Answer::handed_over;
+    const bool fits = answer_ == Answer::open && schur_.lay_out(pattern, layout_);
+    bodies_first_ = fits ? BodiesFirst::unexamined : BodiesFirst::unfit;
+    slots_ = std::exchange(layout_.slots, {});
     return {};
   }
 
@@ -108,30 +122,36 @@ class Solver final : public LinearSolver {
   }
 
   LinearStatus do_factor() override {
+    if (bodies_first()) {
+      if (schur_.factor(kNear)) {
+        answer_ = Answer::by_schur;
+        ++statistics_.refactorizations;
+        return {};
+      }
+      schur_.copy_values(values_);
+      answer_ = near_;  // with the schedule's pivots of before
+    }
+    const LinearStatus status = factor_in_order();
+    if (bodies_first() || (bodies_first_ == BodiesFirst::unexamined && good_ >= kWorthwhile)) examine_bodies_first();
+    return status;
+  }
+
+  LinearStatus factor_in_order() {
     if (answer_ == Answer::handed_over) return factor_by_klu();
     if (refined_ >= kOften && refined_ * kShare > looked_at_) factor_.drop_inverses();
     const bool examined = answer_ == Answer::trusted || answer_ == Answer::sampled || answer_ == Answer::checked;
     const Drift drift = factor_.factor(*schedule_, values_, examined);
-    if (!examined || !within(drift, kFar)) return factor_fresh();
+    if (!examined || !drift.within(kFar)) return factor_fresh();
     ++statistics_.refactorizations;
     drift_ = drift;
-    answer_ = within(drift, kNear)                               ? near_
-              : near_ != Answer::checked && like(drift, looked_) ? Answer::sampled
-                                                                 : Answer::checked;
+    answer_ = drift.within(kNear)                                      ? near_
+              : near_ != Answer::checked && drift.like(looked_, kLike) ? Answer::sampled
+                                                                       : Answer::checked;
     return {};
   }
 
   std::uint64_t orientation() override { return answer_ == Answer::handed_over ? klu_->orientation() : 0; }
   Helper helper() const override { return {"klu", klu_.get()}; }
-
-  static bool within(const Drift& drift, double range) {
-    return drift.poison == 0 && drift.least * range >= 1 && drift.largest <= range;
-  }
-
-  // Pivots no farther from those examined than where a solution was seen to be good, give or take kLike.
-  static bool like(const Drift& drift, const Drift& seen) {
-    return drift.least * kLike >= seen.least && drift.largest <= kLike * seen.largest;
-  }
 
   LinearStatus factor_fresh() {
     if (!all_finite(values_)) return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
@@ -148,7 +168,7 @@ class Solver final : public LinearSolver {
     const Pivots first = factor_looking(bad);
     Pivots last = first;
     for (int repairs = 0; last != Pivots::good; ++repairs) {
-      if (repairs == kRepairs || !fuse(bad) || !order()) break;
+      if (repairs == kRepairs || !fuse(layout_, node_, *schedule_, bad, fused_) || !order()) break;
       last = factor_looking(bad);
     }
     if (last != Pivots::good && first == Pivots::doubtful) {  // repairs came to nothing better, and are undone
@@ -163,6 +183,42 @@ class Solver final : public LinearSolver {
     good_ = 0;
     helped_ = 0;
     return {};
+  }
+
+  // Solutions, and in `size` the largest residual they left.
+  template <class Solve>
+  auto looking(Solve&& solve, double& size) {
+    return [this, solve, &size](std::span<double> b) {
+      b_.assign(b.begin(), b.end());
+      solve(b);
+      size = std::max(size, residual(b_, b));
+    };
+  }
+  std::vector<double> columns() const {  // sizes of the unknowns
+    std::vector<double> x(index(layout_.n));
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] = residual_.column(j);
+    return x;
+  }
+
+  bool bodies_first() const { return bodies_first_ == BodiesFirst::serve; }
+
+  // After a factorization in the usual order: whether to eliminate bodies first leaves residuals that are rounding,
+  // too.
+  void examine_bodies_first() {
+    const bool again = bodies_first(), worthwhile = !again || by_schur_ >= kWorthwhile;
+    bodies_first_ = BodiesFirst::unfit;
+    by_schur_ = 0;
+    if (!worthwhile || (answer_ != Answer::trusted && answer_ != Answer::sampled)) return;
+    if (!again) schur_.take_values(values_);
+    if (!all_finite(values_) || !schur_.choose(residual_.rows())) return;
+    (void)schur_.factor(kNear);
+    double size = 0;
+    const auto solve = looking([&](std::span<double> b) { schur_.solve(b); }, size);
+    Condition condition;
+    condition.resize(layout_.n);
+    if (condition.estimate(layout_, values_, solve, columns()) >= kSingularCondition || size > kSmallResidual) return;
+    bodies_first_ = BodiesFirst::serve;
+    answer_ = Answer::by_schur;
   }
 
   // Factorizes, and finds the pivots that may be why the factors are not to be trusted.
@@ -189,15 +245,10 @@ class Solver final : public LinearSolver {
     weight_.assign(rows.begin(), rows.end());
     Condition condition;
     condition.resize(layout_.n);
-    std::vector<double> x(rows.size());  // sizes of the unknowns, then a solution
-    for (std::size_t j = 0; j < x.size(); ++j) x[j] = residual_.column(j);
+    std::vector<double> x = columns();  // sizes of the unknowns, then a solution
     double size = 0;
     std::int64_t corrections = 0;
-    const auto solve = [&](std::span<double> b) {
-      b_.assign(b.begin(), b.end());
-      factor_.solve(*schedule_, b);
-      size = std::max(size, residual(b_, b));
-    };
+    const auto solve = looking([&](std::span<double> b) { factor_.solve(*schedule_, b); }, size);
     for (const bool last : {false, true}) {
       factor_.weigh_rows(*schedule_, weight_);
       (void)factor_.factor(*schedule_, values_, false);
@@ -217,42 +268,13 @@ class Solver final : public LinearSolver {
     return false;
   }
 
-  // A body that is not regular by itself takes in a group of its constraints; a group that was a pivot too early goes
-  // to the last of its bodies. `bad`: such pivots, by place. False where nothing is left to fuse, and where a body
-  // would take in more than share a front: its own six unknowns cannot be why all these are bad.
-  bool fuse(const std::vector<int>& bad) {
-    Incidence incidence;
-    incidence.find(layout_, node_, fused_);
-    std::vector<int> place(fused_.size(), 0);  // in the order of elimination, by node
-    for (int k = 0; k < schedule_->n; ++k) place[index(node_[index(schedule_->unknown[index(k)])])] = k;
-    std::vector<int> fused = fused_;
-    bool any = false;
-    for (const int k : bad) {
-      const int node = node_[index(schedule_->unknown[index(k)])];
-      if (fused[index(node)] >= 0) continue;
-      if (incidence.is_group[index(node)]) {
-        const std::span<const int> bodies = incidence.bodies[node];
-        if (bodies.empty()) continue;
-        fused[index(node)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[index(b)]; });
-        any = true;
-        continue;
-      }
-      for (const int g : incidence.groups[node])
-        if (fused[index(g)] < 0) {
-          fused[index(g)] = node;
-          any = true;
-          break;
-        }
-    }
-    std::vector<std::size_t> taken_in(fused.size(), 0);  // groups, by node of a body
-    for (const int body : fused)
-      if (body >= 0 && ++taken_in[index(body)] > kMostTakenIn) return false;
-    fused_ = std::move(fused);
-    return any;
-  }
-
   LinearStatus do_solve(std::span<double> b) override {
     if (answer_ == Answer::helped || answer_ == Answer::handed_over) return klu_->solve(b);
+    if (answer_ == Answer::by_schur) {
+      ++by_schur_;
+      schur_.solve(b);
+      return {};
+    }
     if (answer_ == Answer::trusted || (answer_ == Answer::sampled && passes_unseen())) {
       ++good_;
       factor_.solve(*schedule_, b);
@@ -326,6 +348,8 @@ class Solver final : public LinearSolver {
   std::vector<int> node_, fused_;
   std::shared_ptr<const Schedule> schedule_;
   Factor factor_;
+  Schur schur_;
+  BodiesFirst bodies_first_ = BodiesFirst::unfit;
   std::unique_ptr<LinearSolver> klu_;
   Residual residual_;
   std::vector<double> b_;
@@ -334,6 +358,7 @@ class Solver final : public LinearSolver {
   Answer near_ = Answer::trusted;  // with pivots near those of the last fresh factorization, by what that one left
   Drift drift_, looked_;           // of the pivots at hand, and of those whose last solution was seen to be good
   std::int64_t good_ = 0;          // solutions since one was not, as far as was looked
+  std::int64_t by_schur_ = 0;      // solutions since bodies first were examined
   std::int64_t looked_at_ = 0, refined_ = 0;  // solutions of whatever pattern, and those that needed refinement
   int helped_ = 0;                            // by klu, times in a row
 };

@@ -27,13 +27,6 @@ class LinearSolvers : public testing::TestWithParam<LinearSolverEntry> {
 INSTANTIATE_TEST_SUITE_P(Registry, LinearSolvers, testing::ValuesIn(linear_solvers()),
                          [](const auto& entry) { return std::string(entry.param.name); });
 
-inline std::vector<double> random_vector(int n, std::mt19937_64& random) {
-  std::normal_distribution<double> normal;
-  std::vector<double> b(static_cast<std::size_t>(n));
-  for (double& x : b) x = normal(random);
-  return b;
-}
-
 // The factors D_r, D_c in whose norms a badly scaled system is judged.
 struct Scaled {
   explicit Scaled(const SampleSystem& s) {

@@ -55,13 +55,21 @@ struct SampleSystem {
 };
 
 // Writes the system where the solver said, as an assembler does.
-inline void write(const SampleSystem& system, LinearSolver& solver) {
+template <class Solver>  // what has slots() and values()
+void write(const SampleSystem& system, Solver& solver) {
   std::ranges::fill(solver.values(), 0.0);
   std::size_t v = 0, c = 0;
   for (const Block& b : system.pattern.blocks)
     for (int j = 0; j < b.cols; ++j, ++c)
       for (int i = 0; i < b.rows; ++i)
         solver.values()[static_cast<std::size_t>(solver.slots()[c] + i)] += system.values[v++];
+}
+
+inline std::vector<double> random_vector(int n, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  std::vector<double> b(static_cast<std::size_t>(n));
+  for (double& x : b) x = normal(random);
+  return b;
 }
 
 enum class BodyKind { six, seven };  // 3 + 3 unknowns; 3 + 4 with a normalization row
