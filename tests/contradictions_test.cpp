@@ -75,6 +75,8 @@ Scene with_alternate(const char* g) {
                        g + R"json("}}])json");
 }
 TEST_P(Contradictions, OfAnAlternateEndTheRun) {
+  const Scene by_angle = contradicting(kHinge + std::string(R"json(, "drivers": [{"type": "angle", "bodies": ["ground",
+    "rod"], "axis": [0, 0, 1], "angle": "-t"}])json"));
   for (const Settings& settings : every_way(GetParam(), 2)) {
     const Recorded right = run(with_alternate("-sin(t - pi/2)"), settings);
     EXPECT_TRUE(right.outcome.status.ok()) << settings.integrator << right.outcome.status.message;
@@ -84,7 +86,12 @@ TEST_P(Contradictions, OfAnAlternateEndTheRun) {
     if (!integrators().require(settings.integrator).controls_error) {
       EXPECT_THAT(r.outcome.status.message, HasSubstr("and its alternate contradict one another"))
           << settings.integrator;
+      EXPECT_THAT(r.outcome.status.message, HasSubstr("or an angle driver takes the place of both"));
     }
+    const Recorded angle = run(by_angle, settings);
+    ASSERT_TRUE(angle.outcome.status.ok()) << settings.integrator << angle.outcome.status.message;
+    EXPECT_LT((angle.samples.back().bodies[0].A - right.samples.back().bodies[0].A).norm(), 0.02)
+        << settings.integrator;
   }
 }
 
@@ -111,6 +118,8 @@ TEST_P(Contradictions, OfVelocitiesLaterEndTheRun) {
     const Outcome outcome = simulate(scene, settings, {});
     EXPECT_EQ(outcome.status.failure, Failure::constraint_lost) << settings.integrator;
     EXPECT_THAT(outcome.status.message, HasSubstr("m/s: it followed from the other constraints"));
+    EXPECT_THAT(outcome.status.message, HasSubstr("one of them has to go"));
+    EXPECT_TRUE(simulate(contradicting(kClamp), settings, {}).status.ok()) << settings.integrator;
   }
 }
 

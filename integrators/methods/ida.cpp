@@ -80,6 +80,8 @@ class Session {
       const double h = ida_.last_step(), t = at_t_;
       statistics_.largest_rotation = std::max(statistics_.largest_rotation, course_.turned(h));
       since_pass_ += course_.turned(h);
+      ida_.read_end(t, next_);
+      course_.follow(next_);
       if (Status status = remember(t, course_.turned(h)); !status.ok()) return status;
       ida_.turn_at_most(problem_.counted_turn().rate);
       Status status;
@@ -108,11 +110,11 @@ class Session {
     return {};
   }
 
-  // Accelerations, by which the branch is known beyond a singular position in which the motion came to rest.
+  // Accelerations of next_, at t, by which the branch is known beyond a singular position in which the motion came to
+  // rest.
   Status remember(double t, double turned) {
     way_ += turned;
     if (way_ < kMark) return {};
-    ida_.read_end(t, next_);
     std::swap(before_, last_);
     last_.t = t, last_.a = next_.z.head(problem_.nv()), last_.way = way_, last_.known = true;
     way_ = 0;

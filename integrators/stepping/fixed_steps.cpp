@@ -25,6 +25,7 @@ FixedSteps::FixedSteps(const Run& run)
       has_alternates_(has_alternates(run.problem.model())),
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
       rests_(run.problem),
+      still_(run.problem, run.tell),
       singular_ends_(run.settings),
       passed_(run.problem.model(), run.settings.end, run.tell),
       output_(run.settings) {}
@@ -52,6 +53,7 @@ Status FixedSteps::march() {
     const std::int64_t before = run_.statistics.steps;
     status = advance(grid_.time(n), sampled);
     if (run_.statistics.steps > before + 1) ++run_.statistics.divided_steps;
+    if (status.ok() && integrates()) still_.look(problem_, x_);
     if (status.ok() && integrates() && rests_.due()) status = rests_.look(problem_, settings_.linear(), x_);
     if (status.ok() && sampled) status = give_out(*standing_);
   }

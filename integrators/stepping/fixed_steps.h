@@ -17,6 +17,7 @@
 #include "integrators/stepping/passed_in_steps.h"
 #include "integrators/stepping/rest_watch.h"
 #include "integrators/stepping/singular_ends.h"
+#include "integrators/stepping/still_watch.h"
 #include "integrators/stepping/time_grid.h"
 #include "integrators/stepping/vectors.h"
 
@@ -151,6 +152,7 @@ class FixedSteps {
   Vector change_;
   BranchWatch branch_;
   RestWatch rests_;
+  StillWatch still_;
   SingularEnds singular_ends_;
   PassedInSteps passed_;
   std::optional<State> given_;  // a sample in a singular position
