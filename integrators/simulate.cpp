@@ -23,6 +23,7 @@
 #include "integrators/start/over_constrained.h"
 #include "integrators/stepping/pulses.h"
 #include "integrators/stepping/singular_position.h"
+#include "integrators/stepping/sticking.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
 #include "integrators/stopping_test.h"
@@ -167,7 +168,11 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
                            (failure == Failure::rotation_too_large && outcome.status.time > 0);
   if (settings.analysis == Analysis::dynamics && (unexplained || failure == Failure::singular_position)) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
-    std::string why = vanished_gradient(*problem, state);
+    constexpr double kInstant = 1e-4;  // of the run
+    const double instant = chooses_steps(settings) ? kInstant * settings.end : settings.step;
+    std::string why = sticking_law(*problem, settings.linear(), state, instant);
+    if (!why.empty()) withdraw_remedy(outcome.status.message);  // nothing but another law helps
+    if (why.empty()) why = vanished_gradient(*problem, state);
     if (why.empty()) {
       const NearSingular near =
           near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));

@@ -81,7 +81,10 @@ class Session {
       statistics_.largest_rotation = std::max(statistics_.largest_rotation, course_.turned(h));
       since_pass_ += course_.turned(h);
       ida_.read_end(t, next_);
-      course_.follow(next_);
+      if (Status status = course_.follow(next_); !status.ok()) {
+        (void)stand_at(t);  // for what is said of it
+        return status;
+      }
       if (Status status = remember(t, course_.turned(h)); !status.ok()) return status;
       ida_.turn_at_most(problem_.counted_turn().rate);
       Status status;

@@ -19,6 +19,7 @@
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/singular_position.h"
 #include "integrators/stepping/step_control.h"
+#include "integrators/stepping/sticking.h"
 #include "integrators/stepping/still_watch.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
@@ -36,7 +37,8 @@ class Course {
         laws(run.problem.model(), run.settings.end, run.settings.rtol, run.settings.absolute_tolerance(), run.tell),
         run_(run),
         clock_(clock),
-        still_(run.problem, run.tell) {}
+        still_(run.problem, run.tell),
+        sticking_(run.problem.model()) {}
 
   void give_out(const State& at) { give_out(at, at.t); }
   void give_out(const State& at, double t) {
@@ -52,8 +54,11 @@ class Course {
     return poinsot::singular_sample(times.next(),
                                     row < 0 ? "" : run_.problem.describe_unknown(run_.problem.nv() + row));
   }
-  // A step ended at `at`.
-  void follow(const State& at) { still_.look(run_.problem, at); }
+  // A step ended at `at`, where the problem stands.
+  Status follow(const State& at) {
+    still_.look(run_.problem, at);
+    return sticking_.look(run_.problem, at);
+  }
   double turned(double h) const { return h * run_.problem.fastest_turn(); }  // rad, the fastest body at its speed now
   const Problem& problem() const { return run_.problem; }
   double end() const { return run_.settings.end; }
@@ -71,6 +76,7 @@ class Course {
   const Run& run_;
   PhaseClock& clock_;
   StillWatch still_;
+  StickingWatch sticking_;
   OpenMultipliers open_multipliers_;
 };
 
@@ -117,7 +123,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
       }
       ++course.statistics().steps;
       course.statistics().largest_rotation = std::max(course.statistics().largest_rotation, course.turned(h));
-      course.follow(method.state());
+      if (status = course.follow(method.state()); !status.ok()) return status;
       rejections = 0;
       usual = std::max(h, kForgotten * usual);
       creeping.completed(h);

@@ -109,6 +109,19 @@ LawPlace SpringLaw::place(const Model& model, const Problem& problem, std::span<
   return {{problem.twist(torsion), 0, 0}, {axis.dot(j.rate - i.rate), 0, 0}, {axis.dot(j.second - i.second), 0, 0}};
 }
 
+Arguments<double> SpringLaw::arguments(const LawPlace& place, double t) const {
+  const Vector3 &d = place.d, &rate = place.rate;
+  if (torsion >= 0) return {t, d.x() - zero, rate.x()};
+  const double length = d.norm();
+  return {t, length - zero, length > 0 ? d.dot(rate) / length : rate.norm()};
+}
+
+double SpringLaw::change(const LawPlace& place) const {
+  if (torsion >= 0) return place.second.x();
+  const double length = place.d.norm(), v = place.d.dot(place.rate) / length;
+  return (place.d.dot(place.second) + place.rate.squaredNorm() - v * v) / length;
+}
+
 LawPath::LawPath(const SpringLaw& of, const LawPlace& from, double t_from, double t_to)
     : of_(of), t_(t_from), h_(t_to - t_from) {
   lead(from.d, from.rate, h_ * from.rate + 0.5 * h_ * h_ * from.second, from.rate + h_ * from.second);
@@ -130,8 +143,7 @@ void LawPath::lead(const Vector& from, const Vector& from_rate, const Vector& st
   c_[1] = h_ * from_rate;
   c_[2] = 3 * step - h_ * (2 * from_rate + end_rate);
   c_[3] = h_ * (from_rate + end_rate) - 2 * step;
-  const Vector d = at(0.5), rate = derivative(0.5) / h_;
-  v_ = of_.torsion >= 0 ? rate.x() : d.norm() > 0 ? d.dot(rate) / d.norm() : rate.norm();
+  v_ = of_.arguments({at(0.5), derivative(0.5) / h_}, t_).v;
 }
 
 Arguments<double> LawPath::arguments(double s) const {

@@ -32,6 +32,8 @@ struct SpringLaw {
 
   // As it is where the problem, and the bodies, stand.
   LawPlace place(const Model& model, const Problem& problem, std::span<const BodyState> bodies) const;
+  Arguments<double> arguments(const LawPlace& place, double t) const;
+  double change(const LawPlace& place) const;  // of v with time
 };
 // Those that a step may pass over: neither constants nor functions of the program.
 std::vector<SpringLaw> spring_laws(const Model& model);

@@ -108,6 +108,7 @@ class Solver final : public LinearSolver {
     answer_ = symmetry(layout_) >= kSymmetric && order() ? Answer::open : Answer::handed_over;
     const bool fits = answer_ == Answer::open && schur_.lay_out(pattern, layout_);
     bodies_first_ = fits ? BodiesFirst::unexamined : BodiesFirst::unfit;
+    if (fits) examination_.resize(layout_.n), sizes_.resize(index(layout_.n));  // steps allocate nothing
     slots_ = std::exchange(layout_.slots, {});
     return {};
   }
@@ -194,12 +195,6 @@ class Solver final : public LinearSolver {
       size = std::max(size, residual(b_, b));
     };
   }
-  std::vector<double> columns() const {  // sizes of the unknowns
-    std::vector<double> x(index(layout_.n));
-    for (std::size_t j = 0; j < x.size(); ++j) x[j] = residual_.column(j);
-    return x;
-  }
-
   bool bodies_first() const { return bodies_first_ == BodiesFirst::serve; }
 
   // After a factorization in the usual order: whether to eliminate bodies first leaves residuals that are rounding,
@@ -214,9 +209,8 @@ class Solver final : public LinearSolver {
     (void)schur_.factor(kNear);
     double size = 0;
     const auto solve = looking([&](std::span<double> b) { schur_.solve(b); }, size);
-    Condition condition;
-    condition.resize(layout_.n);
-    if (condition.estimate(layout_, values_, solve, columns()) >= kSingularCondition || size > kSmallResidual) return;
+    for (std::size_t j = 0; j < sizes_.size(); ++j) sizes_[j] = residual_.column(j);
+    if (examination_.estimate(layout_, values_, solve, sizes_) >= kSingularCondition || size > kSmallResidual) return;
     bodies_first_ = BodiesFirst::serve;
     answer_ = Answer::by_schur;
   }
@@ -245,7 +239,8 @@ class Solver final : public LinearSolver {
     weight_.assign(rows.begin(), rows.end());
     Condition condition;
     condition.resize(layout_.n);
-    std::vector<double> x = columns();  // sizes of the unknowns, then a solution
+    std::vector<double> x(rows.size());  // sizes of the unknowns, then a solution
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] = residual_.column(j);
     double size = 0;
     std::int64_t corrections = 0;
     const auto solve = looking([&](std::span<double> b) { factor_.solve(*schedule_, b); }, size);
@@ -350,6 +345,8 @@ class Solver final : public LinearSolver {
   Factor factor_;
   Schur schur_;
   BodiesFirst bodies_first_ = BodiesFirst::unfit;
+  Condition examination_;      // of bodies first
+  std::vector<double> sizes_;  // of the unknowns, for it
   std::unique_ptr<LinearSolver> klu_;
   Residual residual_;
   std::vector<double> b_;

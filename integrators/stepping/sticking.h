@@ -1,0 +1,36 @@
+// A law of a spring that jumps where a run stopped, with either side leading back to the jump: sign(v) of dry friction
+// once a body comes to rest.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "formulations/problem.h"
+#include "integrators/state.h"
+#include "integrators/stepping/law_path.h"
+#include "linsolve/linear_system.h"
+
+namespace poinsot {
+
+// A sentence; empty where there is no such law, and in mechanisms too large to differentiate its rate by each velocity.
+// `instant`: s, within which forces as they are would bring the motion to the jump. Either side leads back where the
+// accelerations do, of states that differ in the one direction in which the force acts.
+std::string sticking_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant);
+
+// Steps under error control that go to and fro over such a jump: as short as may be, they come to no end.
+class StickingWatch {
+ public:
+  explicit StickingWatch(const Model& model);  // which has to live as long
+
+  // The end of a step, where the problem stands. Failed where most of many steps have ended on the other side of a jump
+  // than the one before; sticking_law() says which.
+  Status look(const Problem& problem, const State& at);
+
+ private:
+  std::vector<SpringLaw> laws_;  // that jump
+  std::vector<BodyState> bodies_;
+  std::vector<double> switches_, sides_;  // of a law, and of all at the step before
+  double crossings_ = 0;
+};
+
+}  // namespace poinsot

@@ -1,0 +1,80 @@
+// Laws of springs that jump, with a motion that comes to the jump and cannot leave it: dry friction once a body sticks.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/every_way.h"
+#include "tests/support/remedies.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// A wheel at 3 rad/s and a slide at 1 m/s beside it, each with a law of its own.
+Scene sliding(const char* on_wheel, const char* on_slide) {
+  return parse_scene(fmt::format(R"json({{"scene": 1, "name": "sliding", "gravity": [0, 0, -9.81], "bodies": [
+    {{"name": "wheel", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0], "angular_velocity": [0, 0, 3]}},
+    {{"name": "slide", "mass": 2, "inertia": [1, 1, 1], "position": [1, 0, 0], "velocity": [1, 0, 0]}}],
+    "joints": [{{"type": "revolute", "bodies": ["ground", "wheel"], "point": [0, 0, 0], "axis": [0, 0, 1]}},
+    {{"type": "translational", "bodies": ["ground", "slide"], "point": [1, 0, 0], "axis": [1, 0, 0]}}],
+    "forces": [{{"type": "torsion_spring", "name": "brake", "bodies": ["ground", "wheel"], "axis": [0, 0, 1],
+    "law": "{}"}}, {{"type": "spring", "name": "rail", "bodies": ["ground", "slide"], "s_i": [-5, 0, 0],
+    "s_j": [0, 0, 0], "length": 1, "law": "{}"}}]}})json",
+                                 on_wheel, on_slide),
+                     "test");
+}
+
+class Sticking : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(All, Sticking, ::testing::ValuesIn(formulation_names()),
+                         [](const auto& test) { return test.param; });
+
+// Calls visit(settings) for each integrator of dynamics that takes the formulation.
+template <class Visit>
+void by_each(const std::string& formulation, Visit&& visit) {
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.analysis != Analysis::dynamics || refusal_of(integrator, formulation)) continue;
+    SCOPED_TRACE(integrator.name);
+    Settings settings;
+    settings.integrator = integrator.name, settings.formulation = formulation;
+    settings.rtol = 1e-6, settings.step = 1e-3, settings.end = 2.5;
+    visit(settings);
+  }
+}
+
+struct Case {
+  const char *wheel, *slide;              // laws that stick
+  const char *steep_wheel, *steep_slide;  // in their place
+  const char* of;
+  double from, to;  // when it stops
+};
+const Case kCases[] = {
+    {"2*sign(v) + 0.1*v", "0", "2*min(max(v/0.01, -1), 1) + 0.1*v", "0", "force 'brake'", 1.35, 1.45},
+    {"0", "3*sign(v) + x", "0", "3*min(max(v/0.01, -1), 1) + x", "force 'rail'", 0.1, 1.0},
+    {"2*(step(v) - step(-v)) + 0.1*v", "v", "2*min(max(v/0.01, -1), 1) + 0.1*v", "v", "force 'brake'", 1.35, 1.45},
+};
+
+TEST_P(Sticking, EndsTheRunAndSaysWhichLaw) {
+  for (const Case& c : kCases)
+    by_each(GetParam(), [&](const Settings& settings) {
+      SCOPED_TRACE(c.of);
+      const Recorded r = run(sliding(c.wheel, c.slide), settings);
+      if (!r.outcome.status.ok()) {  // explicit forces go to and fro, by no more than a step makes of them
+        expect_stopped(r, r.outcome.status.failure, c.of, "in the place of sign(v)");
+        EXPECT_THAT(r.outcome.status.message, HasSubstr("v passes 0"));
+        EXPECT_THAT(r.outcome.status.message, Not(HasSubstr("; try ")));
+        EXPECT_THAT(r.outcome.status.message, Not(HasSubstr("singular position")));
+        EXPECT_GT(r.outcome.status.time, c.from);
+        EXPECT_LT(r.outcome.status.time, c.to);
+      }
+      expect_helped(sliding(c.steep_wheel, c.steep_slide), settings);
+    });
+}
+
+// A jump that a motion passes is none to stick to.
+TEST_P(Sticking, IsNotWhatPassesAJump) {
+  by_each(GetParam(), [&](const Settings& settings) { expect_helped(sliding("0.2*sign(x - 1)", "0"), settings); });
+}
+
+}  // namespace
+}  // namespace poinsot::test
