@@ -8,6 +8,9 @@
 
 namespace poinsot {
 
+// Whether a text has more than one line, so that it helps to tell which.
+bool has_lines(std::string_view text);
+
 class LineSearch {
  public:
   // Goes through the text for these paths (JSON pointers), and for whatever they are in.

@@ -161,7 +161,7 @@ std::string with_lines(std::string_view message, std::string_view text) {
     ends.push_back(end);
     paths.push_back(std::move(path));
   }
-  if (paths.empty()) return std::string(message);
+  if (paths.empty() || !has_lines(text)) return std::string(message);
   const LineSearch search(text, paths);
   Inserted result(message);
   for (std::size_t k = 0; k < paths.size(); ++k)

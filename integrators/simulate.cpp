@@ -130,7 +130,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
 
   std::unique_ptr<Problem> problem = formulation.make(model, start.rank.aside);
   if (!start.rank.aside.empty())
-    problem = std::make_unique<OverConstrained>(std::move(problem), model, start.rank.aside, start.bodies,
+    problem = std::make_unique<OverConstrained>(std::move(problem), model, start.rank, start.bodies,
                                                 chooses_steps(settings) ? Steps::error_controlled : Steps::fixed);
   if (settings.analysis == Analysis::kinematics) refuse_free_motion(*problem);
   State state(*problem);

@@ -22,11 +22,13 @@ class Separation {
   Separation(std::vector<SparseEntries>&& vectors, std::vector<int> pivots)
       : vectors_(std::move(vectors)), pivots_(std::move(pivots)) {
     std::size_t size = 0;
-    for (const SparseEntries& z : vectors_) size += z.size();
+    int last = -1;
+    for (const SparseEntries& z : vectors_) size += z.size(), last = std::max(last, z.back().first);
     too_long_ = size > kMostCombined;
     if (too_long_) return;
+    having_.resize(index(last + 1));
     for (std::size_t k = 0; k < vectors_.size(); ++k)
-      for (const auto& [column, value] : vectors_[k]) having_[column].push_back(k);
+      for (const auto& [column, value] : vectors_[k]) having_[index(column)].push_back(k);
   }
 
   bool too_long() const { return too_long_; }
@@ -58,7 +60,8 @@ class Separation {
   // Pivots by groups, in the order of how many these could have by themselves.
   void gather(const Grouped& grouped) {
     std::map<int, std::vector<int>> columns;  // by group
-    for (const auto& [column, vectors] : having_) columns[grouped.group[index(column)]].push_back(column);
+    for (std::size_t column = 0; column < having_.size(); ++column)
+      if (!having_[column].empty()) columns[grouped.group[column]].push_back(static_cast<int>(column));
     struct Worth {
       int pivots, turn, group;
     };
@@ -75,7 +78,7 @@ class Separation {
         std::size_t vector = 0;
         std::pair<int, double> best = kNone;
         for (const int column : columns[one.group])
-          for (const std::size_t k : having_[column])
+          for (const std::size_t k : having_[index(column)])
             if (const double value = settled[k] ? 0 : find(vectors_[k], column);
                 std::abs(value) > std::abs(best.second))
               vector = k, best = {column, value};
@@ -127,7 +130,7 @@ class Separation {
   int worth(const std::vector<int>& columns) const {
     std::vector<std::size_t> with;
     for (const int column : columns) {
-      const std::vector<std::size_t>& of = having_.at(column);
+      const std::vector<std::size_t>& of = having_[index(column)];
       with.insert(with.end(), of.begin(), of.end());
     }
     std::ranges::sort(with);
@@ -149,13 +152,13 @@ class Separation {
   void pivot_on(std::size_t k, std::pair<int, double> entry) {
     const auto [column, value] = entry;
     for (auto& one : vectors_[k]) one.second /= value;
-    for (const std::size_t other : std::exchange(having_[column], {k})) {
+    for (const std::size_t other : std::exchange(having_[index(column)], {k})) {
       const double factor = other == k ? 0 : find(vectors_[other], column);
       if (factor == 0) continue;
       auto has = vectors_[other].begin();
       for (const auto& [c, v] : vectors_[k]) {
         while (has != vectors_[other].end() && has->first < c) ++has;
-        if (has == vectors_[other].end() || has->first != c) having_[c].push_back(other);
+        if (has == vectors_[other].end() || has->first != c) having_[index(c)].push_back(other);
       }
       vectors_[other] = subtract(vectors_[other], factor, vectors_[k], column);
     }
@@ -164,7 +167,7 @@ class Separation {
 
   std::vector<SparseEntries> vectors_;
   std::vector<int> pivots_;
-  std::map<int, std::vector<std::size_t>> having_;  // by column: vectors that have or had it
+  std::vector<std::vector<std::size_t>> having_;  // by column: vectors that have or had it
   bool too_long_ = false;
 };
 
@@ -193,21 +196,32 @@ void drop_nothing(SparseEntries& z) {
 }
 
 SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntries& y, int gone) {
-  SparseEntries sum;
-  sum.reserve(x.size() + y.size());
-  auto a = x.begin();
-  auto b = y.begin();
-  while (a != x.end() || b != y.end()) {
-    if (b == y.end() || (a != x.end() && a->first < b->first)) {
-      sum.push_back(*a++);
-    } else {
-      sum.emplace_back(b->first, -factor * b->second);
-      if (a != x.end() && a->first == b->first) sum.back().second += (a++)->second;
-      ++b;
-    }
-    if (sum.back().first == gone) sum.pop_back();
+  // Most of what a choice of joints costs in a large mechanism: the sum is written in place, and what is negligible in
+  // it is left out as the largest entry is known.
+  SparseEntries sum(x.size() + y.size());
+  auto* to = sum.data();
+  double size = 0;
+  const auto take = [&](int column, double value) {
+    if (column == gone) return;
+    size = std::max(size, std::abs(value));
+    *to++ = {column, value};
+  };
+  const auto *a = x.data(), *a_end = a + x.size(), *b = y.data(), *b_end = b + y.size();
+  while (a != a_end && b != b_end) {
+    if (a->first < b->first)
+      take(a->first, a->second), ++a;
+    else if (b->first < a->first)
+      take(b->first, -factor * b->second), ++b;
+    else
+      take(a->first, a->second - factor * b->second), ++a, ++b;
   }
-  drop_nothing(sum);
+  for (; a != a_end; ++a) take(a->first, a->second);
+  for (; b != b_end; ++b) take(b->first, -factor * b->second);
+  const double nothing = kNegligibleBeside * size;
+  auto* kept = sum.data();
+  for (const auto* one = kept; one != to; ++one)
+    if (std::abs(one->second) > nothing) *kept++ = *one;
+  sum.resize(static_cast<std::size_t>(kept - sum.data()));
   return sum;
 }
 

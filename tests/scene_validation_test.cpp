@@ -323,6 +323,8 @@ TEST(SceneValidation, names_are_given_key_paths_and_lines) {
             "force 'on body 'b'' (/forces/1, line 8) turns body 'b' (/bodies/1, line 3)");
   EXPECT_EQ(placed(with_key_paths("of joint 'b'; its row", scene).c_str()),
             "of joint 'b' (/joints/1, line 5); its row");
+  EXPECT_EQ(with_lines("body 'it's' (/bodies/0) is far", nlohmann::json::parse(text).dump()),
+            "body 'it's' (/bodies/0) is far");
   EXPECT_EQ(placed("joint 'none', antibody 'b' and '/tmp (/x)'"), "joint 'none', antibody 'b' and '/tmp (/x)'");
   EXPECT_EQ(with_key_paths("/joints/0/axis: found 1 (joint 'b')", scene), "/joints/0/axis: found 1 (joint 'b')");
 }

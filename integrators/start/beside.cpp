@@ -38,7 +38,7 @@ Beside::Beside(const std::shared_ptr<const Model>& model, std::span<const BodySt
   unit_ = std::move(unit);
 }
 
-Trial Beside::begin(const std::vector<int>& without) const {
+Trial Beside::begin(const std::vector<int>& without, int directions) const {
   Trial trial(without, intrinsic_formulation().make(unit_, without));
   Place& start = trial.start;
   start.q.resize(index(trial.problem->nq())), start.v.resize(index(trial.problem->nv()));
@@ -48,7 +48,25 @@ Trial Beside::begin(const std::vector<int>& without) const {
   trial.problem->set_position(0, start.q);
   trial.problem->set_velocity(start.v);
   trial.regular = trial.consistent->project_velocity(0, start.v).ok();
+  for (int k = 0; k < directions && trial.regular; ++k) trial.random.push_back(free_direction(trial, k + 1));
   return trial;
+}
+
+// By the factors that are those of the start; a move by kMove, none where nothing is free.
+std::vector<double> Beside::free_direction(Trial& trial, int seed) const {
+  std::mt19937 random(static_cast<unsigned>(seed));
+  std::normal_distribution<double> normal;
+  const std::size_t nv = trial.start.v.size();
+  std::vector<double> move(nv + index(trial.problem->nc()), 0.0);
+  for (std::size_t b = 0; b < sizes_.size(); ++b)
+    for (std::size_t k = 0; k < 6; ++k) move[6 * b + k] = sizes_[b] * (k < 3 ? 1 : sizes_[b]) * normal(random);
+  const double asked = extent(std::span<const double>(move).first(nv));
+  if (!trial.consistent->solve(0, move).ok()) return {};
+  move.resize(nv);
+  const double length = extent(move);
+  if (!(length > 1e-6 * asked)) return {};  // it cannot move
+  for (double& x : move) x *= kMove / length;
+  return move;
 }
 
 double Beside::extent(std::span<const double> dq) const {
@@ -76,24 +94,9 @@ std::optional<Place> Beside::along_velocities(Trial& trial) {
   return settle(trial, std::move(place), dq, speed > 0 && kMove / speed <= 1.0);
 }
 
-std::optional<Place> Beside::at_random(Trial& trial, int seed) {
-  Problem& problem = *trial.problem;
-  const Place& start = trial.start;
-  std::mt19937 random(static_cast<unsigned>(seed));
-  std::normal_distribution<double> normal;
-  std::vector<double> move(index(problem.nv() + problem.nc()), 0.0);
-  for (std::size_t b = 0; b < sizes_.size(); ++b)
-    for (std::size_t k = 0; k < 6; ++k) move[6 * b + k] = sizes_[b] * (k < 3 ? 1 : sizes_[b]) * normal(random);
-  const double asked = extent(std::span<const double>(move).first(start.v.size()));
-  const std::vector<double> at_rest(start.v.size(), 0.0);
-  problem.set_position(0, start.q);
-  problem.set_velocity(at_rest);
-  if (!trial.consistent->factor(0).ok() || !trial.consistent->solve(0, move).ok()) return {};
-  move.resize(start.v.size());
-  const double length = extent(move);
-  if (!(length > 1e-6 * asked)) return {};  // it cannot move
-  for (double& x : move) x *= kMove / length;
-  return settle(trial, start, move, true);
+std::optional<Place> Beside::at_random(Trial& trial, int direction) {
+  const std::vector<double>& move = trial.random[index(direction)];
+  return move.empty() ? std::nullopt : settle(trial, trial.start, move, true);
 }
 
 // Moves by dq, puts the mechanism back onto the problem's rows, and looks at all of them.

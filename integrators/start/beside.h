@@ -44,7 +44,8 @@ struct Trial {
   std::unique_ptr<Problem> problem;
   std::unique_ptr<Consistent> consistent;
   Place start;
-  bool regular = false;  // it could be put there
+  std::vector<std::vector<double>> random;  // moves along directions that the constraints leave free at the start
+  bool regular = false;                     // it could be put there
 
   Trial(std::vector<int> left_out, std::unique_ptr<Problem> of)
       : without(std::move(left_out)),
@@ -59,12 +60,13 @@ class Beside {
   Beside(const std::shared_ptr<const Model>& model, std::span<const BodyState> states, RowSpace& space,
          std::size_t suspects);
 
-  Trial begin(const std::vector<int>& without) const;
+  // `directions`: how many random ones at_random() is to have.
+  Trial begin(const std::vector<int>& without, int directions = 0) const;
   // Makes the trial's start the one from which `holds` is judged: m that each row of the space is off there.
   std::span<const double> measure_start(Trial& trial);
   // Nothing where it does not move, or the projection pulls it back.
   std::optional<Place> along_velocities(Trial& trial);
-  std::optional<Place> at_random(Trial& trial, int seed);
+  std::optional<Place> at_random(Trial& trial, int direction);
   // Whether the mechanism, moved on along its velocities, comes to a position where all rows hold and are independent
   // but those left out.
   bool leads_on(const Place& start, const Place& along, const std::vector<int>& without);
@@ -72,6 +74,7 @@ class Beside {
   double extent(std::span<const double> dq) const;  // largest move of a body by dq, in its size
 
  private:
+  std::vector<double> free_direction(Trial& trial, int seed) const;
   std::optional<Place> settle(Trial& trial, Place place, std::span<const double> dq, bool must_move);
   void stand(Problem& problem, const Place& place);
   void look(Trial& trial, Place& place);

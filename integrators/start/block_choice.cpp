@@ -76,16 +76,25 @@ bool BlockChoice::has_coefficients() const {
 void BlockChoice::keep_others(const std::vector<int>& left_out) {
   left_out_ = left_out;
   kept_ = all_but(rows_.size(), left_out);
-  if (watched_ && !small()) sparse_ = std::make_unique<SparseCoefficients>(rows_, kept_);
+  if (!watched_) return;
+  if (small())
+    small_.arrange(rows_, kept_, left_out_);
+  else
+    sparse_ = std::make_unique<SparseCoefficients>(rows_, kept_);
 }
 
 // Of a small block: for the rows kept; false, and 0, where these are not independent.
 bool BlockChoice::find_small(int refinements) {
-  if (!small_.find(rows_, kept_, left_out_, C_)) {
+  if (!small_.find(rows_, C_)) {
     C_.setZero(static_cast<Eigen::Index>(kept_.size()), static_cast<Eigen::Index>(left_out_.size()));
     return false;
   }
-  for (int r = 0; r < refinements; ++r) small_.refine(rows_, kept_, left_out_, C_);
+  for (int r = 0; r < refinements; ++r)
+    for (std::size_t d = 0; d < left_out_.size(); ++d) {
+      Eigen::VectorXd f = Eigen::VectorXd::Zero(rows_.variables());
+      rows_.add(1, left_out_[d], f);
+      small_.refine(rows_, kept_, f, C_.col(static_cast<Eigen::Index>(d)));
+    }
   return true;
 }
 
@@ -176,6 +185,13 @@ void BlockChoice::add_aside(const RowSpace& space, std::vector<int>& rows) const
   for (const int k : left_out_) rows.push_back(row_of(space, k));
 }
 
+// What f, the rows left out with these forces, is in terms of those kept.
+Eigen::VectorXd BlockChoice::small_shares(const Eigen::VectorXd& f, const Eigen::VectorXd& forces) {
+  Eigen::VectorXd shares = C_ * forces;
+  small_.refine(rows_, kept_, f, shares);
+  return shares;
+}
+
 void BlockChoice::carry_over(const RowSpace& space, std::span<double> lambda) {
   const auto at = [&](int k) -> double& { return lambda[index(row_of(space, k))]; };
   const auto length = [&](int k) { return space.lengths()[index(rows_.place_in_space(k))]; };
@@ -186,8 +202,7 @@ void BlockChoice::carry_over(const RowSpace& space, std::span<double> lambda) {
     forces[static_cast<Eigen::Index>(d)] = force;
     rows_.add(force, left_out_[d], f);
   }
-  if (small()) small_.refine(rows_, kept_, left_out_, C_);
-  const Eigen::VectorXd shares = small() ? Eigen::VectorXd(C_ * forces) : Eigen::VectorXd(sparse_->find(rows_, f, 1));
+  const Eigen::VectorXd shares = small() ? small_shares(f, forces) : Eigen::VectorXd(sparse_->find(rows_, f, 1));
   for (std::size_t k = 0; k < kept_.size(); ++k)
     at(kept_[k]) += shares[static_cast<Eigen::Index>(k)] / length(kept_[k]);
 }

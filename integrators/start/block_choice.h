@@ -70,6 +70,7 @@ class BlockChoice {
   double turn_until_worst(double rate) const;
   double turn_until_worn() const;
   bool find_small(int refinements);
+  Eigen::VectorXd small_shares(const Eigen::VectorXd& f, const Eigen::VectorXd& forces);
   void keep_others(const std::vector<int>& left_out);
   bool exchange(double most);
   bool choose_clearest(const RowSpace& space);

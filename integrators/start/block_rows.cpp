@@ -43,7 +43,14 @@ BlockRows::BlockRows(const RowSpace& space, std::vector<int> rows) : rows_(std::
       Ends& of = ends_[index(k)];
       of.part[of.body[0] == body ? 0 : 1] = next++;
     }
-  parts_.resize(index(next));
+  parts_.assign(index(next), Part::Zero());
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    int at = -1, last = -1;
+    for (Column it(space.columns(), rows_[k]); it; ++it) {
+      if (body_of(it) != last) ++at, last = body_of(it);
+      to_.push_back(6 * ends_[k].part[at] + static_cast<int>(it.row()) % 6);
+    }
+  }
 }
 
 int BlockRows::place_of_body(int body) const {
@@ -57,14 +64,12 @@ double BlockRows::products() const {
 }
 
 void BlockRows::stand(const RowSpace& space) {
-  std::ranges::fill(parts_, Part::Zero());
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    int at = -1, last = -1;
-    for (Column it(space.columns(), rows_[k]); it; ++it) {
-      if (body_of(it) != last) ++at, last = body_of(it);
-      parts_[index(ends_[k].part[at])][it.row() % 6] = it.value();
-    }
-  }
+  const double* values = space.columns().valuePtr();
+  const int* begin = space.columns().outerIndexPtr();
+  double* parts = parts_.front().data();
+  const int* to = to_.data();
+  for (const int row : rows_)
+    for (int k = begin[row]; k < begin[row + 1]; ++k) parts[*to++] = values[k];
 }
 
 double BlockRows::dot(int k, int l) const {

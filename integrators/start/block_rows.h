@@ -31,15 +31,24 @@ class BlockRows {
         for (const int l : of_body_[body]) function(l);
   }
   double dot(int k, int l) const;
-  // Calls function(k, l, product) for what each body has to g_k · g_l, every pair of rows on it once.
+  // Calls function(k, l) for every pair of rows on a body, body by body.
+  template <typename Function>
+  void for_each_pair(Function&& function) const {
+    for (int body = 0; body < of_body_.size(); ++body) {
+      const std::span<const int> rows = of_body_[body];
+      for (std::size_t k = 0; k < rows.size(); ++k)
+        for (std::size_t l = k; l < rows.size(); ++l) function(rows[k], rows[l]);
+    }
+  }
+  // Calls function(product) for what the body has to g_k · g_l, of the same pairs.
   template <typename Function>
   void for_each_product(Function&& function) const {
     const Part* part = parts_.data();
     for (int body = 0; body < of_body_.size(); ++body) {
-      const std::span<const int> rows = of_body_[body];
-      for (std::size_t k = 0; k < rows.size(); ++k)
-        for (std::size_t l = k; l < rows.size(); ++l) function(rows[k], rows[l], part[k].dot(part[l]));
-      part += rows.size();
+      const std::size_t rows = of_body_[body].size();
+      for (std::size_t k = 0; k < rows; ++k)
+        for (std::size_t l = k; l < rows; ++l) function(part[k].dot(part[l]));
+      part += rows;
     }
   }
   // f ← f + factor g_k
@@ -63,6 +72,7 @@ class BlockRows {
   Lists of_body_;            // rows
   std::vector<Ends> ends_;
   std::vector<Part> parts_;  // of rows, in the order of of_body_
+  std::vector<int> to_;      // where the entries of the rows' columns go among the numbers of parts_
 };
 
 }  // namespace poinsot

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/index.h"
-#include "integrators/start/loop_rows.h"
 
 namespace poinsot {
 namespace {
@@ -18,9 +17,9 @@ constexpr double kLost = 1e-5;      // of a body's size: far above what steps le
 }  // namespace
 
 OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model,
-                                 std::vector<int> aside, std::span<const BodyState> states, Steps steps)
-    : choice_(std::make_shared<Choice>(Choice{
-          RowChoice(model, loop_rows(model, 0, states), std::move(aside), steps), 0, {states.begin(), states.end()}})),
+                                 const RankAnalysis& rank, std::span<const BodyState> states, Steps steps)
+    : choice_(std::make_shared<Choice>(
+          Choice{RowChoice(model, rank.loops, rank.aside, steps), 0, {states.begin(), states.end()}})),
       kept_(std::move(kept)),
       now_(states.begin(), states.end()) {
   choice_->rows.look(0, states);

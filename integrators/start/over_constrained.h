@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "formulations/problem.h"
+#include "integrators/start/rank.h"
 #include "integrators/start/row_choice.h"
 #include "integrators/start/rows_aside.h"
 
@@ -22,8 +23,8 @@ namespace poinsot {
 
 class OverConstrained final : public Problem {
  public:
-  // `kept` is the model's problem without the rows `aside`, which are redundant at `states`.
-  OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model, std::vector<int> aside,
+  // `kept` is the model's problem without the rows that `rank` sets aside, which are redundant at `states`.
+  OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model, const RankAnalysis& rank,
                   std::span<const BodyState> states, Steps steps);
 
   std::unique_ptr<Problem> clone() const override;

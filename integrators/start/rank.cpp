@@ -35,10 +35,10 @@ class Examination {
     result_.rank = result_.rank_here = rows;
     space_.emplace(all_rows(model_, 0, states_));
     tell_vanishing();
-    std::vector<int> loops = loop_rows(*model_, *space_);
-    if (loops.empty()) return std::move(result_);
-    if (loops.size() < model_->rows.size()) {
-      space_.emplace(model_, std::move(loops));
+    result_.loops = loop_rows(*model_, *space_);
+    if (result_.loops.empty()) return std::move(result_);
+    if (result_.loops.size() < model_->rows.size()) {
+      space_.emplace(model_, result_.loops);
       space_->stand(0, states_);
     }
     here_ = few_null_vectors(space_->columns(), kIndependent);
@@ -72,7 +72,8 @@ class Examination {
     const std::size_t suspects = here_.columns.size();  // how many rows may be dependent
     const std::vector<int>& surely = surely_.columns;
     beside_.emplace(model_, states_, *space_, suspects);
-    Trial trial = beside_->begin(without_);
+    const int directions = static_cast<int>(space_->rows().size()) > kManyRows ? 1 : 2;
+    Trial trial = beside_->begin(without_, directions);
     if (trial.regular) find_conflicts(trial, without_);
     if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
     // Conflicts are told as a reader of the scene meets them: what contradicts rows before it.
@@ -89,9 +90,8 @@ class Examination {
     if (trial.regular && result_.conflicts.empty()) {
       along = beside_->along_velocities(trial);
       best = along;
-      const int directions = static_cast<int>(space_->rows().size()) > kManyRows ? 1 : 2;
       for (int k = 0; k < directions && (!best || best->dependent > 0); ++k) {
-        std::optional<Place> place = beside_->at_random(trial, k + 1);
+        std::optional<Place> place = beside_->at_random(trial, k);
         if (place && (!best || place->dependent < best->dependent)) best = std::move(place);
       }
     }

@@ -68,8 +68,10 @@ RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
   Gt_.resizeNonZeros(Gt_.outerIndexPtr()[nc]);
   std::copy_n(Gt_.outerIndexPtr(), next.size(), next.begin());
   place_.assign(values_.size(), -1);
+  measure_.assign(values_.size(), 1);
   visit([&](int k, int row, int j) {
     place_[index(k)] = next[index(row)]++;
+    if (j % 6 >= 3) measure_[index(k)] = sizes_[index(j / 6)];
     Gt_.innerIndexPtr()[place_[index(k)]] = j;
   });
 }
@@ -81,17 +83,15 @@ void RowSpace::stand(double t, std::span<const BodyState> states) {
   problem_->set_velocity(v_);
   problem_->assemble(MatrixKind::kinematic, {}, {}, {}, {}, layout_.slots, values_);
   for (std::size_t k = 0; k < values_.size(); ++k)
-    if (place_[k] >= 0) Gt_.valuePtr()[place_[k]] = values_[k];
+    if (place_[k] >= 0) Gt_.valuePtr()[place_[k]] = values_[k] / measure_[k];
   for (int k = 0; k < Gt_.outerSize(); ++k) {
-    double sum = 0;
-    for (Eigen::SparseMatrix<double>::InnerIterator it(Gt_, k); it; ++it) {
-      if (it.row() % 6 >= 3) it.valueRef() /= sizes_[index(it.row() / 6)];
-      sum += it.value() * it.value();
-    }
+    const int begin = Gt_.outerIndexPtr()[k];
+    Eigen::Map<Eigen::VectorXd> row(Gt_.valuePtr() + begin, Gt_.outerIndexPtr()[k + 1] - begin);
+    const double sum = row.squaredNorm();
     const double rounding = rounding_of(model_->rows[index(rows_[index(k)])], states);
     lengths_[index(k)] = (is_velocity_row(index(k)) ? kVelocityRow : 1) * std::max(std::sqrt(sum), rounding);
     const double by = sum > rounding * rounding ? 1 / lengths_[index(k)] : 0;
-    for (Eigen::SparseMatrix<double>::InnerIterator it(Gt_, k); it; ++it) it.valueRef() *= by;
+    row *= by;
   }
 }
 

@@ -67,7 +67,8 @@ class RowSpace {
   std::vector<double> sizes_;
   std::vector<double> q_, v_, values_, lengths_;
   CscLayout layout_;
-  std::vector<int> place_;  // of the layout's entries among those of Gt_, −1 outside
+  std::vector<int> place_;       // of the layout's entries among those of Gt_, −1 outside
+  std::vector<double> measure_;  // by entry of the layout: the body's size where it is about a turn, else 1
   Eigen::SparseMatrix<double> Gt_;
 };
 

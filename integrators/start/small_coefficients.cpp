@@ -18,43 +18,74 @@ double dot_within(const double* x, const double* y, int from, int to) {
   return all;
 }
 
+// Entries j to j + kLanes − 1 of a row x of L, as those before stand; j is a multiple of kLanes, `y` row j of L. One
+// after the other would load x as often.
+void entries_together(double* x, const double* y, int stride, const double* inverse, int from, int j) {
+  Vec sum[kLanes] = {};
+  for (int k = from / kLanes * kLanes; k < j; k += kLanes)
+    unrolled<kLanes>([&, at = load(x + k)](auto r) { sum[r] += at * load(y + r * stride + k); });
+  unrolled<kLanes>([&](auto r) {
+    double value = x[j + r];
+    for (int lane = 0; lane < kLanes; ++lane) value -= sum[r][lane];
+    for (int s = 0; s < r; ++s) value -= y[r * stride + j + s] * x[j + s];
+    x[j + r] = value * inverse[j + r];
+  });
+}
+
 }  // namespace
 
-bool SmallCoefficients::find(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out,
-                             Eigen::MatrixXd& C) {
-  const int n = static_cast<int>(kept.size()), m = static_cast<int>(left_out.size());
-  place_.resize(rows.size());
+void SmallCoefficients::arrange(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out) {
+  kept_ = static_cast<int>(kept.size());
+  const int n = kept_, m = static_cast<int>(left_out.size());
+  std::vector<int> place(rows.size());
   first_.resize(rows.size());
-  for (int j = 0; j < n; ++j) place_[index(kept[index(j)])] = first_[index(j)] = j;
-  for (int d = 0; d < m; ++d) place_[index(left_out[index(d)])] = n + d, first_[index(n + d)] = n;
+  for (int j = 0; j < n; ++j) place[index(kept[index(j)])] = first_[index(j)] = j;
+  for (int d = 0; d < m; ++d) place[index(left_out[index(d)])] = n + d, first_[index(n + d)] = n;
   stride_ = padded(n);
-  L_.assign(index((n + m) * stride_), 0);
-  inverse_.assign(index(n), 0);
+  const int diagonal = (n + m) * stride_, nowhere = diagonal + n;
+  L_.assign(index(nowhere + 1), 0);
   x_.assign(index(stride_), 0);
-  rows.for_each_product([&](int k, int l, double product) {
-    const auto [j, i] = std::minmax(place_[index(k)], place_[index(l)]);
-    if (j >= n) return;
-    first_[index(i)] = std::min(first_[index(i)], j);
-    (i == j ? inverse_[index(j)] : row(i)[j]) += product;
+  at_.clear();
+  rows.for_each_pair([&](int k, int l) {
+    const auto [j, i] = std::minmax(place[index(k)], place[index(l)]);
+    if (j < n) first_[index(i)] = std::min(first_[index(i)], j);
+    at_.push_back(j >= n ? nowhere : i == j ? diagonal + j : i * stride_ + j);
   });
-  if (!decompose(n)) return false;
-  C.resize(n, m);
-  for (int d = 0; d < m; ++d) {
-    std::copy_n(row(n + d), n, x_.begin());
+}
+
+bool SmallCoefficients::find(const BlockRows& rows, Eigen::MatrixXd& C) {
+  L_.assign(L_.size(), 0);
+  const int* at = at_.data();
+  rows.for_each_product([&](double product) { L_[index(*at++)] += product; });
+  if (!decompose()) return false;
+  const int left_out = static_cast<int>(first_.size()) - kept_;
+  C.resize(kept_, left_out);
+  for (int d = 0; d < left_out; ++d) {
+    std::copy_n(row(kept_ + d), kept_, x_.begin());
     backward(x_);
-    std::copy_n(x_.begin(), n, C.col(d).begin());
+    std::copy_n(x_.begin(), kept_, C.col(d).begin());
   }
   return C.allFinite();
 }
 
 // Row by row: the entries of G_K G_Kᵀ and, below, of G_K g_d stand where those of L are to be.
-bool SmallCoefficients::decompose(int kept) {
-  for (int i = 0; i < static_cast<int>(place_.size()); ++i) {
+bool SmallCoefficients::decompose() {
+  double* inverse = inverses();
+  for (int i = 0; i < static_cast<int>(first_.size()); ++i) {
     double* x = row(i);
-    for (int j = first_[index(i)]; j < std::min(i, kept); ++j)
-      x[j] = (x[j] - dot_within(x, row(j), std::max(first_[index(i)], first_[index(j)]), j)) * inverse_[index(j)];
-    if (i >= kept) continue;
-    double& pivot = inverse_[index(i)];
+    const int first = first_[index(i)], end = std::min(i, kept_);
+    const auto entry = [&](int j) {
+      x[j] = (x[j] - dot_within(x, row(j), std::max(first, first_[index(j)]), j)) * inverse[j];
+    };
+    int j = first;
+    for (; j < end && j % kLanes != 0; ++j) entry(j);
+    for (; j + kLanes <= end; j += kLanes) {
+      const int earliest = *std::min_element(&first_[index(j)], &first_[index(j)] + kLanes);
+      entries_together(x, row(j), stride_, inverse, std::max(first, earliest), j);
+    }
+    for (; j < end; ++j) entry(j);
+    if (i >= kept_) continue;
+    double& pivot = inverse[i];
     pivot -= dot_within(x, x, first_[index(i)], i);
     if (!(pivot > 0)) return false;
     pivot = 1 / std::sqrt(pivot);
@@ -64,29 +95,25 @@ bool SmallCoefficients::decompose(int kept) {
 
 // x ← L⁻¹ x and x ← L⁻ᵀ x
 void SmallCoefficients::forward(std::span<double> x) const {
-  for (int j = 0; j < static_cast<int>(inverse_.size()); ++j)
-    x[index(j)] = (x[index(j)] - dot_within(row(j), x.data(), first_[index(j)], j)) * inverse_[index(j)];
+  for (int j = 0; j < kept_; ++j)
+    x[index(j)] = (x[index(j)] - dot_within(row(j), x.data(), first_[index(j)], j)) * inverses()[j];
 }
 void SmallCoefficients::backward(std::span<double> x) const {
-  for (int j = static_cast<int>(inverse_.size()); j-- > 0;) {
-    const double by = x[index(j)] *= inverse_[index(j)];
+  for (int j = kept_; j-- > 0;) {
+    const double by = x[index(j)] *= inverses()[j];
     for (int k = first_[index(j)] / kLanes * kLanes; k < j; k += kLanes)
       store(x.data() + k, load(x.data() + k) - load(row(j) + k) * by);
   }
 }
 
-void SmallCoefficients::refine(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out,
-                               Eigen::MatrixXd& C) {
-  Eigen::VectorXd left(rows.variables());
-  for (Eigen::Index d = 0; d < C.cols(); ++d) {
-    left.setZero();
-    rows.add(1, left_out[index(d)], left);
-    for (Eigen::Index k = 0; k < C.rows(); ++k) rows.add(-C(k, d), kept[index(k)], left);
-    for (Eigen::Index k = 0; k < C.rows(); ++k) x_[index(k)] = rows.share(kept[index(k)], left);
-    forward(x_);
-    backward(x_);
-    for (Eigen::Index k = 0; k < C.rows(); ++k) C(k, d) += x_[index(k)];
-  }
+void SmallCoefficients::refine(const BlockRows& rows, const std::vector<int>& kept, const Eigen::VectorXd& f,
+                               Eigen::Ref<Eigen::VectorXd> c) {
+  left_ = f;
+  for (Eigen::Index k = 0; k < c.size(); ++k) rows.add(-c[k], kept[index(k)], left_);
+  for (Eigen::Index k = 0; k < c.size(); ++k) x_[index(k)] = rows.share(kept[index(k)], left_);
+  forward(x_);
+  backward(x_);
+  for (Eigen::Index k = 0; k < c.size(); ++k) c[k] += x_[index(k)];
 }
 
 }  // namespace poinsot

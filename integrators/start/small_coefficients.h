@@ -18,25 +18,32 @@ class SmallCoefficients {
  public:
   static constexpr std::size_t kMost = 50;  // rows kept; with more, sparse matrices are faster
 
+  // Which rows are kept; where their products go.
+  void arrange(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out);
   // C, kept × left out, where `rows` stand; false where the rows kept are not independent.
-  bool find(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out, Eigen::MatrixXd& C);
-  // Takes out the rounding of what was found last: what is needed where multipliers are made of it.
-  void refine(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out,
-              Eigen::MatrixXd& C);
+  bool find(const BlockRows& rows, Eigen::MatrixXd& C);
+  // Takes the rounding out of c, what f is in terms of the rows kept, for which coefficients were found last: what is
+  // needed where multipliers are made of it.
+  void refine(const BlockRows& rows, const std::vector<int>& kept, const Eigen::VectorXd& f,
+              Eigen::Ref<Eigen::VectorXd> c);
 
  private:
-  bool decompose(int kept);
+  bool decompose();
   void forward(std::span<double> x) const;
   void backward(std::span<double> x) const;
   double* row(int i) { return L_.data() + i * stride_; }
   const double* row(int i) const { return L_.data() + i * stride_; }
+  double* inverses() { return row(static_cast<int>(first_.size())); }  // 1 / L_jj
+  const double* inverses() const { return row(static_cast<int>(first_.size())); }
 
-  std::vector<int> place_;  // by row: among those kept, then those left out
-  // L of G_K G_Kᵀ = L Lᵀ by rows without its diagonal, and below it (L⁻¹ G_K g_d)ᵀ by row left out; zero elsewhere.
+  int kept_ = 0;
+  // Rows kept, then those left out: L of G_K G_Kᵀ = L Lᵀ by rows without its diagonal, and below it (L⁻¹ G_K g_d)ᵀ by
+  // row left out, zero elsewhere; then the inverses of the diagonal, and a number for products that nothing needs.
   int stride_ = 0;  // a row's length, of whole vectors
   std::vector<double> L_, x_;
-  std::vector<int> first_;       // by row: its first entry that is not zero, or its diagonal
-  std::vector<double> inverse_;  // 1 / L_jj
+  Eigen::VectorXd left_;    // of f beside the rows kept
+  std::vector<int> first_;  // by row: its first entry that is not zero, or its diagonal
+  std::vector<int> at_;     // by pair of rows on a body (BlockRows::for_each_pair): where its product goes in L_
 };
 
 }  // namespace poinsot

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kFarCorrections = 30;
 constexpr double kFarNegligible = 1e-14;  // relative to the largest coordinate: rounding
+constexpr double kMostCurved = 1e9;       // 1 over what is left of a row that counts as independent (kDependent)
 
 constexpr int kCorrections = 6;
 constexpr double kRounding = 1e-15;    // product of two corrections that leaves nothing to correct
@@ -107,9 +108,13 @@ Status Consistent::project_position(double t, std::span<double> q, std::span<dou
     std::ranges::copy(q_moved_, q.begin());
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += moves()[i];
     problem_.set_position(t, q);
-    // quadratic convergence: done where the correction is rounding, or has stopped to shrink at a small size
+    // Quadratic convergence: done where the correction is rounding, or has stopped to shrink at a small size, or the
+    // next one would be rounding: as many times the square of this one as this one is of the one before, of the first
+    // as many as rows can make of it that are hardly independent.
     const double scale = std::max(1.0, largest(q));
+    const double times = k == 0 ? kMostCurved : correction / (before * before);
     if (correction <= kFarNegligible * scale || (correction < 1e-9 * scale && correction >= 0.5 * before)) return {};
+    if (correction < 1e-9 * scale && times * correction * correction <= kFarNegligible * scale) return {};
     before = correction;
   }
   return {Failure::inconsistent_state, t, {}};  // who asks knows what for
