@@ -168,8 +168,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
                            (failure == Failure::rotation_too_large && outcome.status.time > 0);
   if (settings.analysis == Analysis::dynamics && (unexplained || failure == Failure::singular_position)) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
-    constexpr double kInstant = 1e-4;  // of the run
-    const double instant = chooses_steps(settings) ? kInstant * settings.end : settings.step;
+    const double instant = chooses_steps(settings) ? instant_of(settings.end) : settings.step;
     std::string why = sticking_law(*problem, settings.linear(), state, instant);
     if (!why.empty()) withdraw_remedy(outcome.status.message);  // nothing but another law helps
     if (why.empty()) why = vanished_gradient(*problem, state);

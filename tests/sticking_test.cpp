@@ -46,12 +46,12 @@ struct Case {
   const char *wheel, *slide;              // laws that stick
   const char *steep_wheel, *steep_slide;  // in their place
   const char* of;
-  double from, to;  // when it stops
+  double from;  // before which it does not stick
 };
 const Case kCases[] = {
-    {"2*sign(v) + 0.1*v", "0", "2*min(max(v/0.01, -1), 1) + 0.1*v", "0", "force 'brake'", 1.35, 1.45},
-    {"0", "3*sign(v) + x", "0", "3*min(max(v/0.01, -1), 1) + x", "force 'rail'", 0.1, 1.0},
-    {"2*(step(v) - step(-v)) + 0.1*v", "v", "2*min(max(v/0.01, -1), 1) + 0.1*v", "v", "force 'brake'", 1.35, 1.45},
+    {"2*sign(v) + 0.1*v", "0", "2*min(max(v/0.01, -1), 1) + 0.1*v", "0", "force 'brake'", 1.35},
+    {"0", "8*sign(v) + x", "0", "8*min(max(v/0.01, -1), 1) + x", "force 'rail'", 0.14},
+    {"2*(step(v) - step(-v)) + 0.1*v", "v", "2*min(max(v/0.01, -1), 1) + 0.1*v", "v", "force 'brake'", 1.35},
 };
 
 TEST_P(Sticking, EndsTheRunAndSaysWhichLaw) {
@@ -65,15 +65,21 @@ TEST_P(Sticking, EndsTheRunAndSaysWhichLaw) {
         EXPECT_THAT(r.outcome.status.message, Not(HasSubstr("; try ")));
         EXPECT_THAT(r.outcome.status.message, Not(HasSubstr("singular position")));
         EXPECT_GT(r.outcome.status.time, c.from);
-        EXPECT_LT(r.outcome.status.time, c.to);
       }
       expect_helped(sliding(c.steep_wheel, c.steep_slide), settings);
     });
 }
 
-// A jump that a motion passes is none to stick to.
+// A jump that a motion passes is none to stick to: of a place, and of a velocity where a spring is stronger.
 TEST_P(Sticking, IsNotWhatPassesAJump) {
-  by_each(GetParam(), [&](const Settings& settings) { expect_helped(sliding("0.2*sign(x - 1)", "0"), settings); });
+  by_each(GetParam(), [&](const Settings& settings) {
+    expect_helped(sliding("0.2*sign(x - 1)", "0"), settings);
+    const Recorded r = run(sliding("0", "3*sign(v) + x"), settings);
+    if (integrators().require(settings.integrator).controls_error) {
+      EXPECT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    }
+    EXPECT_THAT(r.outcome.status.message, Not(HasSubstr("sticks")));
+  });
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ class Course {
         run_(run),
         clock_(clock),
         still_(run.problem, run.tell),
-        sticking_(run.problem.model()) {}
+        sticking_(run.problem.model(), run.settings.linear(), instant_of(run.settings.end)) {}
 
   void give_out(const State& at) { give_out(at, at.t); }
   void give_out(const State& at, double t) {

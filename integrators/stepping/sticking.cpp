@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/index.h"
@@ -26,7 +27,7 @@ class BesideJump {
         state_(state),
         law_(law),
         z_(state.z),
-        bodies_(problem.bodies()) {
+        bodies_(index(problem.bodies())) {
     own_->set_position(state.t, span(state.q));
   }
 
@@ -105,7 +106,8 @@ std::optional<Trap> trap_of(BesideJump& beside, const SpringLaw& law, const Stat
 
 }  // namespace
 
-StickingWatch::StickingWatch(const Model& model) {
+StickingWatch::StickingWatch(const Model& model, const LinearChoice& choice, double instant)
+    : choice_(choice), instant_(instant) {
   std::size_t most = 0, all = 0;
   for (const SpringLaw& law : spring_laws(model)) {
     const int count = law.F->switch_count();
@@ -123,8 +125,10 @@ StickingWatch::StickingWatch(const Model& model) {
 }
 
 Status StickingWatch::look(const Problem& problem, const State& at) {
-  constexpr double kBetween = 0.5;  // of a crossing, that a step without one takes back
+  constexpr double kBetween = 0.05;  // of a crossing, that a step without one takes back
   constexpr double kToAndFro = 30;
+  constexpr double kShort = 0.1;
+  constexpr int kSeldomer = 4;
   if (laws_.empty()) return {};
   problem.to_bodies(at.a(), bodies_);
   bool crossed = false;
@@ -139,9 +143,13 @@ Status StickingWatch::look(const Problem& problem, const State& at) {
     }
   }
   crossings_ = crossed ? crossings_ + 1 : std::max(0.0, crossings_ - kBetween);
-  if (crossings_ < kToAndFro) return {};
+  short_ = at.t - std::exchange(t_, at.t) < kShort * instant_ ? short_ + 1 : 0;
+  if (crossings_ < kToAndFro && short_ < many_) return {};
+  if (short_ >= many_) many_ *= kSeldomer;
+  crossings_ = 0;
+  if (sticking_law(problem, choice_, at, instant_).empty()) return {};
   return {Failure::step_size_too_small, at.t,
-          fmt::format("at t = {:.9g} s steps go to and fro over a jump of a force, and do not get on", at.t)};
+          fmt::format("at t = {:.9g} s steps go to and fro about a jump of a force, and do not get on", at.t)};
 }
 
 std::string sticking_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant) {

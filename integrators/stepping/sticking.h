@@ -17,20 +17,28 @@ namespace poinsot {
 // accelerations do, of states that differ in the one direction in which the force acts.
 std::string sticking_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant);
 
+// The instant for methods that choose their steps, in a run up to `end`.
+inline double instant_of(double end) {
+  return 1e-4 * end;
+}
+
 // Steps under error control that go to and fro over such a jump: as short as may be, they come to no end.
 class StickingWatch {
  public:
-  explicit StickingWatch(const Model& model);  // which has to live as long
+  StickingWatch(const Model& model, const LinearChoice& choice, double instant);  // the model has to live as long
 
-  // The end of a step, where the problem stands. Failed where most of many steps have ended on the other side of a jump
-  // than the one before; sticking_law() says which.
+  // The end of a step, where the problem stands. Failed where many steps have ended on the other side of a jump than
+  // the one before, few in between have not, and sticking_law() says of one that the motion cannot leave it.
   Status look(const Problem& problem, const State& at);
 
  private:
+  const LinearChoice choice_;
+  const double instant_;
   std::vector<SpringLaw> laws_;  // that jump
   std::vector<BodyState> bodies_;
   std::vector<double> switches_, sides_;  // of a law, and of all at the step before
-  double crossings_ = 0;
+  double crossings_ = 0, t_ = 0;
+  int short_ = 0, many_ = 200;  // short steps on end, and how many are looked at
 };
 
 }  // namespace poinsot
