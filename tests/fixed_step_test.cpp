@@ -84,38 +84,41 @@ TEST_P(FixedStep, FailureNamesTimeAndPlaceAndKeepsWhatWasComputed) {
   }
 }
 
-// Steps for which the iterations allowed do not suffice: their halves need fewer.
+// Steps for which the iterations allowed do not suffice: their halves need fewer. Whether the last of them still do is
+// up to rounding, one run in thirty or so.
 TEST_P(FixedStep, DoesAStepThatFailsInParts) {
   const Scene scene = turning("double_pendulum", {0, 0, 1});
-  const double h = 0.02, end = 2;
-  const std::vector<Snapshot> exact = reference(scene, h, end, end);
   int divided = 0;
-  for (const IntegratorEntry& integrator : integrators()) {
-    if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;
-    SCOPED_TRACE(integrator.name);
-    Settings settings = settings_of(integrator.name, GetParam(), h, end, end);
-    settings.tolerance = 1e-7;
-    const Recorded whole = run(scene, settings);
-    ASSERT_TRUE(whole.outcome.status.ok()) << whole.outcome.status.message;
-    EXPECT_EQ(whole.outcome.statistics.divided_steps, 0);
+  for (const double h : {0.02, 0.019, 0.018, 0.017}) {
+    const double end = 100 * h;
+    const std::vector<Snapshot> exact = reference(scene, h, end, end);
+    for (const IntegratorEntry& integrator : integrators()) {
+      if (integrator.analysis != Analysis::dynamics || integrator.controls_error) continue;
+      SCOPED_TRACE(integrator.name);
+      Settings settings = settings_of(integrator.name, GetParam(), h, end, end);
+      settings.tolerance = 1e-7;
+      const Recorded whole = run(scene, settings);
+      ASSERT_TRUE(whole.outcome.status.ok()) << whole.outcome.status.message;
+      EXPECT_EQ(whole.outcome.statistics.divided_steps, 0);
 
-    for (settings.max_iterations = 2; settings.max_iterations < 20; ++settings.max_iterations) {
-      settings.retry = false;
-      if (run(scene, settings).outcome.status.ok()) break;
-      settings.retry = true;
-      const Recorded parts = run(scene, settings);
-      const Statistics& statistics = parts.outcome.statistics;
-      if (!parts.outcome.status.ok()) continue;  // with so few iterations no step succeeds
-      ++divided;
-      EXPECT_GT(statistics.divided_steps, 0);
-      EXPECT_GT(statistics.steps, whole.outcome.statistics.steps + statistics.divided_steps - 1);
-      EXPECT_THAT(parts.outcome.notices, ::testing::Contains(HasSubstr("were done in parts")));
-      // Of the symplectic Euler method equal steps leave errors that cancel in part.
-      const double more = integrator.order == 1 ? 3 : 1.2;
-      EXPECT_LT(errors(parts.samples, exact)[0], more * errors(whole.samples, exact)[0]);
+      for (settings.max_iterations = 2; settings.max_iterations < 20; ++settings.max_iterations) {
+        settings.retry = false;
+        if (run(scene, settings).outcome.status.ok()) break;
+        settings.retry = true;
+        const Recorded parts = run(scene, settings);
+        const Statistics& statistics = parts.outcome.statistics;
+        if (!parts.outcome.status.ok()) continue;  // with so few iterations no step succeeds
+        ++divided;
+        EXPECT_GT(statistics.divided_steps, 0);
+        EXPECT_GT(statistics.steps, whole.outcome.statistics.steps + statistics.divided_steps - 1);
+        EXPECT_THAT(parts.outcome.notices, ::testing::Contains(HasSubstr("were done in parts")));
+        // Of the symplectic Euler method equal steps leave errors that cancel in part.
+        const double more = integrator.order == 1 ? 3 : 1.2;
+        EXPECT_LT(errors(parts.samples, exact)[0], more * errors(whole.samples, exact)[0]);
+      }
     }
   }
-  EXPECT_GE(divided, 3);
+  EXPECT_GE(divided, 8);
 }
 
 // A step that fails is done in parts where the method allows it; where it does not a smaller step is what to try.

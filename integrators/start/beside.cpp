@@ -48,25 +48,31 @@ Trial Beside::begin(const std::vector<int>& without, int directions) const {
   trial.problem->set_position(0, start.q);
   trial.problem->set_velocity(start.v);
   trial.regular = trial.consistent->project_velocity(0, start.v).ok();
-  for (int k = 0; k < directions && trial.regular; ++k) trial.random.push_back(free_direction(trial, k + 1));
+  bool solved = trial.regular;
+  for (int k = 0; k < directions; ++k) {
+    trial.random.emplace_back();
+    solved = solved && free_direction(trial, k + 1, trial.random.back());
+  }
   return trial;
 }
 
-// By the factors that are those of the start; a move by kMove, none where nothing is free.
-std::vector<double> Beside::free_direction(Trial& trial, int seed) const {
+// By the factors that are those of the start; a move by kMove, none where nothing is free. False where a solution
+// fails, and with it the factors.
+bool Beside::free_direction(Trial& trial, int seed, std::vector<double>& move) const {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::normal_distribution<double> normal;
   const std::size_t nv = trial.start.v.size();
-  std::vector<double> move(nv + index(trial.problem->nc()), 0.0);
+  std::vector<double> x(nv + index(trial.problem->nc()), 0.0);
   for (std::size_t b = 0; b < sizes_.size(); ++b)
-    for (std::size_t k = 0; k < 6; ++k) move[6 * b + k] = sizes_[b] * (k < 3 ? 1 : sizes_[b]) * normal(random);
-  const double asked = extent(std::span<const double>(move).first(nv));
-  if (!trial.consistent->solve(0, move).ok()) return {};
-  move.resize(nv);
-  const double length = extent(move);
-  if (!(length > 1e-6 * asked)) return {};  // it cannot move
-  for (double& x : move) x *= kMove / length;
-  return move;
+    for (std::size_t k = 0; k < 6; ++k) x[6 * b + k] = sizes_[b] * (k < 3 ? 1 : sizes_[b]) * normal(random);
+  const double asked = extent(std::span<const double>(x).first(nv));
+  if (!trial.consistent->solve(0, x).ok()) return false;
+  x.resize(nv);
+  const double length = extent(x);
+  if (!(length > 1e-6 * asked)) return true;  // it cannot move
+  for (double& part : x) part *= kMove / length;
+  move = std::move(x);
+  return true;
 }
 
 double Beside::extent(std::span<const double> dq) const {

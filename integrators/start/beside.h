@@ -74,7 +74,7 @@ class Beside {
   double extent(std::span<const double> dq) const;  // largest move of a body by dq, in its size
 
  private:
-  std::vector<double> free_direction(Trial& trial, int seed) const;
+  bool free_direction(Trial& trial, int seed, std::vector<double>& move) const;
   std::optional<Place> settle(Trial& trial, Place place, std::span<const double> dq, bool must_move);
   void stand(Problem& problem, const Place& place);
   void look(Trial& trial, Place& place);

@@ -27,11 +27,10 @@ void StillWatch::look(const Problem& problem, const State& at) {
   constexpr double kFades = 0.05;      // in the time that the motion takes to change
   constexpr double kDependent = 0.05;  // as independent as elsewhere
   if (told_) return;
-  const double speed = largest(span(at.v));
+  const double speed = at.v.lpNorm<Eigen::Infinity>();
   const double since = at.t - t_;
+  const double acceleration = (at.v - v_).lpNorm<Eigen::Infinity>() / since;
   const bool first = t_ < 0;
-  double acceleration = 0;
-  for (Eigen::Index k = 0; k < v_.size(); ++k) acceleration = std::max(acceleration, std::abs(at.v[k] - v_[k]) / since);
   v_ = at.v;
   t_ = at.t;
   if (first) {

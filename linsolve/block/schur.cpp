@@ -76,6 +76,7 @@ bool Schur::lay_out(const Pattern& pattern, const CscLayout& layout) {
   step_ = padded(kernel->rows);
   if (!place_values(pattern, layout)) return false;
   find_panels(layout);
+  dense_.resize(index(rows_ * rows_)), size_.resize(index(rows_));
   return true;
 }
 
@@ -254,16 +255,16 @@ bool Schur::choose(std::span<const double> units) {
 // Those of S are taken as they come: it is definite where K is.
 bool Schur::choose_pivots() {
   const int n = rows_, stride = kSchurKernels[kernel_].unknowns;
-  std::vector<double> S(index(n * n), 0), size(index(n));
-  const auto at = [&](int i, int k) -> double& { return S[index(k * n + i)]; };
+  std::ranges::fill(dense_, 0.0);
+  const auto at = [&](int i, int k) -> double& { return dense_[index(k * n + i)]; };
   for (int k = 0; k < n; ++k) {
     for (int c = 0; c < size_of(unknown_); ++c)
       for (int i = 0; i < n; ++i) at(i, k) += L_[c * step_ + i] * B_[k * stride + c];
-    size[index(k)] = std::abs(at(k, k));
+    size_[index(k)] = std::abs(at(k, k));
   }
   for (int k = 0; k < n; ++k) {
     const double pivot = at(k, k);
-    if (!(std::abs(pivot) > kLeftOfPivot * size[index(k)])) return false;
+    if (!(std::abs(pivot) > kLeftOfPivot * size_[index(k)])) return false;
     chosen_[k] = 1 / std::abs(pivot);
     for (int j = k + 1; j < n; ++j)
       for (int i = k + 1; i < n; ++i) at(i, j) -= at(i, k) / pivot * at(k, j);

@@ -79,6 +79,7 @@ class Schur {
   std::vector<std::uint16_t> order_;              // of rows within blocks of K, part by part
   std::vector<float> units_, then_;               // of these rows; 1/|pivot| as they were chosen
   Drift drift_;                                   // of the blocks that are inverted
+  std::vector<double> dense_, size_;              // S, and of its diagonal, while pivots are chosen
 };
 
 }  // namespace poinsot::block

@@ -108,7 +108,7 @@ class Solver final : public LinearSolver {
     answer_ = symmetry(layout_) >= kSymmetric && order() ? Answer::open : Answer::handed_over;
     const bool fits = answer_ == Answer::open && schur_.lay_out(pattern, layout_);
     bodies_first_ = fits ? BodiesFirst::unexamined : BodiesFirst::unfit;
-    if (fits) examination_.resize(layout_.n), sizes_.resize(index(layout_.n));  // steps allocate nothing
+    if (fits) examination_.resize(layout_.n), sizes_.resize(index(layout_.n)), b_.reserve(sizes_.size());
     slots_ = std::exchange(layout_.slots, {});
     return {};
   }
@@ -345,7 +345,7 @@ class Solver final : public LinearSolver {
   Factor factor_;
   Schur schur_;
   BodiesFirst bodies_first_ = BodiesFirst::unfit;
-  Condition examination_;      // of bodies first
+  Condition examination_;      // of bodies first, which is to allocate nothing within a step
   std::vector<double> sizes_;  // of the unknowns, for it
   std::unique_ptr<LinearSolver> klu_;
   Residual residual_;
