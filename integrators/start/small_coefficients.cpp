@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "core/index.h"
 #include "linsolve/lanes.h"
@@ -44,7 +45,7 @@ void SmallCoefficients::arrange(const BlockRows& rows, const std::vector<int>& k
   stride_ = padded(n);
   const int diagonal = (n + m) * stride_, nowhere = diagonal + n;
   L_.assign(index(nowhere + 1), 0);
-  x_.assign(index(stride_), 0);
+  x_.assign(index(kTogether * stride_), 0);
   at_.clear();
   rows.for_each_pair([&](int k, int l) {
     const auto [j, i] = std::minmax(place[index(k)], place[index(l)]);
@@ -60,11 +61,14 @@ bool SmallCoefficients::find(const BlockRows& rows, Eigen::MatrixXd& C) {
   if (!decompose()) return false;
   const int left_out = static_cast<int>(first_.size()) - kept_;
   C.resize(kept_, left_out);
-  for (int d = 0; d < left_out; ++d) {
-    std::copy_n(row(kept_ + d), kept_, x_.begin());
-    backward(x_);
-    std::copy_n(x_.begin(), kept_, C.col(d).begin());
-  }
+  const auto columns = [&](auto count, int first) {
+    for (int d = 0; d < count; ++d) std::copy_n(row(kept_ + first + d), kept_, x_.begin() + d * stride_);
+    backward<count>();
+    for (int d = 0; d < count; ++d) std::copy_n(x_.begin() + d * stride_, kept_, C.col(first + d).begin());
+  };
+  int d = 0;
+  for (; d + kTogether <= left_out; d += kTogether) columns(std::integral_constant<int, kTogether>(), d);
+  for (; d < left_out; ++d) columns(std::integral_constant<int, 1>(), d);
   return C.allFinite();
 }
 
@@ -93,16 +97,21 @@ bool SmallCoefficients::decompose() {
   return true;
 }
 
-// x ← L⁻¹ x and x ← L⁻ᵀ x
-void SmallCoefficients::forward(std::span<double> x) const {
+// x ← L⁻¹ x, and x ← L⁻ᵀ x of several x, a row of L being loaded once.
+void SmallCoefficients::forward() {
   for (int j = 0; j < kept_; ++j)
-    x[index(j)] = (x[index(j)] - dot_within(row(j), x.data(), first_[index(j)], j)) * inverses()[j];
+    x_[index(j)] = (x_[index(j)] - dot_within(row(j), x_.data(), first_[index(j)], j)) * inverses()[j];
 }
-void SmallCoefficients::backward(std::span<double> x) const {
+template <int Columns>
+void SmallCoefficients::backward() {
+  double* x = x_.data();
   for (int j = kept_; j-- > 0;) {
-    const double by = x[index(j)] *= inverses()[j];
-    for (int k = first_[index(j)] / kLanes * kLanes; k < j; k += kLanes)
-      store(x.data() + k, load(x.data() + k) - load(row(j) + k) * by);
+    double by[Columns];
+    for (int c = 0; c < Columns; ++c) by[c] = x[c * stride_ + j] *= inverses()[j];
+    for (int k = first_[index(j)] / kLanes * kLanes; k < j; k += kLanes) {
+      const Vec l = load(row(j) + k);
+      for (int c = 0; c < Columns; ++c) store(x + c * stride_ + k, load(x + c * stride_ + k) - l * by[c]);
+    }
   }
 }
 
@@ -111,8 +120,8 @@ void SmallCoefficients::refine(const BlockRows& rows, const std::vector<int>& ke
   left_ = f;
   for (Eigen::Index k = 0; k < c.size(); ++k) rows.add(-c[k], kept[index(k)], left_);
   for (Eigen::Index k = 0; k < c.size(); ++k) x_[index(k)] = rows.share(kept[index(k)], left_);
-  forward(x_);
-  backward(x_);
+  forward();
+  backward<1>();
   for (Eigen::Index k = 0; k < c.size(); ++k) c[k] += x_[index(k)];
 }
 

@@ -29,21 +29,22 @@ class SmallCoefficients {
 
  private:
   bool decompose();
-  void forward(std::span<double> x) const;
-  void backward(std::span<double> x) const;
+  void forward();  // of the first in x_
+  template <int Columns>
+  void backward();  // of so many
   double* row(int i) { return L_.data() + i * stride_; }
-  const double* row(int i) const { return L_.data() + i * stride_; }
   double* inverses() { return row(static_cast<int>(first_.size())); }  // 1 / L_jj
-  const double* inverses() const { return row(static_cast<int>(first_.size())); }
+
+  static constexpr int kTogether = 3;  // columns that are solved for together: what a planar loop has left out
 
   int kept_ = 0;
   // Rows kept, then those left out: L of G_K G_Kᵀ = L Lᵀ by rows without its diagonal, and below it (L⁻¹ G_K g_d)ᵀ by
   // row left out, zero elsewhere; then the inverses of the diagonal, and a number for products that nothing needs.
-  int stride_ = 0;  // a row's length, of whole vectors
-  std::vector<double> L_, x_;
-  Eigen::VectorXd left_;    // of f beside the rows kept
-  std::vector<int> first_;  // by row: its first entry that is not zero, or its diagonal
-  std::vector<int> at_;     // by pair of rows on a body (BlockRows::for_each_pair): where its product goes in L_
+  int stride_ = 0;             // a row's length, of whole vectors
+  std::vector<double> L_, x_;  // x_: kTogether columns, stride_ apart
+  Eigen::VectorXd left_;       // of f beside the rows kept
+  std::vector<int> first_;     // by row: its first entry that is not zero, or its diagonal
+  std::vector<int> at_;        // by pair of rows on a body (BlockRows::for_each_pair): where its product goes in L_
 };
 
 }  // namespace poinsot
