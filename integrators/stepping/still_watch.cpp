@@ -24,8 +24,8 @@ StillWatch::StillWatch(const Problem& problem, std::function<void(const std::str
 
 void StillWatch::look(const Problem& problem, const State& at) {
   constexpr double kStill = 0.1, kMoves = 0.25;
-  constexpr double kFades = 0.05;      // in the time that the motion takes to change
-  constexpr double kDependent = 0.05;  // as independent as elsewhere
+  constexpr double kFades = 0.05;    // in the time that the motion takes to change
+  constexpr double kFarLess = 0.05;  // as independent as elsewhere
   if (told_) return;
   const double speed = at.v.lpNorm<Eigen::Infinity>();
   const double since = at.t - t_;
@@ -49,7 +49,7 @@ void StillWatch::look(const Problem& problem, const State& at) {
   if (motion_ == Motion::going_on) {
     if (speed < kMoves * speed_) return;
     motion_ = Motion::under_way;
-    if (share_ < kDependent * least_share(problem, at)) {
+    if (share_ < kFarLess * least_share(problem, at)) {
       told_ = true;
       tell_(
           fmt::format("at t = {:.6g} s the motion rests in a singular position of the constraints, its accelerations "
