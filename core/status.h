@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace poinsot {
 
@@ -25,10 +26,14 @@ std::string_view name(Failure failure);
 
 struct [[nodiscard]] Status {
   Failure failure = Failure::none;
-  double time = 0;      // s, where it happened
-  std::string message;  // what, which body or constraint, what to try; empty when ok
+  double time = 0;          // s, where it happened
+  std::string message;      // what, which body or constraint; empty when ok
+  std::string remedy = {};  // what to try: empty where nothing is known to help, and once it is part of the message
 
   bool ok() const { return failure == Failure::none; }
+  void tell_remedy() {
+    if (!remedy.empty()) message += "; " + std::exchange(remedy, {});
+  }
 };
 
 }  // namespace poinsot

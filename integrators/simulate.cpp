@@ -72,9 +72,8 @@ void explain(Status& status, const Problem& problem) {
   if (!fault.empty()) {
     status = no_value(status.time, fault);
   } else if (const std::string why = overflowing(problem.model(), status.time); !why.empty()) {
-    status = {Failure::not_finite, status.time,
-              fmt::format("at t = {:.9g} s a number overflows: {}; give it in units in which it is smaller",
-                          status.time, why)};
+    status = {Failure::not_finite, status.time, fmt::format("at t = {:.9g} s a number overflows: {}", status.time, why),
+              "give it in units in which it is smaller"};
   }
 }
 
@@ -96,11 +95,6 @@ void tell_of_switches(const Model& model, const IntegratorEntry& integrator, con
         fmt::format("'{}' varies within less than a step at t = {:.6g} s: steps of fixed length go over that, "
                     "whatever it does to the motion; take a shorter step, or an integrator with error control",
                     pulse->function, pulse->t));
-}
-
-// Of "the step failed; try a shorter one".
-void withdraw_remedy(std::string& message) {
-  message.resize(std::min(message.size(), message.find("; try ")));
 }
 
 Outcome run(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
@@ -170,16 +164,17 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
     const double instant = chooses_steps(settings) ? instant_of(settings.end) : settings.step;
     std::string why = sticking_law(*problem, settings.linear(), state, instant);
-    if (!why.empty()) withdraw_remedy(outcome.status.message);  // nothing but another law helps
     if (why.empty()) why = vanished_gradient(*problem, state);
+    bool helps = why.empty();  // the remedy does, where what these two say does not have to be changed
     if (why.empty()) {
       const NearSingular near =
           near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
       if (unexplained || near.barred) why = near.sentence;
-      if (near.barred) withdraw_remedy(outcome.status.message);  // it does not help there
+      helps = !near.barred;
     }
     if (why.empty() && failure == Failure::step_size_too_small) why = growing_motion(*problem, state);
     if (!why.empty()) outcome.status.message += "; " + why;
+    if (!helps) outcome.status.remedy.clear();
   }
   outcome.statistics.linear = systems.work();
   return outcome;
@@ -190,6 +185,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
 Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
   try {
     Outcome outcome = run(scene, settings, observe, tell);
+    outcome.status.tell_remedy();
     if (!outcome.status.ok()) outcome.status.message = with_key_paths(outcome.status.message, scene);
     return outcome;
   } catch (const InputError& refused) {

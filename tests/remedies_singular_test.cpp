@@ -100,31 +100,6 @@ TEST(SingularRemediesOfBranches, AreATenthOfTheStepOrDop853) {
   EXPECT_GT(doubted, 0);
 }
 
-// A cosine that turns back at an output time leaves rates to rounding: they are the limit of those beside.
-TEST_P(SingularRemedies, ASingularOutputTimeNeedsNone) {
-  Scene scene;
-  Body& wheel = scene.bodies.emplace_back();
-  wheel.name = "wheel", wheel.mass = 1, wheel.inertia = Vector3(1, 1, 1).asDiagonal();
-  wheel.orientation = Eigen::AngleAxisd(1, Vector3::UnitZ()).toRotationMatrix();
-  wheel.angular_velocity = {0, 0, -1};
-  Joint& hinge = scene.joints.emplace_back();
-  hinge.name = "hinge", hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
-  Constraint& row = scene.constraints.emplace_back();
-  row.name = "cosine", row.type = ConstraintType::DP1, row.i = kGround, row.j = 0;
-  row.a_i = row.a_j = {1, 0, 0};
-  row.f = Expression::parse("cos(1 - t)");
-  for (const char* integrator : {"dopri5", "dop853", "radau5"}) {
-    SCOPED_TRACE(integrator);
-    const Recorded r = run(scene, controlled(integrator, GetParam(), 1e-8, 1.5, 0.5));
-    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
-    ASSERT_EQ(r.samples.size(), 4u);
-    for (const Snapshot& sample : r.samples) {
-      EXPECT_NEAR(sample.bodies[0].w.z(), -1, 1e-6) << sample.t;
-      EXPECT_LT(sample.bodies[0].wd.norm(), 1e-6) << sample.t;
-    }
-  }
-}
-
 TEST_P(SingularRemedies, OfAPositionThatJumpsIsAWayThroughTheValuesBetween) {
   const auto scene = [](const char* angle) { return with_motor(posts(1, 0.5, 0, false), angle); };
   for (const char* integrator : {"dopri5", "dop853", "radau5"}) {

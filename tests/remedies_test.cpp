@@ -77,6 +77,17 @@ TEST_P(Remedies, OfStepsThatDiverge) {
   EXPECT_GT(stopped, 0);
 }
 
+// It does no step in parts, and says so by what it offers.
+TEST(RemediesOfGeneralizedAlphaI2, AreSmallerSteps) {
+  for (const auto& [model, formulation, step] :
+       {std::tuple{"heavy_top", "reps", 0.02}, {"gyroscope", "rA", 0.05}, {"four_link_haug", "reps", 0.1}}) {
+    SCOPED_TRACE(model);
+    const Settings settings = usual("generalized_alpha_i2", formulation, step, 1);
+    expect_stopped(run(scene_of(model), settings), Failure::not_converged, "'", "; try a smaller step");
+    expect_helped(scene_of(model), changed(settings, [](Settings& s) { s.step /= 10; }));
+  }
+}
+
 // A bob on a guide with a spring or damper faster than the steps.
 Scene stiff_bob(double stiffness, double damping) {
   Scene scene;

@@ -42,14 +42,14 @@ void add_origin(nlohmann::ordered_json& json) {
 
 std::string to_json(const RunRecord& record) {
   using Json = nlohmann::ordered_json;
-  const auto& [failure, time, message] = record.outcome.status;
+  const Status& status = record.outcome.status;
   const Statistics& s = record.outcome.statistics;
 
   Json json;
-  json["status"] = record.running ? "running" : name(failure);
-  json["incomplete"] = record.running || failure != Failure::none;
-  json["message"] = record.running ? "the run goes on, or was killed; the files hold what it computed" : message;
-  if (failure != Failure::none) json["failure_time"] = time;
+  json["status"] = record.running ? "running" : name(status.failure);
+  json["incomplete"] = record.running || !status.ok();
+  json["message"] = record.running ? "the run goes on, or was killed; the files hold what it computed" : status.message;
+  if (!status.ok()) json["failure_time"] = status.time;
   json["notices"] = record.outcome.notices;
   json["accuracy"] = record.accuracy;
   if (record.verification) json["verify"] = packed(*record.verification);

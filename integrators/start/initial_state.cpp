@@ -294,10 +294,16 @@ class Assembler {
 
 InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings,
                                 const RankAnalysis* rank) {
-  if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) return {no_value(0, fault), {}, {}, {}};
+  InitialState found;
   if (const std::string length = overflowing_length(*model); !length.empty())
     throw InputError(length + "; give it in units in which it is smaller");
-  return Assembler(model, settings, rank).run();
+  const std::string fault = fault_of_functions(*model, 0);
+  if (fault.empty())
+    found = Assembler(model, settings, rank).run();
+  else
+    found.status = no_value(0, fault);
+  found.status.tell_remedy();
+  return found;
 }
 
 }  // namespace poinsot

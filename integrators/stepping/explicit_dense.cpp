@@ -42,20 +42,14 @@ Status ExplicitStepper::by_polynomial(double t) {
   sample_.t = t;
   sample_.v = y_n_.tail(problem_.nv()) + combined_.tail(problem_.nv());
   problem_.retract(span(q_n_), std::span<const double>(span(combined_)).first(nv_), span(sample_.q));
-  return put_on_constraints();
-}
-
-// Of a sample.
-Status ExplicitStepper::put_on_constraints() {
-  if (Status status = passage_.complete(sample_); !status.ok()) return status;
-  return consistent_.made_of_rounding(sample_) ? Status{Failure::singular_position, sample_.t, {}} : Status{};
+  return passage_.complete_sample(sample_);
 }
 
 Status ExplicitStepper::by_short_step(double t) {
   if (Status status = run_through_stages(t, sample_); !status.ok()) return status;
   sample_.v = y_.tail(problem_.nv());
   problem_.retract(span(q_n_), span(y_).first(nv_), span(sample_.q));
-  return put_on_constraints();
+  return passage_.complete_sample(sample_);
 }
 
 }  // namespace poinsot

@@ -77,7 +77,6 @@ class ExplicitStepper {
   Status run_through_stages(double to, State& at);
   void test_stiffness();
   Status prepare_dense();
-  Status put_on_constraints();
   void stand_at_end();
   Status project_end(double& error, double most);
   Status by_polynomial(double t);

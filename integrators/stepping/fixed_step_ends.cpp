@@ -91,8 +91,9 @@ Status FixedSteps::check_branch(Problem& problem) {
     on_branch_ = left ? OnBranch::asked : OnBranch::doubted;
     return {Failure::singular_position, t,
             fmt::format("at t = {:.9g} s, beside a singular position of the constraints, the step ends on another "
-                        "branch than its velocities lead to, by {} most of all; try another step or dop853",
-                        t, problem.describe_unknown(row))};
+                        "branch than its velocities lead to, by {} most of all",
+                        t, problem.describe_unknown(row)),
+            "try another step or dop853"};
   }
   if (share > kComparable && !std::exchange(doubted_, true)) {
     run_.tell(

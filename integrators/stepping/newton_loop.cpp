@@ -111,13 +111,14 @@ bool NewtonLoop::balanced(double position, const Vector& z, const Vector& q) {
 }
 
 Status NewtonLoop::not_converged(double t, double correction) const {
-  const char* try_first = divided_ ? "an integrator with error control" : "a smaller step";
+  const std::string try_first = divided_ ? "try an integrator with error control" : "try a smaller step";
   const auto by_size = [](double x) { return std::isfinite(x) ? std::abs(x) : HUGE_VAL; };
   const auto largest = std::ranges::max_element(delta_, {}, by_size) - delta_.begin();
   if (!std::isfinite(correction)) {
     return {Failure::not_finite, t,
-            fmt::format("at t = {:.9g} s Newton's correction of {} is not finite; try {}", t,
-                        problem_.describe_unknown(static_cast<int>(largest)), try_first)};
+            fmt::format("at t = {:.9g} s Newton's correction of {} is not finite", t,
+                        problem_.describe_unknown(static_cast<int>(largest))),
+            try_first};
   }
   // Corrections that do not come near ask for another step or matrix, whatever they are compared with.
   constexpr int kFew = 10;
@@ -129,9 +130,10 @@ Status NewtonLoop::not_converged(double t, double correction) const {
   if (settings_.max_iterations < kFew || near) others += ", more iterations or a larger tolerance";
   return {Failure::not_converged, t,
           fmt::format("at t = {:.9g} s Newton's method did not converge: after {} the correction is {:.3g}, "
-                      "the tolerance {:.3g}; the largest correction is that of {}; try {}{}",
+                      "the tolerance {:.3g}; the largest correction is that of {}",
                       t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
-                      problem_.describe_unknown(static_cast<int>(largest)), try_first, others)};
+                      problem_.describe_unknown(static_cast<int>(largest))),
+          try_first + others};
 }
 
 }  // namespace poinsot

@@ -10,11 +10,16 @@ namespace poinsot {
 namespace {
 
 constexpr double kTurn = 0.015;  // rad, τ: rounding 50 ε/τ³ and 576 (τ/R)⁸ are about as large, R being half a radian
+// Of a sample other τ, where one of ±τ, ... ±4τ hits another position.
+constexpr std::array kOtherTurns{0.8 * kTurn, 1.3 * kTurn};
 // Times the least steepness seen: from there on states beside are looked at, where a step has failed or none has.
 constexpr double kSteep = 2, kSteeper = 10;
 constexpr std::array kWeights{1.6, -0.8, 8.0 / 35, -1.0 / 35};
 // Part of the steepness here at the most at ±τ, ...: a pole within τ/2 leaves two sevenths at 4τ.
 constexpr std::array kFall{1.0, 1.0, 1.0, 0.4};
+// Times that distance and steepness multiplied, which one position leaves the same, may differ: at ±kτ within τ/30 of
+// another position rounding is seen in accelerations.
+constexpr double kUneven = 30;
 // Part of its size by which a velocity or an acceleration interpolated by two pairs less may differ, and that from one
 // side from that from the other: else the motion is not smooth, as where a force is switched.
 constexpr double kSmooth = 3e-3;
@@ -122,11 +127,15 @@ bool Passage::settle_end(State& at, const Eigen::VectorXd& v_n) {
 
 bool Passage::limit(State& at, const Eigen::VectorXd& along, double tau, double steepest) {
   if (!work_) work_ = std::make_unique<Work>(problem_);
+  double least = HUGE_VAL, most = 0;  // distance in τ times steepness
   for (std::size_t k = 0; k < kWeights.size(); ++k) {
     for (std::size_t side = 0; side < 2; ++side) {
       Beside& beside = work_->beside[k][side];
-      const double s = (side == 0 ? 1 : -1) * static_cast<double>(k + 1) * tau;
+      const double distance = static_cast<double>(k + 1), s = (side == 0 ? tau : -tau) * distance;
       if (!stand_beside(at, along, s, beside).ok() || !(beside.steepness < kFall[k] * steepest)) return false;
+      least = std::min(least, distance * beside.steepness);
+      most = std::max(most, distance * beside.steepness);
+      if (most > kUneven * least) return false;
       if (k == 0 && side == 0) work_->nearest = work_->place;
     }
   }
@@ -163,6 +172,19 @@ Status Passage::complete(State& at) {
   if (Status here = consistent_.accelerations(at); !here.ok()) return here;
   if (Status here = settle(at, settled); !here.ok()) return here;
   return settled ? Status{} : consistent_.complete(at);
+}
+
+Status Passage::complete_sample(State& at) {
+  Status status = complete(at);
+  if (status.ok() && !settled_ && consistent_.made_of_rounding(at)) status = {Failure::singular_position, at.t, {}};
+  if (status.ok() || status.failure == Failure::refused) return status;
+  at = given_;
+  if (!consistent_.accelerations(at).ok()) return status;
+  const double rate = problem_.fastest_turn(), here = consistent_.steepness(at.t);
+  const auto found = [&](double turn) { return limit(at, at.v, turn / rate, here); };
+  if (!(rate > 0) || !std::ranges::any_of(kOtherTurns, found)) return status;
+  give_multipliers(at);
+  return {};
 }
 
 void Passage::give_multipliers(State& at) {

@@ -43,6 +43,8 @@ class Passage {
   bool settle_end(State& at, const Eigen::VectorXd& v_n);
   // The consistent state beside (q, v), λ included: Consistent's, or the limit.
   Status complete(State& at);
+  // The same of a sample, which is refused where it is made of rounding, as singular_position.
+  Status complete_sample(State& at);
   // How far the last one was moved, δq and then δv; by Consistent, where it was not settled.
   std::span<const double> moved_by() const;
 

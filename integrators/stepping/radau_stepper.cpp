@@ -146,8 +146,7 @@ Status RadauStepper::interpolate(double t) {
   fast_ = fast;
   convergence_ = convergence;
   end_of_step(before_, t, sample_);
-  if (Status status = passage_.complete(sample_); !status.ok()) return status;
-  return consistent_.made_of_rounding(sample_) ? Status{Failure::singular_position, sample_.t, {}} : Status{};
+  return passage_.complete_sample(sample_);
 }
 
 }  // namespace poinsot

@@ -105,9 +105,9 @@ Status singular_sample(double t, const std::string& row) {
   return {
       Failure::singular_position, t,
       fmt::format("at t = {:.9g} s, an output time, the mechanism is in a singular position{}, where the constraints "
-                  "leave velocities and accelerations to rounding: they cannot be given out; take output times "
-                  "beside it",
-                  t, row.empty() ? "" : " (singular here: " + row + ")")};
+                  "leave velocities and accelerations to rounding: they cannot be given out",
+                  t, row.empty() ? "" : " (singular here: " + row + ")"),
+      "take output times beside it"};
 }
 
 }  // namespace poinsot

@@ -21,6 +21,10 @@ Fastest fastest(const Problem& problem, std::span<const double> a) {
   return {problem.model().bodies[index(static_cast<int>(body - states.begin()))].name, body->w.norm()};
 }
 
+std::string at_most(double step) {
+  return fmt::format("try a step of at most {:.2g} s", step);
+}
+
 }  // namespace
 
 Status turned_too_far(const Problem& problem, double t, double h) {
@@ -32,8 +36,9 @@ Status turned_too_far(const Problem& problem, double t, double h) {
                                               : describe_group(model, model.followed[index(turn.followed)].group);
   return {Failure::rotation_too_large, t,
           fmt::format("at t = {:.9g} s {} turns at {:.4g} rad/s, by {:.3g} rad in a step: beyond half a turn its turns "
-                      "cannot be counted; try a step of at most {:.2g} s",
-                      t, name, turn.rate, h * turn.rate, 0.3 * kMostCounted / turn.rate)};
+                      "cannot be counted",
+                      t, name, turn.rate, h * turn.rate),
+          at_most(0.3 * kMostCounted / turn.rate)};
 }
 
 Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most,
@@ -41,8 +46,9 @@ Status rotated_too_far(const Problem& problem, std::span<const double> a, double
   const auto [name, rate] = fastest(problem, a);
   return {Failure::rotation_too_large, t,
           fmt::format("at t = {:.9g} s body '{}' turns by {:.3g} rad in a step; in formulation {} the integrator makes "
-                      "no sense beyond {:.2g}: rotation is lost or invented; try a step of at most {:.2g} s",
-                      t, name, h * rate, problem.formulation(), most, serves)};
+                      "no sense beyond {:.2g}: rotation is lost or invented",
+                      t, name, h * rate, problem.formulation(), most),
+          at_most(serves)};
 }
 
 Status turned_unexpectedly(const Problem& problem, std::span<const double> a, double t, double h, double unexpected,
@@ -50,17 +56,18 @@ Status turned_unexpectedly(const Problem& problem, std::span<const double> a, do
   const auto [name, rate] = fastest(problem, a);
   return {Failure::rotation_too_large, t,
           fmt::format("at t = {:.9g} s the step may have ended on another branch than the motion leads to: body '{}' "
-                      "turns by {:.3g} rad in it, a body by {:.3g} rad more or less than in the step before; try a "
-                      "step of at most {:.2g} s",
-                      t, name, h * rate, unexpected, serves)};
+                      "turns by {:.3g} rad in it, a body by {:.3g} rad more or less than in the step before",
+                      t, name, h * rate, unexpected),
+          at_most(serves)};
 }
 
 Status leads_too_far(const Problem& problem, std::span<const double> a, double t, int parts, double serves) {
   const auto [name, rate] = fastest(problem, a);
   return {Failure::rotation_too_large, t,
           fmt::format("at t = {:.9g} s a step goes further than {} parts of it can follow: body '{}' turns at {:.3g} "
-                      "rad/s; try a step of at most {:.2g} s",
-                      t, parts, name, rate, serves)};
+                      "rad/s",
+                      t, parts, name, rate),
+          at_most(serves)};
 }
 
 }  // namespace poinsot
