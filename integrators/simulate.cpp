@@ -156,6 +156,12 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
         "s, or error control, does not",
         largest, rotation.wrong, integrator.name, formulation.name, 0.9 * settings.step * rotation.wrong / largest));
   }
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  if (outcome.status.ok() && chooses_steps(settings) && kEpsilon * largest > settings.rtol)
+    notice(
+        fmt::format("a body turns by up to {:.2g} rad in a step: rounding alone leaves its orientation open by "
+                    "{:.1g} rad there, more than rtol",
+                    largest, kEpsilon * largest));
   const Failure failure = outcome.status.failure;
   const bool unexplained = failure == Failure::step_size_too_small || failure == Failure::not_converged ||
                            failure == Failure::singular_matrix ||
@@ -172,7 +178,8 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
       if (unexplained || near.barred) why = near.sentence;
       helps = !near.barred;
     }
-    if (why.empty() && failure == Failure::step_size_too_small) why = growing_motion(*problem, state);
+    if (why.empty() && failure == Failure::step_size_too_small && outcome.status.remedy.empty())
+      why = growing_motion(*problem, state);
     if (!why.empty()) outcome.status.message += "; " + why;
     if (!helps) outcome.status.remedy.clear();
   }

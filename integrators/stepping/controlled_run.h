@@ -7,14 +7,18 @@
 // after a completed one of length h.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/interruption.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/passed_laws.h"
+#include "integrators/stepping/progress.h"
 #include "integrators/stepping/pulses.h"
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/singular_position.h"
@@ -25,6 +29,12 @@
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
+
+inline void tell_long_way(const Run& run, double t, double steps) {
+  run.tell(
+      fmt::format("up to t = {:.6g} s {} steps were done, and as it goes on the end is some {:.0e} further ones away",
+                  t, run.statistics.steps, steps));
+}
 
 // What lies before a run, whichever method is at it: the clock, output times, switches of the data, who is given what.
 class Course {
@@ -38,6 +48,7 @@ class Course {
         run_(run),
         clock_(clock),
         still_(run.problem, run.tell),
+        progress_(run.settings.end),
         sticking_(run.problem.model(), run.settings.linear(), instant_of(run.settings.end)) {}
 
   void give_out(const State& at) { give_out(at, at.t); }
@@ -57,6 +68,10 @@ class Course {
   // A step ended at `at`, where the problem stands.
   Status follow(const State& at) {
     still_.look(run_.problem, at);
+    if (progress_.look(at.t)) {
+      if (progress_.never_ends()) return never_beyond(run_.problem, at, progress_.limit());
+      if (progress_.takes_long() && !std::exchange(long_told_, true)) tell_long_way(run_, at.t, progress_.steps_left());
+    }
     return sticking_.look(run_.problem, at);
   }
   double turned(double h) const { return h * run_.problem.fastest_turn(); }  // rad, the fastest body at its speed now
@@ -76,6 +91,8 @@ class Course {
   const Run& run_;
   PhaseClock& clock_;
   StillWatch still_;
+  Progress progress_;
+  bool long_told_ = false;
   StickingWatch sticking_;
   OpenMultipliers open_multipliers_;
 };

@@ -56,6 +56,17 @@ bool bars(Problem& problem, const UnitRows& rows, Eigen::Index row, double t, st
          (kNone + kTimesShare * rows.shares()[row]) * mu.norm() * usual.cwiseQuotient(rows.lengths).norm();
 }
 
+// Of one body at least. The problem stands at the state.
+std::string most_accelerated(const Problem& problem, const State& state) {
+  std::vector<BodyState> bodies(index(problem.bodies()));
+  problem.to_bodies(state.a(), bodies);
+  const auto most = std::ranges::max_element(
+      bodies, {}, [](const BodyState& body) { return body.rdd.squaredNorm() + body.wd.squaredNorm(); });
+  return fmt::format("body '{}' is accelerated most, by {:.3g} m/s^2 and {:.3g} rad/s^2",
+                     problem.model().bodies[index(static_cast<int>(most - bodies.begin()))].name, most->rdd.norm(),
+                     most->wd.norm());
+}
+
 constexpr int kLargest = 600;  // of G: a second's work
 
 }  // namespace
@@ -97,20 +108,21 @@ NearSingular near_singular_position(Problem& problem, int rows, std::span<const 
           (driven ? "; where a driver asks for more than the mechanism reaches nothing does: end before it" : "")};
 }
 
+Status never_beyond(const Problem& problem, const State& at, double limit) {
+  return {Failure::step_size_too_small, at.t,
+          fmt::format("at t = {:.9g} s steps get shorter and shorter, so that they never come beyond about t = {:.4g} s: {}, "
+                      "and the motion grows without bound",
+                      at.t, limit, most_accelerated(problem, at)),
+          "end before it"};
+}
+
 std::string growing_motion(const Problem& problem, const State& state) {
   if (problem.bodies() == 0) return {};
-  std::vector<BodyState> bodies(index(problem.bodies()));
-  problem.to_bodies(state.a(), bodies);
-  const auto fastest = std::ranges::max_element(
-      bodies, {}, [](const BodyState& body) { return body.rdd.squaredNorm() + body.wd.squaredNorm(); });
-  return fmt::format(
-      "body '{}' is accelerated most, by {:.3g} m/s^2 and {:.3g} rad/s^2: the mechanism comes to a singular position, "
-      "near which accelerations are lost to rounding, or the tolerances ask for more than the arithmetic has (where a "
-      "body is at rest, atol alone does), and larger tolerances or an implicit integrator with a fixed step may pass; "
-      "or "
-      "the motion jumps or grows without bound here: end before it",
-      problem.model().bodies[index(static_cast<int>(fastest - bodies.begin()))].name, fastest->rdd.norm(),
-      fastest->wd.norm());
+  return most_accelerated(problem, state) +
+         ": the mechanism comes to a singular position, near which accelerations are lost to rounding, or the "
+         "tolerances ask for more than the arithmetic has (where a body is at rest, atol alone does), and larger "
+         "tolerances or an implicit integrator with a fixed step may pass; or the motion jumps or grows without bound "
+         "here: end before it";
 }
 
 std::string vanished_gradient(Problem& problem, const State& state) {

@@ -39,6 +39,9 @@ inline constexpr const char* kBarred =
     "drivers ask there for more than the mechanism reaches: its velocities grow without bound, and no method passes; "
     "end before it, or change the drivers";
 
+// Of steps that get shorter towards the time `limit`, so that they never come there; at `at`, where the problem stands.
+Status never_beyond(const Problem& problem, const State& at, double limit);
+
 // A sentence about steps that became too small where no row says why: who moves, what it may be, what may help.
 std::string growing_motion(const Problem& problem, const State& state);
 
