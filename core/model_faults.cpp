@@ -39,7 +39,7 @@ std::string fault_sentence(double t, const std::string& whose, const std::string
 }
 
 Status no_value(double t, const std::string& fault) {
-  return {Failure::not_finite, t, fault, "end the run before, or change the function"};
+  return with_remedy(Failure::not_finite, t, fault, "end the run before, or change the function");
 }
 
 }  // namespace poinsot

@@ -1,6 +1,7 @@
 #include "core/status.h"
 
 #include <iterator>
+#include <utility>
 
 namespace poinsot {
 
@@ -21,6 +22,13 @@ std::string_view name(Failure failure) {
   };
   static_assert(std::size(kNames) == static_cast<std::size_t>(Failure::interrupted) + 1);
   return kNames[static_cast<std::size_t>(failure)];
+}
+
+Status with_remedy(Failure failure, double time, std::string message, std::string_view remedy) {
+  Status status{failure, time, std::move(message)};
+  status.remedy = status.message.size();
+  status.message.append("; ").append(remedy);
+  return status;
 }
 
 }  // namespace poinsot

@@ -1,6 +1,7 @@
 // What a numerical procedure answers: ok, or why it stopped. Never thrown, never printed from inside.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,14 +27,17 @@ std::string_view name(Failure failure);
 
 struct [[nodiscard]] Status {
   Failure failure = Failure::none;
-  double time = 0;          // s, where it happened
-  std::string message;      // what, which body or constraint; empty when ok
-  std::string remedy = {};  // what to try: empty where nothing is known to help, and once it is part of the message
+  double time = 0;         // s, where it happened
+  std::string message;     // what, which body or constraint, what to try; empty when ok
+  std::size_t remedy = 0;  // where in it what to try begins; 0 where nothing is known to help
 
   bool ok() const { return failure == Failure::none; }
-  void tell_remedy() {
-    if (!remedy.empty()) message += "; " + std::exchange(remedy, {});
+  void withdraw_remedy() {
+    if (remedy > 0) message.resize(std::exchange(remedy, 0));
   }
 };
+
+// A failure and what to try: "try a smaller step".
+Status with_remedy(Failure failure, double time, std::string message, std::string_view remedy);
 
 }  // namespace poinsot

@@ -72,8 +72,9 @@ void explain(Status& status, const Problem& problem) {
   if (!fault.empty()) {
     status = no_value(status.time, fault);
   } else if (const std::string why = overflowing(problem.model(), status.time); !why.empty()) {
-    status = {Failure::not_finite, status.time, fmt::format("at t = {:.9g} s a number overflows: {}", status.time, why),
-              "give it in units in which it is smaller"};
+    status = with_remedy(Failure::not_finite, status.time,
+                         fmt::format("at t = {:.9g} s a number overflows: {}", status.time, why),
+                         "give it in units in which it is smaller");
   }
 }
 
@@ -171,17 +172,16 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     const double instant = chooses_steps(settings) ? instant_of(settings.end) : settings.step;
     std::string why = sticking_law(*problem, settings.linear(), state, instant);
     if (why.empty()) why = vanished_gradient(*problem, state);
-    bool helps = why.empty();  // the remedy does, where what these two say does not have to be changed
+    if (!why.empty()) outcome.status.withdraw_remedy();  // nothing helps but to change what these two say
     if (why.empty()) {
       const NearSingular near =
           near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
       if (unexplained || near.barred) why = near.sentence;
-      helps = !near.barred;
+      if (near.barred) outcome.status.withdraw_remedy();
     }
-    if (why.empty() && failure == Failure::step_size_too_small && outcome.status.remedy.empty())
+    if (why.empty() && failure == Failure::step_size_too_small && outcome.status.remedy == 0)
       why = growing_motion(*problem, state);
     if (!why.empty()) outcome.status.message += "; " + why;
-    if (!helps) outcome.status.remedy.clear();
   }
   outcome.statistics.linear = systems.work();
   return outcome;
@@ -192,7 +192,6 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
 Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
   try {
     Outcome outcome = run(scene, settings, observe, tell);
-    outcome.status.tell_remedy();
     if (!outcome.status.ok()) outcome.status.message = with_key_paths(outcome.status.message, scene);
     return outcome;
   } catch (const InputError& refused) {

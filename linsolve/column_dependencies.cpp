@@ -98,12 +98,11 @@ struct WideRows {
 // Where the columns kept by their order are barely independent, and rounding of A decides about what is left of others,
 // those are kept that are clearest; unless `enough` of them are dependent all the same. So, too, beside wide rows: what
 // these hold is found by sums along null vectors, which such columns make long.
-FrontQr decomposed(const Sparse& A, const std::vector<char>& left_out, double tolerance, bool wide, std::size_t most,
-                   std::size_t enough) {
+FrontQr decomposed(const Sparse& A, const WideRows& wide, double tolerance, std::size_t most, std::size_t enough) {
   const auto choose = [&](FrontQr::Choice choice, std::size_t vectors) {
-    return FrontQr(A, left_out, tolerance, choice, vectors);
+    return FrontQr(A, wide.left_out, tolerance, choice, vectors);
   };
-  if (wide) return choose(FrontQr::Choice::clearest, SIZE_MAX);
+  if (wide.count > 0) return choose(FrontQr::Choice::clearest, SIZE_MAX);
   FrontQr first = choose(FrontQr::Choice::by_order, most);
   if (first.growth() <= kGrown || first.dependent().size() >= enough) return first;
   FrontQr other = choose(FrontQr::Choice::clearest, most);
@@ -119,9 +118,9 @@ struct Echelon {
   std::size_t stretched = 0;
 
   // Vectors are not needed where there are more than `most`.
-  Echelon(const Sparse& A, double tolerance, std::size_t most, std::size_t enough) {
-    const auto [count, wide, left_out] = WideRows(A);
-    FrontQr qr = decomposed(A, left_out, tolerance, count > 0, most, enough);
+  Echelon(const Sparse& A, double tolerance, const WideRows& wide_rows, FrontQr& qr, std::size_t most) {
+    const int count = wide_rows.count;
+    const std::vector<int>& wide = wide_rows.number;
     from = qr.choice() == FrontQr::Choice::by_order ? qr.left() : tolerance;
     stretched = qr.stretched();
     const double work = static_cast<double>(qr.dependent().size()) * count * count;
@@ -151,10 +150,7 @@ struct Echelon {
   }
 };
 
-}  // namespace
-
-ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
-  Echelon space(A, tolerance, kMostNamed, SIZE_MAX);
+ColumnDependencies dependencies(Echelon space) {
   ColumnDependencies found;
   found.named = space.complete;
   for (const int column : space.dependent) found.columns.push_back({column, {}});
@@ -176,6 +172,14 @@ ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
   return found;
 }
 
+}  // namespace
+
+ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
+  const WideRows wide(A);
+  FrontQr qr = decomposed(A, wide, tolerance, kMostNamed, SIZE_MAX);
+  return dependencies(Echelon(A, tolerance, wide, qr, kMostNamed));
+}
+
 std::vector<int> clearest_dependent_columns(const Sparse& A, double tolerance) {
   const WideRows wide(A);
   if (wide.count > 0) return dependent_columns(A, tolerance);
@@ -185,11 +189,16 @@ std::vector<int> clearest_dependent_columns(const Sparse& A, double tolerance) {
 }
 
 std::vector<int> dependent_columns(const Sparse& A, double tolerance, std::size_t enough) {
-  return Echelon(A, tolerance, 0, enough).dependent;
+  const WideRows wide(A);
+  FrontQr qr = decomposed(A, wide, tolerance, 0, enough);
+  return Echelon(A, tolerance, wide, qr, 0).dependent;
 }
 
-NullSpace null_space(const Sparse& A, double tolerance, std::size_t most) {
-  Echelon space(A, tolerance, most, SIZE_MAX);
+NullSpace null_space(const Sparse& A, double tolerance, std::size_t most, ColumnDependencies* named) {
+  const WideRows wide(A);
+  FrontQr qr = decomposed(A, wide, tolerance, named ? kMostNamed : most, SIZE_MAX);
+  if (named) *named = dependencies(Echelon(A, tolerance, wide, qr, kMostNamed));
+  Echelon space(A, tolerance, wide, qr, most);
   NullSpace found{std::move(space.dependent), {}, space.from, space.stretched};
   for (auto& [column, z] : space.by_last) found.vectors.push_back(std::move(z));
   return found;

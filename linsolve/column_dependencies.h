@@ -23,7 +23,7 @@ struct ColumnDependency {
   std::vector<int> others;  // earlier columns it is a combination of, ascending; independent ones up to kMostNamed
 };
 
-inline constexpr std::size_t kMostNamed = 20'000'000;  // entries of null vectors: about 300 MB
+inline constexpr std::size_t kMostNamed = 4'000'000;  // entries of null vectors: about 60 MB
 
 struct ColumnDependencies {
   std::vector<ColumnDependency> columns;  // ascending
@@ -50,6 +50,8 @@ struct NullSpace {
   double from = 0;            // the least tolerance at which it is the same
   std::size_t stretched = 0;  // as good as dependent by the length of the mechanism: FrontQr::stretched
 };
-NullSpace null_space(const Eigen::SparseMatrix<double>& A, double tolerance, std::size_t most);
+// `named`: given column_dependencies() of the same decomposition.
+NullSpace null_space(const Eigen::SparseMatrix<double>& A, double tolerance, std::size_t most,
+                     ColumnDependencies* named = nullptr);
 
 }  // namespace poinsot

@@ -80,8 +80,8 @@ class Choice {
 
 }  // namespace
 
-NullSpace few_null_vectors(const Eigen::SparseMatrix<double>& columns, double tolerance) {
-  return null_space(columns, tolerance, kMostChosen);
+NullSpace few_null_vectors(const Eigen::SparseMatrix<double>& columns, double tolerance, ColumnDependencies* named) {
+  return null_space(columns, tolerance, kMostChosen, named);
 }
 
 bool many(const NullSpace& null) {

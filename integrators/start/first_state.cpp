@@ -84,23 +84,26 @@ Status limit_state(Problem& problem, const RankAnalysis& rank, const Settings& s
     const std::string fault = problem.fault();  // of a function that has no value before the start
     beside.stand(state);
     if (!fault.empty())
-      return {Failure::not_finite, state.t,
-              fault + ": accelerations of a start in a singular position are the limit of those before it and after it",
-              "start beside it, or change the function"};
-    return {Failure::singular_position, state.t,
-            fmt::format("the initial pose is a singular position of the mechanism, and accelerations beside it have no "
-                        "limit there: singular here: {}",
-                        singular()),
-            "start beside it"};
+      return with_remedy(
+          Failure::not_finite, state.t,
+          fault + ": accelerations of a start in a singular position are the limit of those before it and after it",
+          "start beside it, or change the function");
+    return with_remedy(
+        Failure::singular_position, state.t,
+        fmt::format("the initial pose is a singular position of the mechanism, and accelerations beside it have no "
+                    "limit there: singular here: {}",
+                    singular()),
+        "start beside it");
   }
   // The constraints leave more velocities free than the mechanism has on either side.
   const Eigen::VectorXd beside_v = limit.v - state.v;
   if (!(largest(span(beside_v)) <= kOnBranch * largest(span(state.v)))) {
-    return {Failure::singular_position, state.t,
-            fmt::format("the initial pose is a singular position of the mechanism, and the initial velocities are on "
-                        "none of the branches that go through it: singular here: {}",
-                        singular()),
-            "start beside it, or with the velocities of one branch"};
+    return with_remedy(
+        Failure::singular_position, state.t,
+        fmt::format("the initial pose is a singular position of the mechanism, and the initial velocities are on "
+                    "none of the branches that go through it: singular here: {}",
+                    singular()),
+        "start beside it, or with the velocities of one branch");
   }
   state.z.setZero();
   state.z.head(limit.v.size()) = limit.z.head(limit.v.size());

@@ -294,16 +294,10 @@ class Assembler {
 
 InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings,
                                 const RankAnalysis* rank) {
-  InitialState found;
+  if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) return {no_value(0, fault), {}, {}, {}};
   if (const std::string length = overflowing_length(*model); !length.empty())
     throw InputError(length + "; give it in units in which it is smaller");
-  const std::string fault = fault_of_functions(*model, 0);
-  if (fault.empty())
-    found = Assembler(model, settings, rank).run();
-  else
-    found.status = no_value(0, fault);
-  found.status.tell_remedy();
-  return found;
+  return Assembler(model, settings, rank).run();
 }
 
 }  // namespace poinsot

@@ -42,7 +42,10 @@ class Examination {
       space_->stand(0, states_);
     }
     here_ = few_null_vectors(space_->columns(), kIndependent);
-    surely_ = here_.from <= kDependent ? here_ : few_null_vectors(space_->columns(), kDependent);
+    const auto surely = [&] {
+      return few_null_vectors(space_->columns(), kDependent, names_ == RankNames::all ? &named_.emplace() : nullptr);
+    };
+    surely_ = here_.from <= kDependent ? here_ : surely();
     // Rows that are barely independent by the length of the mechanism are so wherever it stands: not singular here.
     if (surely_.columns.size() + here_.stretched >= here_.columns.size()) here_ = surely_;
     if (here_.columns.empty()) return std::move(result_);
@@ -134,7 +137,8 @@ class Examination {
 
   void tell_redundant(const Sparse& columns, double tolerance, const NullSpace& null) {
     if (names_ == RankNames::all) {
-      ColumnDependencies found = column_dependencies(columns, tolerance);
+      const bool known = named_ && tolerance == kDependent;
+      ColumnDependencies found = known ? *std::exchange(named_, {}) : column_dependencies(columns, tolerance);
       result_.named = found.named;
       for (ColumnDependency& d : found.columns)
         result_.dependent.push_back({space_->rows()[index(d.column)], of_model(std::move(d.others))});
@@ -225,9 +229,10 @@ class Examination {
   RankNames names_;
   std::optional<RowSpace> space_;
   std::optional<Beside> beside_;
-  NullSpace here_;            // of the rows at the given position, at kIndependent but for the length of the mechanism
-  NullSpace surely_;          // at kDependent
-  std::vector<int> without_;  // model rows: the others are independent at the given position
+  NullSpace here_;    // of the rows at the given position, at kIndependent but for the length of the mechanism
+  NullSpace surely_;  // at kDependent
+  std::optional<ColumnDependencies> named_;  // of these, where names are asked for and the two differ
+  std::vector<int> without_;                 // model rows: the others are independent at the given position
   RankAnalysis result_;
 };
 

@@ -109,11 +109,13 @@ NearSingular near_singular_position(Problem& problem, int rows, std::span<const 
 }
 
 Status never_beyond(const Problem& problem, const State& at, double limit) {
-  return {Failure::step_size_too_small, at.t,
-          fmt::format("at t = {:.9g} s steps get shorter and shorter, so that they never come beyond about t = {:.4g} s: {}, "
-                      "and the motion grows without bound",
-                      at.t, limit, most_accelerated(problem, at)),
-          "end before it"};
+  return with_remedy(
+      Failure::step_size_too_small, at.t,
+      fmt::format(
+          "at t = {:.9g} s steps get shorter and shorter, so that they never come beyond about t = {:.4g} s: {}, "
+          "and the motion grows without bound",
+          at.t, limit, most_accelerated(problem, at)),
+      "end before it");
 }
 
 std::string growing_motion(const Problem& problem, const State& state) {

@@ -95,19 +95,21 @@ double first_step(double h0, double f, double second, int order, double end) {
 Status step_too_small(double t, double h, const Status& cause) {
   std::string last;
   if (!cause.ok()) {
-    last = "; the last attempt: " + (cause.message.empty() ? unsaid(cause.failure) : cause.message);
+    Status attempt = cause;
+    attempt.withdraw_remedy();  // of steps of a given length
+    last = "; the last attempt: " + (attempt.message.empty() ? unsaid(attempt.failure) : attempt.message);
   }
   return {Failure::step_size_too_small, t,
           fmt::format("at t = {:.9g} s the steps became too small to get on with ({:.3g} s){}", t, h, last)};
 }
 
 Status singular_sample(double t, const std::string& row) {
-  return {
+  return with_remedy(
       Failure::singular_position, t,
       fmt::format("at t = {:.9g} s, an output time, the mechanism is in a singular position{}, where the constraints "
                   "leave velocities and accelerations to rounding: they cannot be given out",
                   t, row.empty() ? "" : " (singular here: " + row + ")"),
-      "take output times beside it"};
+      "take output times beside it");
 }
 
 }  // namespace poinsot

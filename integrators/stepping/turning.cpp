@@ -34,40 +34,44 @@ Status turned_too_far(const Problem& problem, double t, double h) {
                                ? "torsion spring '" + model.torsions[index(turn.torsion)].spring.name + "'"
                            : turn.driver >= 0 ? describe_row(model, turn.driver)
                                               : describe_group(model, model.followed[index(turn.followed)].group);
-  return {Failure::rotation_too_large, t,
-          fmt::format("at t = {:.9g} s {} turns at {:.4g} rad/s, by {:.3g} rad in a step: beyond half a turn its turns "
-                      "cannot be counted",
-                      t, name, turn.rate, h * turn.rate),
-          at_most(0.3 * kMostCounted / turn.rate)};
+  return with_remedy(
+      Failure::rotation_too_large, t,
+      fmt::format("at t = {:.9g} s {} turns at {:.4g} rad/s, by {:.3g} rad in a step: beyond half a turn its turns "
+                  "cannot be counted",
+                  t, name, turn.rate, h * turn.rate),
+      at_most(0.3 * kMostCounted / turn.rate));
 }
 
 Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most,
                        double serves) {
   const auto [name, rate] = fastest(problem, a);
-  return {Failure::rotation_too_large, t,
-          fmt::format("at t = {:.9g} s body '{}' turns by {:.3g} rad in a step; in formulation {} the integrator makes "
-                      "no sense beyond {:.2g}: rotation is lost or invented",
-                      t, name, h * rate, problem.formulation(), most),
-          at_most(serves)};
+  return with_remedy(
+      Failure::rotation_too_large, t,
+      fmt::format("at t = {:.9g} s body '{}' turns by {:.3g} rad in a step; in formulation {} the integrator makes "
+                  "no sense beyond {:.2g}: rotation is lost or invented",
+                  t, name, h * rate, problem.formulation(), most),
+      at_most(serves));
 }
 
 Status turned_unexpectedly(const Problem& problem, std::span<const double> a, double t, double h, double unexpected,
                            double serves) {
   const auto [name, rate] = fastest(problem, a);
-  return {Failure::rotation_too_large, t,
-          fmt::format("at t = {:.9g} s the step may have ended on another branch than the motion leads to: body '{}' "
-                      "turns by {:.3g} rad in it, a body by {:.3g} rad more or less than in the step before",
-                      t, name, h * rate, unexpected),
-          at_most(serves)};
+  return with_remedy(
+      Failure::rotation_too_large, t,
+      fmt::format("at t = {:.9g} s the step may have ended on another branch than the motion leads to: body '{}' "
+                  "turns by {:.3g} rad in it, a body by {:.3g} rad more or less than in the step before",
+                  t, name, h * rate, unexpected),
+      at_most(serves));
 }
 
 Status leads_too_far(const Problem& problem, std::span<const double> a, double t, int parts, double serves) {
   const auto [name, rate] = fastest(problem, a);
-  return {Failure::rotation_too_large, t,
-          fmt::format("at t = {:.9g} s a step goes further than {} parts of it can follow: body '{}' turns at {:.3g} "
-                      "rad/s",
-                      t, parts, name, rate),
-          at_most(serves)};
+  return with_remedy(
+      Failure::rotation_too_large, t,
+      fmt::format("at t = {:.9g} s a step goes further than {} parts of it can follow: body '{}' turns at {:.3g} "
+                  "rad/s",
+                  t, parts, name, rate),
+      at_most(serves));
 }
 
 }  // namespace poinsot
