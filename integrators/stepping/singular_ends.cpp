@@ -54,13 +54,10 @@ bool SingularEnds::grow(std::span<const double> lambda) {
 
 bool SingularEnds::doubts(Problem& problem, const State& at, const Eigen::VectorXd& v_n, double h) {
   constexpr double kPart = 0.25, kLarger = 1.5;
-  double mean = 0, end = 0, apart = 0;
-  for (Eigen::Index k = 0; k < v_n.size(); ++k) {
-    const double a = (at.v[k] - v_n[k]) / h;
-    mean = std::max(mean, std::abs(a));
-    end = std::max(end, std::abs(at.z[k]));
-    apart = std::max(apart, std::abs(at.z[k] - a));
-  }
+  const auto a = at.z.head(v_n.size());
+  const auto change = (at.v - v_n) / h;
+  const double mean = change.cwiseAbs().maxCoeff(), end = a.cwiseAbs().maxCoeff();
+  const double apart = (a - change).cwiseAbs().maxCoeff();
   const bool doubtful = apart > kPart * std::max(mean, end) && end > largest_;
   doubted_ = doubtful ? end : 0;
   return doubtful || (largest(at.lambda()) > kLarger * before_ && leaves_loads(problem, at));
