@@ -56,8 +56,8 @@ bool SingularEnds::doubts(Problem& problem, const State& at, const Eigen::Vector
   constexpr double kPart = 0.25, kLarger = 1.5;
   const auto a = at.z.head(v_n.size());
   const auto change = (at.v - v_n) / h;
-  const double mean = change.cwiseAbs().maxCoeff(), end = a.cwiseAbs().maxCoeff();
-  const double apart = (a - change).cwiseAbs().maxCoeff();
+  const double mean = change.lpNorm<Eigen::Infinity>(), end = a.lpNorm<Eigen::Infinity>();
+  const double apart = (a - change).lpNorm<Eigen::Infinity>();
   const bool doubtful = apart > kPart * std::max(mean, end) && end > largest_;
   doubted_ = doubtful ? end : 0;
   return doubtful || (largest(at.lambda()) > kLarger * before_ && leaves_loads(problem, at));
