@@ -70,6 +70,14 @@ TEST(TimeRanges, AreLookedAtBeforeTheyAreCounted) {
   }
 }
 
+// What helps a step of a given length is nothing to a run that chooses its steps.
+TEST(StepTooSmall, TellsTheLastAttemptWithoutItsRemedy) {
+  const Status cause = with_remedy(Failure::singular_matrix, 1, "the matrix is singular", "try a smaller step");
+  EXPECT_EQ(cause.message, "the matrix is singular; try a smaller step");
+  EXPECT_EQ(step_too_small(1, 1e-9, cause).message,
+            "at t = 1 s the steps became too small to get on with (1e-09 s); the last attempt: the matrix is singular");
+}
+
 TEST(Creeping, TellsStepsThatDoNotGetOn) {
   const auto stops = [](double h, double growth, int most) {
     Creeping creeping(1);
