@@ -36,7 +36,8 @@ class Equilibration {
   std::span<const double> col() const { return col_; }
 
  private:
-  bool sweep(const CscLayout& layout, std::span<const double> values, bool means);
+  template <bool means>
+  bool sweep(const CscLayout& layout, std::span<const double> values);
 
   std::vector<double> row_, col_, row_max_, col_max_, row_min_, col_min_;
 };

@@ -11,6 +11,7 @@ namespace poinsot {
 namespace {
 
 constexpr double kPivotChange = 100;
+constexpr int kGrowthSeldom = 8;
 
 }  // namespace
 
@@ -62,6 +63,7 @@ LinearStatus Klu::do_fresh() {
   statistics_.factor_nonzeros = entries(*numeric_);
   std::ranges::copy(pivots(), fresh_pivots_.begin());
   fresh_growth_ = reciprocal_growth();
+  since_growth_ = kGrowthSeldom - 1;  // the first values after these may be far from them, as of another step
   order_known_ = false;
   return {};
 }
@@ -120,7 +122,9 @@ bool Klu::pivots_still_good() {
     const double now = std::abs(pivots()[k]), then = std::abs(fresh_pivots_[k]);
     good = good && now * kPivotChange >= then && now <= then * kPivotChange;
   }
-  return good && reciprocal_growth() * kPivotChange >= fresh_growth_;
+  if (!good || ++since_growth_ < kGrowthSeldom) return good;
+  since_growth_ = 0;
+  return reciprocal_growth() * kPivotChange >= fresh_growth_;
 }
 
 // min over columns of max|A| / max|U|.

@@ -136,9 +136,16 @@ class Separation {
     std::ranges::sort(with);
     with.erase(std::unique(with.begin(), with.end()), with.end());
     Eigen::MatrixXd part(static_cast<Eigen::Index>(columns.size()), static_cast<Eigen::Index>(with.size()));
-    for (Eigen::Index k = 0; k < part.cols(); ++k)
-      for (Eigen::Index i = 0; i < part.rows(); ++i)
-        part(i, k) = find(vectors_[with[static_cast<std::size_t>(k)]], columns[static_cast<std::size_t>(i)]);
+    part.setZero();
+    for (Eigen::Index k = 0; k < part.cols(); ++k) {
+      const SparseEntries& z = vectors_[with[static_cast<std::size_t>(k)]];
+      auto entry = std::ranges::lower_bound(z, columns.front(), {}, &std::pair<int, double>::first);
+      for (Eigen::Index i = 0; i < part.rows() && entry != z.end();) {
+        const int column = columns[static_cast<std::size_t>(i)];
+        if (entry->first == column) part(i, k) = entry->second;
+        entry->first <= column ? static_cast<void>(++entry) : static_cast<void>(++i);
+      }
+    }
     int pivots = 0;
     for (; pivots < std::min(part.rows(), part.cols()); ++pivots) {
       Eigen::Index i = 0, k = 0;
@@ -155,12 +162,9 @@ class Separation {
     for (const std::size_t other : std::exchange(having_[index(column)], {k})) {
       const double factor = other == k ? 0 : find(vectors_[other], column);
       if (factor == 0) continue;
-      auto has = vectors_[other].begin();
-      for (const auto& [c, v] : vectors_[k]) {
-        while (has != vectors_[other].end() && has->first < c) ++has;
-        if (has == vectors_[other].end() || has->first != c) having_[index(c)].push_back(other);
-      }
-      vectors_[other] = subtract(vectors_[other], factor, vectors_[k], column);
+      gained_.clear();
+      vectors_[other] = subtract(vectors_[other], factor, vectors_[k], column, &gained_);
+      for (const int c : gained_) having_[index(c)].push_back(other);
     }
     pivots_[k] = column;
   }
@@ -168,6 +172,7 @@ class Separation {
   std::vector<SparseEntries> vectors_;
   std::vector<int> pivots_;
   std::vector<std::vector<std::size_t>> having_;  // by column: vectors that have or had it
+  std::vector<int> gained_;
   bool too_long_ = false;
 };
 
@@ -195,7 +200,8 @@ void drop_nothing(SparseEntries& z) {
   std::erase_if(z, [&](const auto& entry) { return std::abs(entry.second) <= nothing; });
 }
 
-SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntries& y, int gone) {
+SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntries& y, int gone,
+                       std::vector<int>* gained) {
   // Most of what a choice of joints costs in a large mechanism: the sum is written in place, and what is negligible in
   // it is left out as the largest entry is known.
   SparseEntries sum(x.size() + y.size());
@@ -206,17 +212,21 @@ SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntrie
     size = std::max(size, std::abs(value));
     *to++ = {column, value};
   };
+  const auto take_new = [&](int column, double value) {
+    if (gained) gained->push_back(column);
+    take(column, value);
+  };
   const auto *a = x.data(), *a_end = a + x.size(), *b = y.data(), *b_end = b + y.size();
   while (a != a_end && b != b_end) {
     if (a->first < b->first)
       take(a->first, a->second), ++a;
     else if (b->first < a->first)
-      take(b->first, -factor * b->second), ++b;
+      take_new(b->first, -factor * b->second), ++b;
     else
       take(a->first, a->second - factor * b->second), ++a, ++b;
   }
   for (; a != a_end; ++a) take(a->first, a->second);
-  for (; b != b_end; ++b) take(b->first, -factor * b->second);
+  for (; b != b_end; ++b) take_new(b->first, -factor * b->second);
   const double nothing = kNegligibleBeside * size;
   auto* kept = sum.data();
   for (const auto* one = kept; one != to; ++one)

@@ -34,7 +34,8 @@ void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, cons
 // The parts that are negligible beside the largest entry are left out.
 double largest(const SparseEntries& z);
 void drop_nothing(SparseEntries& z);
-// x − factor y without entry `gone`, which is 0.
-SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntries& y, int gone);
+// x − factor y without entry `gone`, which is 0. `gained`: the columns that x does not have are added.
+SparseEntries subtract(const SparseEntries& x, double factor, const SparseEntries& y, int gone,
+                       std::vector<int>* gained = nullptr);
 
 }  // namespace poinsot

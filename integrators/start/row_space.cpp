@@ -67,13 +67,19 @@ RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
   std::partial_sum(next.begin(), next.end(), Gt_.outerIndexPtr());
   Gt_.resizeNonZeros(Gt_.outerIndexPtr()[nc]);
   std::copy_n(Gt_.outerIndexPtr(), next.size(), next.begin());
-  place_.assign(values_.size(), -1);
-  measure_.assign(values_.size(), 1);
+  source_.resize(index(Gt_.nonZeros()));
+  measure_.assign(source_.size(), 1);
   visit([&](int k, int row, int j) {
-    place_[index(k)] = next[index(row)]++;
-    if (j % 6 >= 3) measure_[index(k)] = sizes_[index(j / 6)];
-    Gt_.innerIndexPtr()[place_[index(k)]] = j;
+    const int at = next[index(row)]++;
+    source_[index(at)] = k;
+    if (j % 6 >= 3) measure_[index(at)] = 1 / sizes_[index(j / 6)];
+    Gt_.innerIndexPtr()[at] = j;
   });
+  for (const int k : rows_) {
+    const Row& row = model_->rows[index(k)];
+    const bool of_directions = row.type == RowType::DP1 || row.type == RowType::angle;
+    rounding_.push_back(of_directions ? kDependent * direction_terms(row) : 0);
+  }
 }
 
 void RowSpace::stand(double t, std::span<const BodyState> states) {
@@ -82,16 +88,18 @@ void RowSpace::stand(double t, std::span<const BodyState> states) {
   problem_->set_position(t, q_);
   problem_->set_velocity(v_);
   problem_->assemble(MatrixKind::kinematic, {}, {}, {}, {}, layout_.slots, values_);
-  for (std::size_t k = 0; k < values_.size(); ++k)
-    if (place_[k] >= 0) Gt_.valuePtr()[place_[k]] = values_[k] / measure_[k];
   for (int k = 0; k < Gt_.outerSize(); ++k) {
-    const int begin = Gt_.outerIndexPtr()[k];
-    Eigen::Map<Eigen::VectorXd> row(Gt_.valuePtr() + begin, Gt_.outerIndexPtr()[k + 1] - begin);
-    const double sum = row.squaredNorm();
-    const double rounding = rounding_of(model_->rows[index(rows_[index(k)])], states);
+    const int begin = Gt_.outerIndexPtr()[k], end = Gt_.outerIndexPtr()[k + 1];
+    double* g = Gt_.valuePtr();
+    double sum = 0;
+    for (int i = begin; i < end; ++i) {
+      g[i] = values_[index(source_[index(i)])] * measure_[index(i)];
+      sum += g[i] * g[i];
+    }
+    const double rounding = rounding_of(index(k), states);
     lengths_[index(k)] = (is_velocity_row(index(k)) ? kVelocityRow : 1) * std::max(std::sqrt(sum), rounding);
     const double by = sum > rounding * rounding ? 1 / lengths_[index(k)] : 0;
-    row *= by;
+    for (int i = begin; i < end; ++i) g[i] *= by;
   }
 }
 
@@ -105,12 +113,13 @@ double RowSpace::direction_terms(const Row& row) const {
 
 // Where a gradient can cancel altogether, kDependent of the terms it is made of: the cross product of directions that
 // are parallel, the distance of points that coincide.
-double RowSpace::rounding_of(const Row& row, std::span<const BodyState> states) const {
+double RowSpace::rounding_of(std::size_t k, std::span<const BodyState> states) const {
+  const Row& row = model_->rows[index(rows_[k])];
+  if (row.type != RowType::D) return rounding_[k];
   const auto place = [&](int body, const Vector3& s) {
     return s.norm() + (body == kGround ? 0.0 : states[index(body)].r.norm());
   };
-  if (row.type == RowType::DP1 || row.type == RowType::angle) return kDependent * direction_terms(row);
-  return row.type == RowType::D ? kDependent * 2 * (place(row.i, row.s_i) + place(row.j, row.s_j)) : 0;
+  return kDependent * 2 * (place(row.i, row.s_i) + place(row.j, row.s_j));
 }
 
 double RowSpace::left_of(std::size_t k) const {

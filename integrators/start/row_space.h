@@ -59,7 +59,7 @@ class RowSpace {
 
  private:
   double direction_terms(const Row& row) const;
-  double rounding_of(const Row& row, std::span<const BodyState> states) const;
+  double rounding_of(std::size_t k, std::span<const BodyState> states) const;
 
   std::shared_ptr<const Model> model_;
   std::vector<int> rows_;
@@ -67,8 +67,10 @@ class RowSpace {
   std::vector<double> sizes_;
   std::vector<double> q_, v_, values_, lengths_;
   CscLayout layout_;
-  std::vector<int> place_;       // of the layout's entries among those of Gt_, −1 outside
-  std::vector<double> measure_;  // by entry of the layout: the body's size where it is about a turn, else 1
+  // By entry of Gt_: its place in the layout, and one over the body's size where it is about a turn, else 1.
+  std::vector<int> source_;
+  std::vector<double> measure_;
+  std::vector<double> rounding_;  // of rows of directions
   Eigen::SparseMatrix<double> Gt_;
 };
 

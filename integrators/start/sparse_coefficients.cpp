@@ -9,7 +9,7 @@ namespace poinsot {
 namespace {
 
 constexpr int kColumns = 32;              // that are solved for together
-constexpr double kForgettable = 1e-15;    // of the largest number
+constexpr double kForgettable = 1e-13;    // of the largest number
 constexpr double kNoCoefficient = 1e-12;  // of a coefficient beside the row set aside
 
 }  // namespace
@@ -18,8 +18,7 @@ SparseEntries unit_null_vector(std::span<const int> kept, const Eigen::Ref<const
   SparseEntries z;
   for (std::size_t k = 0; k < kept.size(); ++k)
     if (const double by = c[static_cast<Eigen::Index>(k)]; std::abs(by) > kNoCoefficient) z.emplace_back(kept[k], -by);
-  z.emplace_back(left_out, 1.0);
-  std::ranges::sort(z);
+  z.insert(std::ranges::lower_bound(z, left_out, {}, &SparseEntries::value_type::first), {left_out, 1.0});
   return z;
 }
 

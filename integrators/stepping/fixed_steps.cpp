@@ -9,6 +9,11 @@
 #include "integrators/stepping/switch_times.h"
 
 namespace poinsot {
+namespace {
+
+constexpr int kStillSteps = 4;  // from one look at whether the motion rests to the next: a rest is many steps long
+
+}  // namespace
 
 FixedSteps::FixedSteps(const Run& run)
     : run_(run),
@@ -53,7 +58,7 @@ Status FixedSteps::march() {
     const std::int64_t before = run_.statistics.steps;
     status = advance(grid_.time(n), sampled);
     if (run_.statistics.steps > before + 1) ++run_.statistics.divided_steps;
-    if (status.ok() && integrates()) still_.look(problem_, x_);
+    if (n % kStillSteps == 0 && status.ok() && integrates()) still_.look(problem_, x_);
     if (status.ok() && integrates() && rests_.due()) status = rests_.look(problem_, settings_.linear(), x_);
     if (status.ok() && sampled) status = give_out(*standing_);
   }

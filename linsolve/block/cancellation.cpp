@@ -29,10 +29,10 @@ class Square {
   std::vector<Sized> entries_;
 };
 
-// Eliminates p pivots of n and visits those that are cancelled. The pivots are those of factor_choosing().
+// Eliminates p pivots of n, calling visit(k, part) for the part that pivot k is of its size: true where it is to be
+// judged as if it were good. The pivots are those of factor_choosing().
 template <class Visit>
-void eliminate(Square& a, int p, int n, std::span<double> weight, double part, std::vector<double>& l,
-               Visit&& cancelled) {
+void eliminate(Square& a, int p, int n, std::span<double> weight, std::vector<Sized>& l, Visit&& visit) {
   l.resize(index(n));
   for (int k = 0; k < p; ++k) {
     int best = k;
@@ -44,19 +44,19 @@ void eliminate(Square& a, int p, int n, std::span<double> weight, double part, s
       std::swap(weight[index(k)], weight[index(best)]);
     }
     Sized& pivot = a(k, k);
-    if (!(std::abs(pivot.value) > part * pivot.size)) {
-      cancelled(k);
+    if (visit(k, pivot.size > 0 ? std::abs(pivot.value) / pivot.size : 0))
       pivot.value = pivot.size > 0 ? pivot.size : 1;
+    for (int i = k + 1; i < n; ++i) {
+      const double multiplier = a(i, k).value / pivot.value;
+      l[index(i)] = {-multiplier, std::abs(multiplier)};
     }
-    for (int i = k + 1; i < n; ++i) l[index(i)] = a(i, k).value / pivot.value;
     for (int j = k + 1; j < n; ++j) {
-      const double u = a(k, j).value;
-      if (u == 0) continue;
+      const Sized u{a(k, j).value, std::abs(a(k, j).value)};
+      if (u.value == 0) continue;
       Sized* column = &a(0, j);
-      for (int i = k + 1; i < n; ++i) {
-        const double change = l[index(i)] * u;
-        column[i].value -= change;
-        column[i].size += std::abs(change);
+      for (int i = k + 1; i < n; ++i) {  // both at once, as a vector
+        column[i].value += l[index(i)].value * u.value;
+        column[i].size += l[index(i)].size * u.size;
       }
     }
   }
@@ -64,13 +64,14 @@ void eliminate(Square& a, int p, int n, std::span<double> weight, double part, s
 
 }  // namespace
 
-std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> values, std::span<const double> weight,
-                                  double part) {
-  std::vector<int> bad;
+Cancelled cancelled_pivots(const Schedule& s, std::span<const double> values, std::span<const double> weight,
+                           double part) {
+  Cancelled found;
   std::vector<std::vector<Sized>> updates(s.fronts.size());  // m × m, until the parent takes them
   Square a;
   std::vector<int> places;
-  std::vector<double> units, multipliers;
+  std::vector<double> units;
+  std::vector<Sized> multipliers;
   const Strip* strip = s.strips.data();
   const int* child = s.children.data();
   for (std::size_t k = 0; k < s.fronts.size(); ++k) {
@@ -106,12 +107,16 @@ std::vector<int> cancelled_pivots(const Schedule& s, std::span<const double> val
     }
     units.resize(index(p));
     for (int i = 0; i < p; ++i) units[index(i)] = weight[index(s.unknown[index(f.first + i)])];
-    eliminate(a, p, n, units, part, multipliers, [&](int i) { bad.push_back(f.first + i); });
+    eliminate(a, p, n, units, multipliers, [&](int i, double left) {
+      if (!(left >= found.least)) found.least = left;
+      if (left > part) return false;
+      found.pivots.push_back(f.first + i);
+      return true;
+    });
     updates[k].reserve(index(m) * index(m));
-    for (int j = p; j < n; ++j)
-      for (int i = p; i < n; ++i) updates[k].push_back(a(i, j));
+    for (int j = p; j < n; ++j) updates[k].insert(updates[k].end(), &a(p, j), &a(p, j) + m);
   }
-  return bad;
+  return found;
 }
 
 }  // namespace poinsot::block

@@ -12,9 +12,14 @@
 
 namespace poinsot::block {
 
-// Places in the order of elimination, ascending, whose pivot is less than `part` of its size; later ones are judged as
-// if it were good. Pivots are chosen in the units of rows, `weight` by unknown. An elimination on its own, at leisure.
-std::vector<int> cancelled_pivots(const Schedule& schedule, std::span<const double> values,
-                                  std::span<const double> weight, double part);
+struct Cancelled {
+  std::vector<int> pivots;  // places in the order of elimination, ascending
+  double least = 1;         // part of its size that any pivot is
+};
+
+// The pivots that are no more than `part` of their size; later ones are judged as if these were good. Pivots are chosen
+// in the units of rows, `weight` by unknown. An elimination on its own, at leisure.
+Cancelled cancelled_pivots(const Schedule& schedule, std::span<const double> values, std::span<const double> weight,
+                           double part);
 
 }  // namespace poinsot::block

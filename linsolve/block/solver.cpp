@@ -221,15 +221,16 @@ class Solver final : public LinearSolver {
       return cancelled_pivots(*schedule_, values_, weight, part);
     };
     if (!trustworthy()) {
-      bad = cancelled(residual_.rows(), kCancelled);
+      bad = cancelled(residual_.rows(), kCancelled).pivots;
       return Pivots::bad;
     }
-    if (cancelled(weight_, kCancelled).empty()) return Pivots::good;
+    Cancelled found = cancelled(weight_, kRounding);  // above, they may pass for pivots, as of very different masses
+    if (found.least > kCancelled) return Pivots::good;
     near_ = std::max(near_, Answer::sampled);
-    bad = cancelled(weight_, kRounding);  // may still pass for pivots, in a system of very different masses
+    bad = std::move(found.pivots);
     if (bad.empty()) return Pivots::good;
     near_ = Answer::checked;
-    return cancelled(weight_, 1 / kSingularCondition).empty() ? Pivots::doubtful : Pivots::bad;
+    return cancelled(weight_, 1 / kSingularCondition).pivots.empty() ? Pivots::doubtful : Pivots::bad;
   }
 
   // Factorizes with pivots chosen in the units of the equilibrated matrix and, where that does not serve, in those the
