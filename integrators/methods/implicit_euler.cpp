@@ -19,6 +19,7 @@ class ImplicitEuler final : public FixedSteps {
     resize(h_);
   }
 
+  bool damps() const override { return true; }
   double index3_scale() const override { return scale_.position; }
   void resize(double before) override {
     scale_ = {1, h_, h_ * h_};

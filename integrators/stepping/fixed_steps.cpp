@@ -31,6 +31,7 @@ FixedSteps::FixedSteps(const Run& run)
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
       rests_(run.problem),
       still_(run.problem, run.tell),
+      damping_(run.problem),
       singular_ends_(run.settings),
       passed_(run.problem.model(), run.settings.end, run.tell),
       output_(run.settings) {}
@@ -58,11 +59,13 @@ Status FixedSteps::march() {
     const std::int64_t before = run_.statistics.steps;
     status = advance(grid_.time(n), sampled);
     if (run_.statistics.steps > before + 1) ++run_.statistics.divided_steps;
+    if (status.ok() && damps()) damping_.look(last_seen(), x_.v);
     if (n % kStillSteps == 0 && status.ok() && integrates()) still_.look(problem_, x_);
     if (status.ok() && integrates() && rests_.due()) status = rests_.look(problem_, settings_.linear(), x_);
     if (status.ok() && sampled) status = give_out(*standing_);
   }
   finish(clock_, run_.statistics);
+  if (status.ok() && damps()) damping_.say(run_, h_);
   if (!status.ok()) x_.z = run_.state.z;  // not what Newton's method left
   run_.state = x_;
   if (const std::int64_t divided = run_.statistics.divided_steps; divided > 0)

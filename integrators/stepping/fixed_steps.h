@@ -13,6 +13,7 @@
 
 #include "integrators/stepping/branch.h"
 #include "integrators/stepping/index1_output.h"
+#include "integrators/stepping/numerical_damping.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/passed_in_steps.h"
 #include "integrators/stepping/rest_watch.h"
@@ -69,6 +70,8 @@ class FixedSteps {
   virtual bool integrates() const { return true; }
   // Whether a step that fails may be done in parts, of other lengths than the rest.
   virtual bool divides() const { return true; }
+  // Whether it takes from the motion what implicit Euler does (numerical_damping.h).
+  virtual bool damps() const { return false; }
   // Whether a step depends on more of those before it than x_.
   virtual bool remembers() const { return false; }
   // The next step is one of h_, which has been `before`.
@@ -153,6 +156,7 @@ class FixedSteps {
   BranchWatch branch_;
   RestWatch rests_;
   StillWatch still_;
+  NumericalDamping damping_;
   SingularEnds singular_ends_;
   PassedInSteps passed_;
   std::optional<State> given_;  // a sample in a singular position

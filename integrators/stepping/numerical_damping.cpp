@@ -1,0 +1,45 @@
+#include "integrators/stepping/numerical_damping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "integrators/stepping/vectors.h"
+
+namespace poinsot {
+
+NumericalDamping::NumericalDamping(const Problem& problem)
+    : moves_(problem.nv() > problem.nc()), then_(problem.nv()), momentum_(problem.nv()) {}
+
+void NumericalDamping::add(const Problem& problem, const Eigen::VectorXd& v) {
+  since_ = 0;
+  if (!moves_) return;
+  const Eigen::Index per_body = v.size() / problem.bodies();
+  for (Eigen::Index b = 0; known_ && b < problem.bodies(); ++b) {
+    const Eigen::Index k = b * per_body;
+    taken_ += problem.model().bodies[index(b)].mass * (v - then_).segment<3>(k).squaredNorm() / kApart;
+  }
+  if (known_) steps_ += kApart;
+  problem.momentum(span(v), span(momentum_));
+  most_kinetic_ = std::max(most_kinetic_, 0.5 * v.dot(momentum_));
+  then_ = v;
+  known_ = true;
+}
+
+void NumericalDamping::say(const Run& run, double h) const {
+  constexpr double kTold = 0.06;     // of the kinetic energy: 3 % of speeds
+  constexpr double kFromRest = 2.5;  // steps: a constant force makes 2/n of that in n of them, with the motion it makes
+  if (steps_ == 0 || !(taken_ > (kTold + kFromRest / static_cast<double>(steps_)) * most_kinetic_)) return;
+  const double share = taken_ / most_kinetic_;
+  // Less is taken of what is left: of most of it the step's part is not that of a small loss.
+  const double rate = -std::log1p(-std::min(share, 0.99));
+  run.tell(fmt::format(
+      "{} has taken some {:.3g} J or more out of the motion by itself, {:.3g} % of the largest kinetic energy, "
+      "what drivers put back included: it damps whatever changes velocities, the more the longer its "
+      "steps; a step below {:.2g} s, rattle or error control take less than {:.0f} %",
+      run.settings.integrator, taken_, 100 * share, 0.9 * h * kTold / rate, 100 * kTold));
+}
+
+}  // namespace poinsot

@@ -1,0 +1,102 @@
+// What implicit Euler takes out of a motion is told as it is, and the step offered keeps it small.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+// Circles about the origin at 1 rad/s.
+Scene point_on_rod() {
+  Scene scene;
+  Body ball;
+  ball.name = "ball", ball.mass = 1, ball.inertia = 1e-3 * Matrix3::Identity();
+  ball.position = {1, 0, 0}, ball.velocity = {0, 1, 0};
+  scene.bodies.push_back(ball);
+  Constraint rod;
+  rod.type = ConstraintType::D, rod.i = kGround, rod.j = 0, rod.f = Expression(1.0);
+  scene.constraints.push_back(rod);
+  return scene;
+}
+
+Settings implicit_euler(std::string_view formulation, double step, double end) {
+  Settings s;
+  s.integrator = "implicit_euler", s.formulation = formulation, s.step = step, s.end = end, s.tolerance = 1e-8;
+  return s;
+}
+
+struct Lost {
+  double percent = 0, told = 0, offered = 0;  // of the largest kinetic energy; as the notice has it, the step in s
+};
+
+Lost lost(const Scene& scene, const Settings& settings) {
+  double first = 0, last = 0, most = 0;
+  const Outcome outcome = simulate(scene, settings, [&](const Sample& at) {
+    if (at.t == 0) first = at.problem.energy();
+    last = at.problem.energy();
+    std::vector<double> momentum(at.v.size());
+    at.problem.momentum(at.v, momentum);
+    double twice = 0;
+    for (std::size_t k = 0; k < momentum.size(); ++k) twice += at.v[k] * momentum[k];
+    most = std::max(most, twice / 2);
+  });
+  EXPECT_TRUE(outcome.status.ok()) << outcome.status.message;
+  Lost result{100 * (first - last) / most, 0, 0};
+  for (const std::string& notice : outcome.notices) {
+    std::smatch found;
+    const std::regex pattern("by itself, ([0-9.e+]+) % .* a step below ([0-9.e-]+) s,");
+    if (!std::regex_search(notice, found, pattern)) continue;
+    result.told = std::stod(found[1]), result.offered = std::stod(found[2]);
+  }
+  return result;
+}
+
+TEST(NumericalDamping, is_told_as_it_is) {
+  int told = 0, silent = 0;
+  for (const char* model : {"", "double_four_bar", "double_pendulum", "gimbal_pendulum", "simple_pendulum",
+                            "single_pendulum_free", "steel_pendulum", "stiff_pendulum"}) {
+    const Scene scene = *model ? scene_of(model) : point_on_rod();
+    for (const char* formulation : {"rA", "rp", "reps"})
+      for (const double step : {1e-3, 1e-2, 2e-2}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", model, formulation, step));
+        const Lost of = lost(scene, implicit_euler(formulation, step, 2));
+        if (of.told == 0) {
+          EXPECT_LT(of.percent, 10);
+          ++silent;
+          continue;
+        }
+        ++told;
+        EXPECT_GT(of.told, 0.6 * of.percent);
+        EXPECT_LT(of.told, 1.1 * of.percent);
+      }
+  }
+  EXPECT_GT(told, 20);
+  EXPECT_GT(silent, 20);
+}
+
+TEST(NumericalDamping, is_small_at_the_step_that_is_offered) {
+  for (const char* formulation : {"rA", "rp", "reps"}) {
+    const Scene scene = scene_of("simple_pendulum");
+    const Lost coarse = lost(scene, implicit_euler(formulation, 1e-2, 2));
+    ASSERT_GT(coarse.told, 20);
+    const Lost fine = lost(scene, implicit_euler(formulation, coarse.offered, 2));
+    EXPECT_EQ(fine.told, 0);
+    EXPECT_LT(fine.percent, 6);
+  }
+}
+
+// Drivers alone say how these move; other methods take nothing.
+TEST(NumericalDamping, is_not_told_where_there_is_none) {
+  EXPECT_EQ(lost(scene_of("four_link"), implicit_euler("rA", 1e-2, 2)).told, 0);
+  Settings settings = implicit_euler("rA", 1e-2, 2);
+  settings.integrator = "rattle";
+  const Lost of = lost(scene_of("simple_pendulum"), settings);
+  EXPECT_EQ(of.told, 0);
+  EXPECT_LT(std::abs(of.percent), 1);
+}
+
+}  // namespace
+}  // namespace poinsot::test
