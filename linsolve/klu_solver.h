@@ -2,8 +2,8 @@
 //
 // Pivots chosen for other values can turn bad. After each refactorization every pivot is compared with its value at the
 // last fresh factorization; a pivot a hundred times smaller or larger, or a hundredfold loss of reciprocal growth,
-// is answered by fresh pivots for the same values. Growth changes along a motion as slowly as pivots do: it is looked at
-// after the first refactorization and one in eight from then on (after each it was 7 % of the four link's steps).
+// is answered by fresh pivots for the same values. Growth changes along a motion as slowly as pivots do: it is looked
+// at after the first refactorization and one in eight from then on (after each it was 7 % of the four link's steps).
 #pragma once
 
 #include <klu.h>

@@ -36,9 +36,9 @@ void NumericalDamping::say(const Run& run, double h) const {
   // Less is taken of what is left: of most of it the step's part is not that of a small loss.
   const double rate = -std::log1p(-std::min(share, 0.99));
   run.tell(fmt::format(
-      "{} has taken some {:.3g} J or more out of the motion by itself, {:.3g} % of the largest kinetic energy, "
-      "what drivers put back included: it damps whatever changes velocities, the more the longer its "
-      "steps; a step below {:.2g} s, rattle or error control take less than {:.0f} %",
+      "{} has taken some {:.3g} J or more out of the motion by itself, {:.3g} % of the largest kinetic energy (what "
+      "drivers put back included): it damps in proportion to the step; a step below {:.2g} s, rattle or error control "
+      "take less than {:.0f} %",
       run.settings.integrator, taken_, 100 * share, 0.9 * h * kTold / rate, 100 * kTold));
 }
 
