@@ -150,7 +150,7 @@ class MechanismProblem final : public Problem {
     const bool rows_only = kind == MatrixKind::kinematic || kind == MatrixKind::rates;
     pattern.n = rows_only ? std::max(nv_, nc_) : nv_ + nc_;
     pattern.blocks.reserve(static_cast<std::size_t>(12 * bodies_ + 6 * nc_));  // about as many as joints come to
-    Blocks blocks{&pattern.blocks, nullptr, nullptr};
+    Blocks blocks{&pattern.blocks};
     Matrix(*mechanism_.c.elements).write(scratch.c, kind, {1, 1, 1}, nullptr, zeros.data(), zeros.data(), blocks);
     for (int k = 0; k < pattern.n; ++k) pattern.node.push_back(node_of(k));
     return pattern;
@@ -159,7 +159,7 @@ class MechanismProblem final : public Problem {
   void assemble(MatrixKind kind, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
                 std::span<const double> lambda, std::span<const int> slots, std::span<double> values) override {
     std::fill(values.begin(), values.end(), 0.0);
-    Blocks blocks{nullptr, slots.data(), values.data()};
+    Blocks blocks{slots, values};
     matrix_.write(mechanism_.c, kind, scale, dq.empty() ? nullptr : dq.data(), a.data(), lambda.data(), blocks);
     check(blocks.slot == slots.data() + slots.size(), "an assembled matrix has the blocks of its pattern");
   }
@@ -303,23 +303,39 @@ class MechanismProblem final : public Problem {
   using Matrix = MechanismMatrix<F, double>;
 
   // Records the places of a matrix's blocks, or adds their values. One sink for both, so that what writes into it is
-  // compiled once.
+  // compiled once. Values that no cache holds are fetched ahead.
   struct Blocks {
-    std::vector<Block>* places;  // null where values are written
-    const int* slot;
-    double* values;
+    explicit Blocks(std::vector<Block>* recorded) : places(recorded), adds_alone(false) {}
+    Blocks(std::span<const int> slots, std::span<double> of)
+        : slot(slots.data()), values(of.data()), end(slots.data() + slots.size()) {
+      constexpr std::size_t kCached = 1u << 17, kAhead = 64;  // numbers: 1 MB; columns of blocks
+      adds_alone = of.size() <= kCached || slots.size() <= kAhead;
+      if (!adds_alone) ahead = slot + kAhead;
+    }
     bool places_only() const { return places != nullptr; }
     template <class Derived>
     void block(int row, int col, const Eigen::MatrixBase<Derived>& m) {
       constexpr int kRows = Derived::RowsAtCompileTime, kCols = Derived::ColsAtCompileTime;
-      if (places_only()) [[unlikely]]
-        return record({row, col, kRows, kCols});
+      if (!adds_alone) [[unlikely]] {
+        if (places_only()) return record({row, col, kRows, kCols});
+        fetch(kCols);
+      }
       for (Eigen::Index c = 0; c < kCols; ++c) {
         double* column = values + *slot++;
         for (Eigen::Index r = 0; r < kRows; ++r) column[r] += m(r, c);
       }
     }
     [[gnu::noinline]] void record(const Block& place) { places->push_back(place); }
+    [[gnu::noinline]] void fetch(int columns) {
+      for (; columns > 0 && ahead != end; --columns) __builtin_prefetch(values + *ahead++, 1);
+      adds_alone = ahead == end;
+    }
+
+    std::vector<Block>* places = nullptr;  // null where values are written
+    const int* slot = nullptr;
+    double* values = nullptr;
+    const int *end = nullptr, *ahead = nullptr;
+    bool adds_alone = true;
   };
 
   template <class T>
