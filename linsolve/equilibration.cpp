@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kSweeps = 3;  // the norms end within a factor of two of each other; more changes no decision
 
-// The power of two next to 1/√m, by the exponents as they are stored: the library's functions were a tenth of a first
-// factorization. An empty row or column stays as it is: the factorization will find it.
+// The power of two next to 1/√m, by the exponents as they are stored: the library's functions were a twentieth of
+// first factorizations. An empty row or column stays as it is: the factorization will find it.
 double factor(double m) {
   constexpr int kMantissa = std::numeric_limits<double>::digits - 1,
                 kBias = std::numeric_limits<double>::max_exponent - 1;

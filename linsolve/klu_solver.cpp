@@ -11,7 +11,7 @@ namespace poinsot {
 namespace {
 
 constexpr double kPivotChange = 100;
-constexpr int kGrowthSeldom = 8;
+constexpr int kGrowthSeldom = 8;  // refactorizations from one look at growth to the next
 
 }  // namespace
 

@@ -143,7 +143,10 @@ class Separation {
       for (Eigen::Index i = 0; i < part.rows() && entry != z.end();) {
         const int column = columns[static_cast<std::size_t>(i)];
         if (entry->first == column) part(i, k) = entry->second;
-        entry->first <= column ? static_cast<void>(++entry) : static_cast<void>(++i);
+        if (entry->first <= column)
+          ++entry;
+        else
+          ++i;
       }
     }
     int pivots = 0;
