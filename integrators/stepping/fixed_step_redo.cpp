@@ -106,7 +106,6 @@ Status FixedSteps::reach_in_halves(double t, double half, bool sampled, int halv
 void FixedSteps::rewrite() {
   if (start_ == Start::usual) start_ = Start::rewritten;
   rests_.forget();
-  damping_.forget();
 }
 
 // After a step that failed, which left position and velocity as they were: x_ and the method stand where it began.

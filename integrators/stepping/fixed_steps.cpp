@@ -31,7 +31,7 @@ FixedSteps::FixedSteps(const Run& run)
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
       rests_(run.problem),
       still_(run.problem, run.tell),
-      damping_(run.problem),
+      damping_(run),
       singular_ends_(run.settings),
       passed_(run.problem.model(), run.settings.end, run.tell),
       output_(run.settings) {}

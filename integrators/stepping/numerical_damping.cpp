@@ -10,22 +10,21 @@
 
 namespace poinsot {
 
-NumericalDamping::NumericalDamping(const Problem& problem)
-    : moves_(problem.nv() > problem.nc()), then_(problem.nv()), momentum_(problem.nv()) {}
+NumericalDamping::NumericalDamping(const Run& run)
+    : moves_(run.problem.nv() > run.problem.nc()), then_(run.state.v), momentum_(run.problem.nv()) {}
 
 void NumericalDamping::add(const Problem& problem, const Eigen::VectorXd& v) {
   since_ = 0;
   if (!moves_) return;
+  steps_ += kApart;
   const Eigen::Index per_body = v.size() / problem.bodies();
-  for (Eigen::Index b = 0; known_ && b < problem.bodies(); ++b) {
-    const Eigen::Index k = b * per_body;
-    taken_ += problem.model().bodies[index(b)].mass * (v - then_).segment<3>(k).squaredNorm() / kApart;
+  for (Eigen::Index b = 0; b < problem.bodies(); ++b) {
+    const double square = (v - then_).segment<3>(b * per_body).squaredNorm();
+    taken_ += problem.model().bodies[index(b)].mass * square / kApart;
   }
-  if (known_) steps_ += kApart;
   problem.momentum(span(v), span(momentum_));
   most_kinetic_ = std::max(most_kinetic_, 0.5 * v.dot(momentum_));
   then_ = v;
-  known_ = true;
 }
 
 void NumericalDamping::say(const Run& run, double h) const {

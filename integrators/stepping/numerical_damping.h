@@ -20,14 +20,12 @@ namespace poinsot {
 
 class NumericalDamping {
  public:
-  explicit NumericalDamping(const Problem& problem);  // steps allocate nothing
+  explicit NumericalDamping(const Run& run);  // at its start; steps allocate nothing
 
   // After each step, which ended with v; the problem stands there.
   void look(const Problem& problem, const Eigen::VectorXd& v) {
     if (++since_ == kApart) add(problem, v);
   }
-  // Coordinates are others.
-  void forget() { since_ = 0, known_ = false; }
   // At the end of a run in steps of length h.
   void say(const Run& run, double h) const;
 
@@ -36,10 +34,9 @@ class NumericalDamping {
 
   void add(const Problem& problem, const Eigen::VectorXd& v);
 
-  const bool moves_;  // freely, if only in part
-  int since_ = 0;     // steps since the last look
-  bool known_ = false;
-  Eigen::VectorXd then_;  // v of that look
+  const bool moves_;      // freely, if only in part
+  int since_ = 0;         // steps since the last look
+  Eigen::VectorXd then_;  // v of that look, whose ṙ are the same in all coordinates
   std::int64_t steps_ = 0;
   double taken_ = 0, most_kinetic_ = 0;  // J
   Eigen::VectorXd momentum_;
