@@ -170,14 +170,13 @@ class Session {
     problem_.set_position(at_t_, span(next_.q));
     problem_.set_velocity(span(next_.v));
     course_.laws.begin(problem_, next_);
-    const double seen = course_.laws.ahead(ahead);
+    const double seen = course_.passed_laws.ahead(ahead);
     return seen < ahead ? std::min(seen, stop) : stop;
   }
 
   // at_ stands at a switch.
   Status cross(double t) {
-    at_.t = t;
-    if (Status status = consistent_.cross(at_); !status.ok()) return status;
+    if (Status status = consistent_.cross(at_, t); !status.ok()) return status;
     before_.known = last_.known = false;
     bool other_rows = false;
     if (Status status = poinsot::accept(problem_, at_, other_rows); !status.ok()) return status;

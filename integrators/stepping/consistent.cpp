@@ -216,8 +216,19 @@ Status Consistent::complete(State& at) {
   return moved ? refine(at) : Status{};
 }
 
-Status Consistent::cross(State& at) {
+void Consistent::lead(State& at, double t) {
+  const double h = t - at.t;
+  const auto a = at.z.head(problem_.nv());
+  rhs_.head(problem_.nv()) = h * (at.v + 0.5 * h * a);
+  problem_.retract(span(at.q), moves(), span(q_moved_));
+  at.q = q_moved_;
+  at.v += h * a;
+  at.t = t;
+}
+
+Status Consistent::cross(State& at, double t) {
   forget_approach();
+  lead(at, t);
   if (Status status = accelerations(at); !status.ok()) return status;
   problem_.position_residual(rows());
   const auto jumping = std::ranges::max_element(rows(), {}, [](double x) { return std::abs(x); }) - rows().begin();

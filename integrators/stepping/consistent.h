@@ -90,9 +90,11 @@ class Consistent {
   Status refine(State& at);
   // Accelerations, projection, refinement: the consistent state beside (q, v).
   Status complete(State& at);
-  // Makes a state whose time is just past a switch of the data consistent on the far side of it. Where the rate of a
-  // driver jumps, v does, by the least change in M: the impulse of the constraints. Positions cannot; then it fails.
-  Status cross(State& at);
+  // Leads a state on to a time so near that accelerations stay what they are.
+  void lead(State& at, double t);
+  // Likewise to just past a switch of the data, consistent on the far side of it. Where the rate of a driver jumps, v
+  // does, by the least change in M: the impulse of the constraints. Positions cannot; then it fails.
+  Status cross(State& at, double t);
 
  private:
   // What a run lends.

@@ -99,8 +99,10 @@ class ControlledRadau : public RadauStepper {
     if (Status status = passing_->complete(error, most); !status.ok() || !(error <= most)) return status;
     return RadauStepper::start(passing_->state());
   }
+  const State& trial_end() { return passes_ ? passing_->trial_end() : RadauStepper::trial_end(); }
   bool passes() const { return passes_; }  // the last step was one of the pair
   Status interpolate(double t) { return passes_ ? passing_->interpolate(t) : RadauStepper::interpolate(t); }
+  Status lead(double t) { return passes_ ? passing_->lead(t) : RadauStepper::lead(t); }
   const State& interpolated() const { return passes_ ? passing_->interpolated() : RadauStepper::interpolated(); }
 
   double first_step(double end, double singular_for) {

@@ -1,101 +1,21 @@
 // A run of a one-step method under error control: steps tried, refused and accepted, samples between them, kinks and
 // jumps of the data stepped onto, pulses and what laws do on the way not stepped over, an exact end.
 //
-// A Method is a stepper with: Status attempt(to, rejections, error), Status complete(error), Status interpolate(t),
-// interpolated(), take_back(), settle(), cross(t), state(); double first_step(end, singular_for), Run's; double
-// retry(h, rejections, usual), the step to try after so many rejections in a row; double adopt(h, wanted), the step
-// after a completed one of length h.
+// A Method is a stepper with: Status attempt(to, rejections, error), trial_end(), Status complete(error),
+// Status interpolate(t), Status lead(t), interpolated(), take_back(), settle(), cross(t), state(); double
+// first_step(end, singular_for), Run's; double retry(h, rejections, usual), the step to try after so many rejections in
+// a row; double adopt(h, wanted), the step after a completed one of length h.
 #pragma once
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "core/interruption.h"
-#include "integrators/stepping/consistent.h"
-#include "integrators/stepping/observe.h"
-#include "integrators/stepping/passed_laws.h"
-#include "integrators/stepping/progress.h"
-#include "integrators/stepping/pulses.h"
-#include "integrators/stepping/sample_times.h"
-#include "integrators/stepping/singular_position.h"
+#include "integrators/stepping/course.h"
 #include "integrators/stepping/step_control.h"
-#include "integrators/stepping/sticking.h"
-#include "integrators/stepping/still_watch.h"
-#include "integrators/stepping/switch_times.h"
-#include "integrators/stepping/vectors.h"
 
 namespace poinsot {
-
-inline void tell_long_way(const Run& run, double t, double steps) {
-  run.tell(
-      fmt::format("up to t = {:.6g} s {} steps were done, and as it goes on the end is some {:.0e} further ones away",
-                  t, run.statistics.steps, steps));
-}
-
-// What lies before a run, whichever method is at it: the clock, output times, switches of the data, who is given what.
-class Course {
- public:
-  Course(const Run& run, PhaseClock& clock)
-      : every_step(run.settings.every == 0),
-        times(run.settings.every, run.settings.end),
-        switches(run.problem.model(), run.settings.end, run.tell),
-        pulses(run.problem.model(), run.settings.end, run.settings.rtol, run.tell),
-        laws(run.problem.model(), run.settings.end, run.settings.rtol, run.settings.absolute_tolerance(), run.tell),
-        run_(run),
-        clock_(clock),
-        still_(run.problem, run.tell),
-        progress_(run.settings.end),
-        sticking_(run.problem.model(), run.settings.linear(), instant_of(run.settings.end)) {}
-
-  void give_out(const State& at) { give_out(at, at.t); }
-  void give_out(const State& at, double t) {
-    clock_.pause();
-    open_multipliers_.look(at, run_.tell);
-    sample(run_.observe, run_.problem, at, run_.statistics, t);
-    clock_.resume();
-  }
-  // No consistent state was found beside `at`, the motion at the next output time.
-  Status singular_sample(const State& at) const {
-    const int rows = static_cast<int>(run_.problem.model_rows().size());
-    const int row = most_dependent_row(run_.problem, rows, at.t, span(at.q)).row;
-    return poinsot::singular_sample(times.next(),
-                                    row < 0 ? "" : run_.problem.describe_unknown(run_.problem.nv() + row));
-  }
-  // A step ended at `at`, where the problem stands.
-  Status follow(const State& at) {
-    still_.look(run_.problem, at);
-    if (progress_.look(at.t)) {
-      if (progress_.never_ends()) return never_beyond(run_.problem, at, progress_.limit());
-      if (progress_.takes_long() && !std::exchange(long_told_, true)) tell_long_way(run_, at.t, progress_.steps_left());
-    }
-    return sticking_.look(run_.problem, at);
-  }
-  double turned(double h) const { return h * run_.problem.fastest_turn(); }  // rad, the fastest body at its speed now
-  const Problem& problem() const { return run_.problem; }
-  double end() const { return run_.settings.end; }
-  // See Run::singular_for; 0 once the run is under way.
-  double singular_for(double t) const { return t > 0 ? 0 : run_.singular_for; }
-  Statistics& statistics() { return run_.statistics; }
-
-  const bool every_step;
-  SampleTimes times;
-  SwitchTimes switches;
-  Pulses pulses;
-  PassedLaws laws;
-
- private:
-  const Run& run_;
-  PhaseClock& clock_;
-  StillWatch still_;
-  Progress progress_;
-  bool long_told_ = false;
-  StickingWatch sticking_;
-  OpenMultipliers open_multipliers_;
-};
 
 // From the method's state to the end, or to the first step after which leave() says so.
 template <class Method, class Leave>
@@ -106,16 +26,19 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
   StepController controller(rule);
   Creeping creeping(end);
   const double singular_for = course.singular_for(method.state().t);
-  course.laws.begin(course.problem(), method.state());
+  course.begin_laws(method.state());
   double h = method.first_step(end, singular_for);
   double usual = singular_for > 0 ? h : 0;  // length of the steps so far, those long ago forgotten
   int rejections = 0;                       // in a row
+  bool cut = false;                         // h is what laws leave of a step
   while (method.state().t < end) {
     const double t = method.state().t;
     if (interruption_requested) return interrupted(t);
     const SwitchTimes::Switch turn = course.switches.first(t, std::min(t + 1.01 * h, end));
-    const double stop = std::min(turn.before, end);
-    const double wanted = t + 1.01 * h >= stop ? stop : t + h, to = course.pulses.reach(t, wanted);
+    const double stop = std::min(turn.before, end), beyond_law = course.law_switches.beyond();
+    const bool leads = beyond_law < stop;  // to a switch of a law that is as near as that
+    const double wanted = leads ? t : t + (cut ? 1 : 1.01) * h >= stop ? stop : t + h;
+    const double to = course.pulses.reach(t, wanted);
     if (to < wanted) creeping.limited();
     if (to > t) {
       h = to - t;
@@ -126,25 +49,33 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
       if (!status.ok() || !(error <= 1)) {
         if (status.failure == Failure::refused) return status;
         ++course.statistics().rejected_steps;
+        if (const double seen = course.switched(status, error, to, method); seen < to) {
+          h = seen - t;
+          cut = true;
+          continue;
+        }
         h = status.ok() && std::isfinite(error) ? controller.rejected(h, error) : controller.failed(h);
         if (h < smallest) return step_too_small(t, h, status);
         h = method.retry(h, ++rejections, usual);
         continue;
       }
-      if (const double seen = course.laws.reach(course.problem(), method.state()); seen < to) {
+      if (const double seen = course.seen(method.state()); seen < to) {
         method.take_back();
         ++course.statistics().rejected_steps;
         creeping.limited();
         h = seen - t;
+        cut = true;
         continue;
       }
+      cut = false;
+      course.accept_laws();
       ++course.statistics().steps;
       course.statistics().largest_rotation = std::max(course.statistics().largest_rotation, course.turned(h));
       if (status = course.follow(method.state()); !status.ok()) return status;
       rejections = 0;
       usual = std::max(h, kForgotten * usual);
       creeping.completed(h);
-      h = method.adopt(h, controller.accepted(h, error));
+      h = course.law_switches.length(method.adopt(h, controller.accepted(h, error)));
       for (; !course.every_step && times.next() < to; times.pass()) {
         if (status = method.interpolate(times.next()); !status.ok()) break;
         course.give_out(method.interpolated());
@@ -153,7 +84,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
         if (status.failure == Failure::refused) return status;
         if (status.failure == Failure::singular_position) return course.singular_sample(method.interpolated());
         method.take_back();
-        course.laws.take_back();
+        course.take_back_laws();
         --course.statistics().steps;
         ++course.statistics().rejected_steps;
         h = method.retry(controller.failed(to - t), ++rejections, 0);
@@ -161,11 +92,14 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
         continue;
       }
     }
-    const bool crosses = to == turn.before;
+    const bool crosses = leads || to == turn.before;
     if (!(to > t) && !crosses) return step_too_small(t, h, {});  // the time itself is too coarse for it
-    if (Status status = crosses ? method.cross(std::min(turn.after, end)) : method.settle(); !status.ok()) {
-      return status;
+    for (; leads && !course.every_step && times.next() < beyond_law; times.pass()) {
+      if (Status status = method.lead(times.next()); !status.ok()) return status;
+      course.give_out(method.interpolated());
     }
+    const double other_side = leads ? beyond_law : std::min(turn.after, end);
+    if (Status status = crosses ? method.cross(other_side) : method.settle(); !status.ok()) return status;
     if (course.every_step) {
       if (to > t) course.give_out(method.state());
     } else if (times.next() <= method.state().t) {
@@ -175,7 +109,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
     if (crosses) {  // what error control has learnt is of the motion before
       controller = StepController(rule);
       creeping = Creeping(end);
-      course.laws.begin(course.problem(), method.state());
+      course.begin_laws(method.state());
       h = method.first_step(end, 0);
     }
     if (leave()) return {};

@@ -77,9 +77,8 @@ Status ExplicitStepper::settle() {
 }
 
 Status ExplicitStepper::cross(double t) {
-  state_.t = t;
   elsewhere_ = true;
-  if (Status status = consistent_.cross(state_); !status.ok()) return status;
+  if (Status status = consistent_.cross(state_, t); !status.ok()) return status;
   return settle();
 }
 
@@ -243,6 +242,19 @@ Status ExplicitStepper::complete(double& error, double most) {
   std::swap(state_, next_);
   elsewhere_ = false;
   return {};
+}
+
+Status ExplicitStepper::lead(double t) {
+  elsewhere_ = true;
+  sample_ = state_;
+  consistent_.lead(sample_, t);
+  return passage_.complete_sample(sample_);
+}
+
+const State& ExplicitStepper::trial_end() {
+  stand_at_end();
+  consistent_.stand(next_);
+  return next_;
 }
 
 void ExplicitStepper::take_back() {

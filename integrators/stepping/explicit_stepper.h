@@ -45,6 +45,10 @@ class ExplicitStepper {
   enum class Stages { as_they_come, projected };
   // Stages and y_{n+1} of a step to time `to`; its error, 1 being the tolerance. The state stays what it is.
   Status attempt(double to, Stages stages, double& error);
+  // The motion shortly beyond the state, as its accelerations lead it on, in interpolated().
+  Status lead(double t);
+  // Where an attempted step ends, by position and velocity; the problem stands there.
+  const State& trial_end();
   // Makes the attempted step the state: f(y_{n+1}), projection. Where that moves it by more than the error, so much is
   // the error. The state is still the old one where the result cannot be projected, or where the error is above `most`.
   Status complete(double& error, double most = 1);

@@ -15,6 +15,7 @@ constexpr int kLawPieces = 300;           // of one look
 constexpr int kTowardsEntry = 8;          // towards where F comes to more
 constexpr double kBeyondSeen = 2;         // of the range that is seen
 constexpr int kShownPlaces = 4;           // that stages do not miss
+constexpr double kMostBulge = 2;          // of the change of a rate
 constexpr double kLookedAt[] = {0, 0.11, 0.23, 0.36, 0.49, 0.63, 0.77, 0.89, 1};  // no period goes with them
 
 // What a body carries: a point, or its turn.
@@ -138,17 +139,25 @@ LawPath::LawPath(const SpringLaw& of, const LawPlace& from, const LawPlace& to, 
   error_ = kError * (wrong(2 * c_[2], from) + wrong(2 * c_[2] + 6 * c_[3], to));
 }
 
+// The derivative of d is rate + s change + s (1 − s) bulge.
 void LawPath::lead(const Vector& from, const Vector& from_rate, const Vector& step, const Vector& end_rate) {
   c_[0] = from;
   c_[1] = h_ * from_rate;
   c_[2] = 3 * step - h_ * (2 * from_rate + end_rate);
   c_[3] = h_ * (from_rate + end_rate) - 2 * step;
-  v_ = of_.arguments({at(0.5), derivative(0.5) / h_}, t_).v;
+  rate_ = from_rate, change_ = end_rate - from_rate;
+  bulge_ = -3 / h_ * c_[3];
+  if (const double most = kMostBulge * change_.norm(); bulge_.norm() > most) bulge_ *= most / bulge_.norm();
+  v_ = moving(0.5).v;
 }
 
 Arguments<double> LawPath::arguments(double s) const {
   const Vector d = at(s);
   return {t_ + s * h_, (of_.torsion >= 0 ? d.x() : d.norm()) - of_.zero, v_};
+}
+
+Arguments<double> LawPath::moving(double s) const {
+  return of_.arguments({at(s), rate_ + s * (change_ + (1 - s) * bulge_)}, t_ + s * h_);
 }
 
 double LawPath::force(double s) const {

@@ -47,6 +47,8 @@ class LawPath {
   LawPath(const SpringLaw& of, const LawPlace& from, double t_from, double t_to);
 
   double force(double s) const;
+  // What the law depends on at s, with the rate there: not the derivative of d, which in a short step is rounding.
+  Arguments<double> moving(double s) const;
   Bounds force(double from, double to) const;
   double slope(double s) const;  // of F by x
 
@@ -61,6 +63,7 @@ class LawPath {
   const SpringLaw& of_;
   const double t_, h_;
   std::array<Vector, 4> c_;
+  Vector rate_, change_, bulge_;  // of the rate: where the step begins, over it, beyond a straight line in its middle
   double error_ = 0, v_ = 0;
 };
 

@@ -11,27 +11,19 @@
 
 #include <vector>
 
-#include "core/body_state.h"
-#include "core/model.h"
 #include "integrators/integrator.h"
-#include "integrators/state.h"
-#include "integrators/stepping/law_path.h"
+#include "integrators/stepping/law_steps.h"
 
 namespace poinsot {
 
 class PassedLaws {
  public:
-  // Of the expressions of the model, which has to live as long, up to a time `end`.
-  PassedLaws(const Model& model, double end, double rtol, double atol, Tell tell);
+  // Of steps that have to live as long, in a run up to a time `end`.
+  PassedLaws(const LawSteps& steps, double end, double rtol, double atol, Tell tell);
 
-  bool none() const { return laws_.empty(); }
-  // The problem stands at `from`, where a step begins.
-  void begin(const Problem& problem, const State& from);
-  // The problem stands at `to`, where the step that began there ends. How far it may go, to.t where it may so; a step
-  // that may is where the next one begins.
-  double reach(const Problem& problem, const State& to);
-  void take_back();  // that step
-  // As far as is known at the beginning, where the motion goes on as it does there up to a time `to`.
+  // How far the step looked at may go; its end where it may so.
+  double reach();
+  // As far as is known at its beginning, where the motion goes on as it does there up to a time `to`.
   double ahead(double to);
 
  private:
@@ -40,23 +32,19 @@ class PassedLaws {
   static constexpr double kPart = 0.1;       // of a step that is worth one
   static constexpr int kMostUnknown = 400;   // steps
 
-  struct Law {
-    SpringLaw of;
-    LawPlace before, from, to;
+  struct Watch {
+    bool on = true;
     double largest = 0;  // |F| so far
     int unknown = 0;     // steps on end that it cut for nothing
   };
 
-  void look(const Problem& problem, const State& at);
-  double cut(Law& law, const LawPath& path, double from, double to) const;
+  double cut(std::size_t k, const LawPath& path, double to);
   void leave_unknown(double t);
 
-  const Model& model_;
+  const LawSteps& steps_;
   const double end_, rtol_, atol_;
   const Tell tell_;
-  std::vector<Law> laws_;
-  std::vector<BodyState> bodies_;
-  double t_ = 0, before_ = 0;
+  std::vector<Watch> watches_;  // by law
 };
 
 }  // namespace poinsot

@@ -68,8 +68,7 @@ Status RadauStepper::settle() {
 }
 
 Status RadauStepper::cross(double t) {
-  state_.t = t;
-  if (Status status = consistent_.cross(state_); !status.ok()) return status;
+  if (Status status = consistent_.cross(state_, t); !status.ok()) return status;
   h_before_ = step_.h = 0;  // the stages are those of other forces
   return settle();
 }
@@ -131,6 +130,17 @@ Status RadauStepper::complete(double& error, double most) {
   Z_before_ = Z_;
   h_before_ = h_;
   return {};
+}
+
+Status RadauStepper::lead(double t) {
+  sample_ = state_;
+  consistent_.lead(sample_, t);
+  return passage_.complete_sample(sample_);
+}
+
+const State& RadauStepper::trial_end() {
+  consistent_.stand(next_);
+  return next_;
 }
 
 void RadauStepper::take_back() {

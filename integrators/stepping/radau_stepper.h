@@ -44,6 +44,10 @@ class RadauStepper {
   double first_step(double end) const;
   // Stages of a step to time `to`; its error, 1 being the tolerance. The state stays what it is.
   Status attempt(double to, double& error);
+  // The motion shortly beyond the state, as its accelerations lead it on, in interpolated().
+  Status lead(double t);
+  // Where an attempted step ends, by position and velocity; the problem stands there.
+  const State& trial_end();
   // Makes the end of the attempted step the state. Where its projection moves it by more than the error, so much is the
   // error. The state is still the old one where it cannot be projected, or where the error is above `most`.
   Status complete(double& error, double most = 1);

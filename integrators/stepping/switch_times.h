@@ -6,7 +6,7 @@
 // kResolved of the run. So a pulse is found however short it is beside a step, down to that; and a function that
 // touches zero without a change of sign is passed. One that is zero up to rounding over a stretch has no sign there:
 // what rounding makes of it is no switch, and where a sign or a step has such an argument, the user is told. Laws of
-// springs switch by the state besides, which nobody knows ahead: error control finds those by itself.
+// springs switch by the state besides, which nobody knows ahead: see law_switches.h.
 #pragma once
 
 #include <limits>

@@ -1,0 +1,163 @@
+#include "integrators/stepping/law_switches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/index.h"
+
+namespace poinsot {
+namespace {
+
+constexpr double kSideLooks[] = {0.25, 0.5, 0.75, 1};  // of a step
+constexpr double kKnown = 3e-3;                        // of a step, how well it tells when
+constexpr double kNear = 1e-4, kNearJump = 1e-5;       // of a step: accelerations change by as much and no more
+constexpr double kOfTolerance = 0.1;
+constexpr double kOfBend = 1.0 / 30;  // of |F'(s+) − F'(s−)|: what F differs by from a smooth function
+constexpr double kSoonAgain = 1e-8;   // of the run
+constexpr int kMostSoon = 20;         // on end
+constexpr double kInstant = 2e-15, kAside = 1e-13;  // of the run
+
+double side_of(double x) {
+  return x > 0 ? 1 : x < 0 ? -1 : 0;
+}
+
+}  // namespace
+
+LawSwitches::LawSwitches(const LawSteps& steps, double end, double rtol, double atol)
+    : steps_(steps), end_(end), rtol_(rtol), atol_(atol) {
+  const Bounds unknown = Bounds::unknown();
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    const Expression& F = *steps.law(n).of.F;
+    Law law{n, {}};
+    for (int k = 0; k < F.switch_count(); ++k)
+      if (F.switch_range(k, {{}, unknown, unknown}).is_unknown()) law.switches.push_back({k, F.switch_jumps(k)});
+    if (law.switches.empty()) continue;
+    values_.resize(std::max(values_.size(), index(F.switch_count())));
+    laws_.push_back(std::move(law));
+  }
+}
+
+void LawSwitches::begin() {
+  const double from = steps_.from();
+  const bool led = beyond_ == from;
+  Switch* const crossed = led ? approached_.of : nullptr;
+  const double other_side = crossed ? -crossed->side : 0;
+  beyond_ = kNever;
+  approached_ = {};
+  long_ = 0;
+  for (Law& law : laws_) {
+    const LawPath path = steps_.ahead(law.law, from + end_);
+    for (Switch& of : law.switches) {
+      of.side = side_of(value(law.law, of, path, 0));
+      if (of.side == 0 && of.jumps && !led) beyond_ = from + kAside * end_;
+    }
+  }
+  if (!crossed) return;
+  crossed->side = other_side;  // whatever rounding makes of it
+  crossed->soon = from - crossed->last < kSoonAgain * end_ ? crossed->soon + 1 : 0;
+  crossed->last = from;
+}
+
+double LawSwitches::reach(double to) {
+  const double from = steps_.from(), h = to - from;
+  const bool looked = to == steps_.to();
+  Crossing first;
+  for (Law& law : laws_) look(law, looked ? steps_.path(law.law) : steps_.ahead(law.law, to), h, first);
+  if (!first.of) return to;
+  approached_ = first;
+  const double left = first.s * h;
+  expected_ = from + left;
+  within_ = kKnown * h;
+  if (left > 2 * within_) return from + left - within_;
+  const double known = length(h);  // as its beginning tells, which is nearer
+  if (beyond_ < to) return from;
+  if (beyond_ == kNever) return from + std::min(known, 0.9 * h);
+  beyond_ = kNever;  // it ends so near that it may go over it
+  return to;
+}
+
+void LawSwitches::accept() {
+  const double h = steps_.to() - steps_.from();
+  for (Law& law : laws_)
+    for (Switch& of : law.switches) of.side = of.next;
+  long_ = approached_.of ? std::max(long_, h) : h;
+  if (approached_.of && steps_.to() > expected_ + within_) approached_ = {};
+}
+
+double LawSwitches::length(double h) {
+  if (!approached_.of) return h;
+  const Switch& of = *approached_.of;
+  const double from = steps_.from(), span = 2 * (expected_ - from + within_);
+  const LawPath path = steps_.ahead(approached_.law, from + span);
+  double before = 0;
+  for (const double s : kSideLooks) {
+    if (of.side * value(approached_.law, of, path, s) < 0) {
+      const double left = span * root(approached_.law, of, path, before, s);
+      const double within = long_ > 0 ? std::min(left * left / long_, 0.5 * left) : 0.5 * left;
+      const double near = std::max((of.jumps ? kNearJump : kNear) * long_, kInstant * end_);
+      if (left > near) return std::min(h, left - within);
+      beyond_ = from + left + within + kInstant * end_;
+      return h;
+    }
+    before = s;
+  }
+  return std::min(h, span);
+}
+
+void LawSwitches::look(Law& law, const LawPath& path, double h, Crossing& first) {
+  const Expression& F = *steps_.law(law.law).of.F;
+  for (Switch& of : law.switches) of.next = of.side;
+  double before = 0;
+  for (const double s : kSideLooks) {
+    F.switches(path.moving(s), values_);
+    for (Switch& of : law.switches) {
+      const double side = side_of(values_[index(of.k)]);
+      if (side == 0) continue;
+      if (side * of.next < 0 && before < first.s) {
+        const double at = root(law.law, of, path, before, s);
+        if (at < first.s && (&of == approached_.of || counts(law.law, of, path, at, h))) first = {&of, law.law, at};
+      }
+      of.next = side;
+    }
+    before = s;
+  }
+}
+
+double LawSwitches::value(std::size_t law, const Switch& of, const LawPath& path, double s) {
+  steps_.law(law).of.F->switches(path.moving(s), values_);
+  return values_[index(of.k)];
+}
+
+// Where the sign is no longer that of `side`, by bisection.
+double LawSwitches::root(std::size_t law, const Switch& of, const LawPath& path, double from, double to) {
+  constexpr int kHalvings = 40;
+  const double beyond = side_of(value(law, of, path, to));
+  for (int n = 0; n < kHalvings; ++n) {
+    const double middle = from + 0.5 * (to - from);
+    (value(law, of, path, middle) * beyond > 0 ? to : from) = middle;
+  }
+  return to;
+}
+
+// Whether a step over it comes out wrong by more than the tolerance, as a velocity of the lighter body.
+bool LawSwitches::counts(std::size_t law, const Switch& of, const LawPath& path, double s, double h) const {
+  constexpr double kBeside = 1e-5;
+  if (of.soon > kMostSoon) return false;
+  const LawSteps::Law& steps = steps_.law(law);
+  const auto slope = [&](double from, double to, const Arguments<double>& at) {
+    const LawValue<double> F = steps.of.F->law(at);
+    const Arguments<double> a = path.moving(from), b = path.moving(to);
+    return (F.F_x * (b.x - a.x) + F.F_v * (b.v - a.v)) / (to - from);
+  };
+  const Arguments<double> before = path.moving(s - kBeside), after = path.moving(s + kBeside);
+  const double slope_before = slope(s - kBeside, s, before), slope_after = slope(s, s + kBeside, after);
+  double wrong = kOfBend * std::abs(slope_after - slope_before);
+  if (of.jumps) {
+    const double by_slope = kBeside * (slope_before + slope_after);
+    wrong += std::abs(steps.of.F->law(after).F - steps.of.F->law(before).F - by_slope);
+  }
+  return wrong > kOfTolerance * (atol_ + rtol_ * steps.from.rate.norm()) * steps.of.inertia / h;
+}
+
+}  // namespace poinsot

@@ -1,0 +1,134 @@
+// Kinks and jumps of laws of springs by the state: runs under error control are as right as those of smooth laws.
+#include "integrators/stepping/law_switches.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+using std::numbers::pi;
+
+struct SwitchedMethod {
+  std::string integrator, formulation;
+};
+// ida has its own error control, and finds kinks by that.
+std::vector<SwitchedMethod> switched_methods() {
+  std::vector<SwitchedMethod> all;
+  for (const IntegratorEntry& entry : integrators())
+    for (const FormulationEntry& formulation : formulations())
+      if (entry.controls_error && entry.name != "ida" && !refusal_of(entry, formulation.name))
+        all.push_back({std::string(entry.name), std::string(formulation.name)});
+  return all;
+}
+
+class LawSwitchesTest : public ::testing::TestWithParam<SwitchedMethod> {
+ protected:
+  Settings settings(double rtol, double end, double every) const {
+    return controlled(GetParam().integrator, GetParam().formulation, rtol, end, every);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, LawSwitchesTest, ::testing::ValuesIn(switched_methods()),
+                         [](const auto& test) { return test.param.integrator + "_" + test.param.formulation; });
+
+// A body of 1 kg at x, pulled back by the force of a law; its spring is 3 m long where x is 0.
+Scene pulled(double x, std::initializer_list<const char*> laws) {
+  Scene scene;
+  scene.name = "pulled";
+  Body body;
+  body.name = "body", body.mass = 1, body.inertia = Vector3(1, 1, 1).asDiagonal();
+  body.position = {x, 0, 0};
+  scene.bodies.push_back(body);
+  for (const char* law : laws) {
+    Spring spring;
+    spring.j = 0, spring.length = 3, spring.s_i = {-3, 0, 0};
+    spring.law = Expression::parse_law(law);
+    scene.forces.push_back(spring);
+  }
+  return scene;
+}
+
+// x(t) from x0 at rest.
+double of_two_springs(double t) {  // 25 x, and 100 x below 0; from 0.5
+  const double part = std::fmod(t, 0.3 * pi);
+  return part < 0.1 * pi   ? 0.5 * std::cos(5 * part)
+         : part < 0.2 * pi ? -0.25 * std::sin(10 * (part - 0.1 * pi))
+                           : 0.5 * std::sin(5 * (part - 0.2 * pi));
+}
+double of_friction(double t) {  // 25 x + 0.5 sign(v), from 1: half waves about ±0.02
+  const double waves = std::floor(t / (pi / 5)), side = std::fmod(waves, 2) == 0 ? 1 : -1;
+  return -side * -0.02 + (1 - 0.02 - 0.04 * waves) * side * std::cos(5 * (t - waves * pi / 5));
+}
+double of_relay(double t) {  // sign(x), from 0.5
+  const double part = std::fmod(t + 1, 4), in = std::fmod(part, 2);
+  return (part < 2 ? 1 : -1) * (0.5 - 0.5 * (in - 1) * (in - 1));
+}
+double of_floor(double t) {  // 1 and 1e4 x below 0, from 0.02
+  const double a = std::hypot(1e-4, 2e-3), phase = std::atan2(2e-3, 1e-4), touch = (2 * pi - 2 * phase) / 100;
+  const double part = std::fmod(t + 0.2, 0.4 + touch);
+  if (part < 0.4) return 0.02 - 0.5 * (part - 0.2) * (part - 0.2);
+  return -1e-4 + a * std::cos(100 * (part - 0.4) + phase);
+}
+
+TEST_P(LawSwitchesTest, CostNoDigitsAndFewRejections) {
+  const struct {
+    double x0;
+    const char* law;
+    double (*x)(double);
+    double crossings;  // in 5 s
+  } cases[] = {{0.5, "25*max(0, x) + 100*min(0, x)", of_two_springs, 10.6},
+               {1, "25*x + 0.5*sign(v)", of_friction, 8},
+               {0.5, "sign(x)", of_relay, 2.5},
+               {0.02, "1e4*min(0, x) + 1", of_floor, 23}};
+  for (const auto& c : cases) {
+    for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+      const Recorded r = run(pulled(c.x0, {c.law}), settings(rtol, 5, 0.003));
+      ASSERT_TRUE(r.outcome.status.ok()) << c.law << ": " << r.outcome.status.message;
+      double most = 0;
+      for (const Snapshot& s : r.samples) most = std::max(most, std::abs(s.bodies[0].r.x() - c.x(s.t)));
+      EXPECT_LT(most, 30 * rtol) << c.law << ' ' << rtol;
+      EXPECT_LT(r.outcome.statistics.rejected_steps, 5 * c.crossings + 12) << c.law << ' ' << rtol;
+    }
+  }
+}
+
+// Springs that switch at the same instant are one spring of as much force.
+TEST_P(LawSwitchesTest, MayCoincide) {
+  const auto one = run(pulled(0.02, {"2e4*min(0, x) + 2"}), settings(1e-9, 1, 0.05)).samples;
+  const auto two = run(pulled(0.02, {"1e4*min(0, x) + 1", "1e4*min(0, x) + 1"}), settings(1e-9, 1, 0.05)).samples;
+  ASSERT_EQ(one.size(), two.size());
+  EXPECT_LT(distance(one, two).r, 1e-8);
+}
+
+// Three links with a stop and friction in each hinge, which switch one hundred times.
+TEST_P(LawSwitchesTest, OfMechanisms) {
+  Scene scene;
+  scene.name = "stops";
+  scene.gravity = {0, 0, -9.81};
+  for (int k = 0; k < 3; ++k) {
+    Body body;
+    body.name = fmt::format("link{}", k);
+    body.mass = 1, body.inertia = Vector3(0.02, 0.001, 0.02).asDiagonal();
+    body.position = {0, 0.25 + 0.5 * k, 0};
+    scene.bodies.push_back(body);
+    Joint hinge;
+    hinge.type = JointType::revolute;
+    hinge.i = k - 1, hinge.j = k;
+    hinge.point = {0, 0.5 * k, 0}, hinge.axis = {1, 0, 0};
+    scene.joints.push_back(hinge);
+    TorsionSpring stop;
+    stop.i = k - 1, stop.j = k, stop.axis = {1, 0, 0};
+    stop.law = Expression::parse_law("200*(max(0, x - 0.5) + min(0, x + 0.5)) + 0.05*min(max(v/0.1, -1), 1)");
+    scene.forces.push_back(stop);
+  }
+  static const auto exact = motion(scene, controlled("dop853", "rA", 1e-13, 1, 0.1));
+  const Distance d = distance(motion(scene, settings(1e-9, 1, 0.1)), exact);
+  EXPECT_LT(std::max({d.r, d.A, d.rd, d.w}), 3e-7) << d;
+}
+
+}  // namespace
+}  // namespace poinsot::test
