@@ -45,18 +45,27 @@ bool turned_round(const Eigen::VectorXd& before, const Eigen::VectorXd& now) {
   return now.dot(before) < -kReverse * std::max(now.squaredNorm(), before.squaredNorm());
 }
 
+namespace {
+
+bool hardly_turned(const Eigen::VectorXd& before, const Eigen::VectorXd& now) {
+  constexpr double kHardly = 0.8;
+  return now.dot(before) > kHardly * std::max(now.squaredNorm(), before.squaredNorm());
+}
+
+}  // namespace
+
 // A mechanism that comes to rest in a singular position goes on by any of its branches as far as the velocities say.
 // Beyond it accelerations of another one differ altogether from those before, in the direction that the constraints
-// leave free there, though bodies have turned by little and did not lead to expect it.
+// leave free there, though bodies have turned by little and did not lead to expect it; not those that turn on from step
+// to step, as of a ball that is drawn in on a thread.
 bool Consistent::turns_back(const State& at) {
   constexpr double kTrusted = 1e4;  // times as steep as usual, beyond which rounding makes accelerations
   constexpr double kLittle = 0.1;   // rad
   constexpr double kExpected = 0.25;
   if (!(amplification_ > 1 && amplification_ < kTrusted) || approach_.rate < 0 || approach_.turned > kLittle)
     return false;
-  const Eigen::Index nv = at.v.size();
-  const Eigen::VectorXd now = at.z.head(nv);
-  if (!turned_round(approach_.a, now)) return false;
+  const Eigen::VectorXd now = at.z.head(at.v.size());
+  if (!turned_round(approach_.a, now) || (approach_.steady && hardly_turned(approach_.last, now))) return false;
   const Eigen::VectorXd change = now - approach_.a;
   if (!(approach_.rate * (at.t - approach_.t) < kExpected * change.cwiseAbs().maxCoeff())) return false;
   return lies_free(at.t, change);
@@ -91,6 +100,8 @@ void Consistent::expect(double t, std::span<const double> a, double turned, cons
   not_looked_ = kSeldom - 1;
   approach_.t = t, approach_.turned = turned, approach_.rate = 0, approach_.known = true;
   approach_.a = Eigen::Map<const Eigen::VectorXd>(a.data(), static_cast<Eigen::Index>(a.size()));
+  approach_.last = approach_.a;
+  approach_.steady = true;
 }
 
 void Consistent::approach(const State& at) {
@@ -99,6 +110,7 @@ void Consistent::approach(const State& at) {
   approach_.a = at.z.head(at.v.size());
   approach_.t = at.t;
   approach_.turned = 0;
+  approach_.steady = true;
   approach_.known = true;
 }
 
@@ -115,7 +127,12 @@ void Consistent::follow(const State& at) {
     not_looked_ = 0;
     turned_ = 0;
   }
-  if (amplification_ == 1) approach(at);
+  if (amplification_ == 1) {
+    approach(at);
+  } else {
+    approach_.steady = approach_.steady && hardly_turned(approach_.last, at.z.head(at.v.size()));
+  }
+  approach_.last = at.z.head(at.v.size());
   const double acceleration = largest(at.a());
   if (calm_.usual == 0) calm_.usual = std::max(acceleration, problem_.model().gravity.norm());
   if (acceleration > kGrows * calm_.usual) return;

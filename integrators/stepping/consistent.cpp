@@ -49,7 +49,7 @@ Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& stati
       q_moved_(problem.nq()),
       moved_by_(Eigen::VectorXd::Zero(2 * problem.nv())) {
   calm_.v.setZero(problem.nv());
-  approach_.a.setZero(problem.nv());
+  approach_.a = approach_.last = Eigen::VectorXd::Zero(problem.nv());
   off_by_one_.setZero(problem.nv() + problem.nc());
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0.5, 1);

@@ -136,6 +136,8 @@ class Consistent {
     double t = 0, turned = 0;
     double rate = -1;  // at which accelerations changed before it; below 0: not known
     Eigen::VectorXd a;
+    Eigen::VectorXd last;  // accelerations of the last state
+    bool steady = true;    // those since have hardly turned, each against the one before
   } approach_;
   double off_ = 0;  // largest |Φ| or |G v − ν| that the last correction was for
   const std::size_t nv_, nc_;
