@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "integrators/settings_table.h"
 #include "tests/support/every_way.h"
 #include "tests/support/remedies.h"
 
@@ -67,6 +68,22 @@ TEST_P(Sticking, EndsTheRunAndSaysWhichLaw) {
         EXPECT_GT(r.outcome.status.time, c.from);
       }
       expect_helped(sliding(c.steep_wheel, c.steep_slide), settings);
+    });
+}
+
+// A belt that sets out, a place that a law leads to: the jump itself moves on.
+TEST_P(Sticking, ToWhatMovesEndsTheRunAndSaysWhichLaw) {
+  const std::array laws{std::pair{"8*sign(v - 0.5*t)", 0.222}, std::pair{"8*sign(v + 2*(x - 5))", 0.309}};
+  for (const auto& [law, from] : laws)
+    by_each(GetParam(), [&, law = law, from = from](const Settings& settings) {
+      SCOPED_TRACE(law);
+      const Recorded r = run(sliding("0", law), settings);
+      if (r.outcome.status.ok()) {
+        EXPECT_FALSE(chooses_steps(settings));
+        return;
+      }
+      expect_stopped(r, r.outcome.status.failure, "force 'rail'", "in the place of sign(v)");
+      EXPECT_NEAR(r.outcome.status.time, from, 0.02);
     });
 }
 

@@ -71,6 +71,7 @@ class Course {
   void begin_laws(const State& from) {
     laws.begin(run_.problem, from);
     law_switches.begin();
+    progress_.begins_anew();
   }
   // How far a step to `to`, where the problem stands, may go for what laws of springs do on its way.
   double seen(const State& to) {

@@ -15,6 +15,7 @@ constexpr int kLawPieces = 300;           // of one look
 constexpr int kTowardsEntry = 8;          // towards where F comes to more
 constexpr double kBeyondSeen = 2;         // of the range that is seen
 constexpr int kShownPlaces = 4;           // that stages do not miss
+constexpr double kRoundedPlaces = 1e-13;  // of their extent: what rounding and projections make of a step
 constexpr double kMostBulge = 2;          // of the change of a rate
 constexpr double kLookedAt[] = {0, 0.11, 0.23, 0.36, 0.49, 0.63, 0.77, 0.89, 1};  // no period goes with them
 
@@ -95,7 +96,7 @@ LawPlace SpringLaw::place(const Model& model, const Problem& problem, std::span<
   if (spring >= 0) {
     const Spring& s = model.springs[index(spring)];
     const Carried i = carried_by(bodies, s.i, s.s_i), j = carried_by(bodies, s.j, s.s_j);
-    return {j.x - i.x, j.rate - i.rate, j.second - i.second, i.turning + j.turning};
+    return {j.x - i.x, j.rate - i.rate, j.second - i.second, i.turning + j.turning, i.x.norm() + j.x.norm()};
   }
   const TorsionElement& e = model.torsions[index(torsion)];
   const auto turn = [&](int body) {
@@ -107,7 +108,9 @@ LawPlace SpringLaw::place(const Model& model, const Problem& problem, std::span<
   const Carried i = turn(e.spring.i), j = turn(e.spring.j);
   Vector3 axis = e.a_i.cross(e.b_i);
   if (e.spring.i != kGround) axis = bodies[index(e.spring.i)].A * axis;
-  return {{problem.twist(torsion), 0, 0}, {axis.dot(j.rate - i.rate), 0, 0}, {axis.dot(j.second - i.second), 0, 0}};
+  const double twist = problem.twist(torsion);
+  return {
+      {twist, 0, 0}, {axis.dot(j.rate - i.rate), 0, 0}, {axis.dot(j.second - i.second), 0, 0}, 0, 1 + std::abs(twist)};
 }
 
 Arguments<double> SpringLaw::arguments(const LawPlace& place, double t) const {
@@ -125,13 +128,13 @@ double SpringLaw::change(const LawPlace& place) const {
 
 LawPath::LawPath(const SpringLaw& of, const LawPlace& from, double t_from, double t_to)
     : of_(of), t_(t_from), h_(t_to - t_from) {
-  lead(from.d, from.rate, h_ * from.rate + 0.5 * h_ * h_ * from.second, from.rate + h_ * from.second);
+  lead(from.d, from.rate, h_ * from.rate + 0.5 * h_ * h_ * from.second, from.rate + h_ * from.second, from.extent);
 }
 
 LawPath::LawPath(const SpringLaw& of, const LawPlace& from, const LawPlace& to, double t_from, double t_to)
     : of_(of), t_(t_from), h_(t_to - t_from) {
   constexpr double kError = 0.02;  // of a second derivative that is wrong at an end
-  lead(from.d, from.rate, to.d - from.d, to.rate);
+  lead(from.d, from.rate, to.d - from.d, to.rate, from.extent);
   const double most = 4 * h_ * (to.rate - from.rate).norm() + h_ * h_ * std::max(from.turning, to.turning);
   const auto wrong = [&](const Vector& bend, const LawPlace& end) {
     return std::min((bend - h_ * h_ * end.second).norm(), most);
@@ -140,13 +143,15 @@ LawPath::LawPath(const SpringLaw& of, const LawPlace& from, const LawPlace& to, 
 }
 
 // The derivative of d is rate + s change + s (1 − s) bulge.
-void LawPath::lead(const Vector& from, const Vector& from_rate, const Vector& step, const Vector& end_rate) {
+void LawPath::lead(const Vector& from, const Vector& from_rate, const Vector& step, const Vector& end_rate,
+                   double extent) {
   c_[0] = from;
   c_[1] = h_ * from_rate;
   c_[2] = 3 * step - h_ * (2 * from_rate + end_rate);
   c_[3] = h_ * (from_rate + end_rate) - 2 * step;
   rate_ = from_rate, change_ = end_rate - from_rate;
-  bulge_ = -3 / h_ * c_[3];
+  bulge_.setZero();
+  if (c_[3].norm() > kRoundedPlaces * extent) bulge_ = -3 / h_ * c_[3];
   if (const double most = kMostBulge * change_.norm(); bulge_.norm() > most) bulge_ *= most / bulge_.norm();
   v_ = moving(0.5).v;
 }

@@ -22,6 +22,7 @@ namespace poinsot {
 struct LawPlace {
   Vector3 d = Vector3::Zero(), rate = Vector3::Zero(), second = Vector3::Zero();
   double turning = 0;  // m/s², of the second derivative what points owe to how their bodies turn
+  double extent = 0;   // m, rad: of what d is a difference, and so rounded as
 };
 
 struct SpringLaw {
@@ -54,7 +55,7 @@ class LawPath {
 
  private:
   using Vector = Vector3;
-  void lead(const Vector& from, const Vector& from_rate, const Vector& step, const Vector& end_rate);
+  void lead(const Vector& from, const Vector& from_rate, const Vector& step, const Vector& end_rate, double extent);
   Vector at(double s) const { return c_[0] + s * (c_[1] + s * (c_[2] + s * c_[3])); }
   Vector derivative(double s) const { return c_[1] + s * (2 * c_[2] + 3 * s * c_[3]); }
   Arguments<double> arguments(double s) const;

@@ -16,7 +16,7 @@ constexpr double kOfTolerance = 0.1;
 constexpr double kOfBend = 1.0 / 30;  // of |F'(s+) − F'(s−)|: what F differs by from a smooth function
 constexpr double kSoonAgain = 1e-8;   // of the run
 constexpr int kMostSoon = 20;         // on end
-constexpr double kInstant = 2e-15, kAside = 1e-13;  // of the run
+constexpr double kInstant = 1e-14, kAside = 1e-13;  // of the run
 
 double side_of(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
@@ -31,7 +31,8 @@ LawSwitches::LawSwitches(const LawSteps& steps, double end, double rtol, double 
     const Expression& F = *steps.law(n).of.F;
     Law law{n, {}};
     for (int k = 0; k < F.switch_count(); ++k)
-      if (F.switch_range(k, {{}, unknown, unknown}).is_unknown()) law.switches.push_back({k, F.switch_jumps(k)});
+      if (F.switch_range(k, {{}, unknown, unknown}).is_unknown())
+        law.switches.push_back({k, F.switch_jumps(k), F.switch_range(k, {{}, unknown, {}}).is_unknown()});
     if (law.switches.empty()) continue;
     values_.resize(std::max(values_.size(), index(F.switch_count())));
     laws_.push_back(std::move(law));
@@ -55,8 +56,12 @@ void LawSwitches::begin() {
   }
   if (!crossed) return;
   crossed->side = other_side;  // whatever rounding makes of it
-  crossed->soon = from - crossed->last < kSoonAgain * end_ ? crossed->soon + 1 : 0;
-  crossed->last = from;
+  note_crossing(*crossed, from);
+}
+
+void LawSwitches::note_crossing(Switch& of, double t) const {
+  of.soon = t - of.last < kSoonAgain * end_ ? of.soon + 1 : 0;
+  of.last = t;
 }
 
 double LawSwitches::reach(double to) {
@@ -69,20 +74,25 @@ double LawSwitches::reach(double to) {
   const double left = first.s * h;
   expected_ = from + left;
   within_ = kKnown * h;
-  if (left > 2 * within_) return from + left - within_;
+  const double rounding = resolution();
+  if (left > 2 * std::max(within_, rounding)) return from + left - within_;
   const double known = length(h);  // as its beginning tells, which is nearer
   if (beyond_ < to) return from;
-  if (beyond_ == kNever) return from + std::min(known, 0.9 * h);
+  if (beyond_ == kNever && h > 4 * rounding) return from + std::min(known, 0.9 * h);
   beyond_ = kNever;  // it ends so near that it may go over it
   return to;
 }
 
 void LawSwitches::accept() {
-  const double h = steps_.to() - steps_.from();
-  for (Law& law : laws_)
-    for (Switch& of : law.switches) of.side = of.next;
+  const double to = steps_.to(), h = to - steps_.from();
+  for (Law& law : laws_) {
+    for (Switch& of : law.switches) {
+      if (of.next * of.side < 0) note_crossing(of, to);
+      of.side = of.next;
+    }
+  }
   long_ = approached_.of ? std::max(long_, h) : h;
-  if (approached_.of && steps_.to() > expected_ + within_) approached_ = {};
+  if (approached_.of && to > expected_ + within_) approached_ = {};
 }
 
 double LawSwitches::length(double h) {
@@ -93,16 +103,25 @@ double LawSwitches::length(double h) {
   double before = 0;
   for (const double s : kSideLooks) {
     if (of.side * value(approached_.law, of, path, s) < 0) {
-      const double left = span * root(approached_.law, of, path, before, s);
+      const double left = span * root(approached_.law, of, path, before, s), rounding = resolution();
       const double within = long_ > 0 ? std::min(left * left / long_, 0.5 * left) : 0.5 * left;
-      const double near = std::max((of.jumps ? kNearJump : kNear) * long_, kInstant * end_);
+      const double near = std::max({(of.jumps ? kNearJump : kNear) * long_, kInstant * end_, rounding});
       if (left > near) return std::min(h, left - within);
-      beyond_ = from + left + within + kInstant * end_;
+      beyond_ = from + left + within + kInstant * end_ + rounding;
       return h;
     }
     before = s;
   }
   return std::min(h, span);
+}
+
+// s, what rounding of places leaves open of when the switch approached is crossed.
+double LawSwitches::resolution() const {
+  constexpr double kRounding = 4e-16, kMost = 1e-10;
+  if (!approached_.of->by_x) return 0;
+  const LawSteps::Law& law = steps_.law(approached_.law);
+  const double v = std::abs(law.of.arguments(law.from, steps_.from()).v), open = kRounding * law.from.extent;
+  return open < kMost * end_ * v ? open / v : kMost * end_;
 }
 
 void LawSwitches::look(Law& law, const LawPath& path, double h, Crossing& first) {

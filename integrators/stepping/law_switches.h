@@ -37,6 +37,7 @@ class LawSwitches {
   struct Switch {
     int k;
     bool jumps;
+    bool by_x;
     double side = 0, next = 0;  // its sign where the step began, and where it ends; 0: on neither side as yet
     double last = -1;           // s, when it was crossed
     int soon = 0;               // crossings each of which came soon after the one before
@@ -55,6 +56,8 @@ class LawSwitches {
   void look(Law& law, const LawPath& path, double h, Crossing& first);
   double value(std::size_t law, const Switch& of, const LawPath& path, double s);
   double root(std::size_t law, const Switch& of, const LawPath& path, double from, double to);
+  double resolution() const;
+  void note_crossing(Switch& of, double t) const;
   bool counts(std::size_t law, const Switch& of, const LawPath& path, double s, double h) const;
 
   static constexpr double kNever = std::numeric_limits<double>::infinity();

@@ -91,15 +91,20 @@ std::optional<Trap> trap_of(BesideJump& beside, const SpringLaw& law, const Stat
     there.v = v;
     return law.F->law(there).F;
   };
-  const double from = there.v, part = 1e-6 * (1 + std::abs(from));
-  const double at = from - value(from) * 2 * part / (value(from + part) - value(from - part));
+  const double from = there.v, part = 1e-6 * (1 + std::abs(from)), here = value(from);
+  const double slope = (value(from + part) - value(from - part)) / (2 * part), at = from - here / slope;
   const double reach =
       kFar * std::max(std::abs(force(from - part)), std::abs(force(from + part))) / law.inertia * instant;
   if (!(std::abs(at - from) <= reach)) return {};
+  // The place of the jump moves by what x and t do to it: v = c t, x + c v.
+  const Arguments<double> now = there;
+  there.t += part, there.x += from * part;
+  const double moves = -(value(from) - here) / part / slope;
+  there = now;
   const Eigen::VectorXd direction = beside.direction();
   if (direction.size() == 0) return {};
   const double aside = kAside * reach;
-  const auto change = [&](double v) { return beside.change(state.v + (v - from) * direction); };
+  const auto change = [&](double v) { return beside.change(state.v + (v - from) * direction) - moves; };
   if (!(change(at - aside) > 0) || !(change(at + aside) < 0)) return {};
   return Trap{std::abs(at) < aside ? 0 : at, force(at - aside), force(at + aside)};
 }
