@@ -109,7 +109,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
     if (crosses) {  // what error control has learnt is of the motion before
       controller = StepController(rule);
       creeping = Creeping(end);
-      course.begin_laws(method.state());
+      course.begin_anew(method.state());
       h = method.first_step(end, 0);
     }
     if (leave()) return {};

@@ -71,6 +71,10 @@ class Course {
   void begin_laws(const State& from) {
     laws.begin(run_.problem, from);
     law_switches.begin();
+  }
+  // The method stands beyond a switch.
+  void begin_anew(const State& from) {
+    begin_laws(from);
     progress_.begins_anew();
   }
   // How far a step to `to`, where the problem stands, may go for what laws of springs do on its way.

@@ -135,6 +135,7 @@ void LawSwitches::look(Law& law, const LawPath& path, double h, Crossing& first)
       if (side == 0) continue;
       if (side * of.next < 0 && before < first.s) {
         const double at = root(law.law, of, path, before, s);
+        F.switches(path.moving(s), values_);  // again those here
         if (at < first.s && (&of == approached_.of || counts(law.law, of, path, at, h))) first = {&of, law.law, at};
       }
       of.next = side;
@@ -148,7 +149,7 @@ double LawSwitches::value(std::size_t law, const Switch& of, const LawPath& path
   return values_[index(of.k)];
 }
 
-// Where the sign is no longer that of `side`, by bisection.
+// Where the sign becomes what it is at `to`, by bisection.
 double LawSwitches::root(std::size_t law, const Switch& of, const LawPath& path, double from, double to) {
   constexpr int kHalvings = 40;
   const double beyond = side_of(value(law, of, path, to));

@@ -29,7 +29,7 @@ class Progress {
     next_ *= 2;
     return true;
   }
-  void begins_anew() { in_a_row_ = 0; }  // steps are short for another reason: a switch of a law was stepped onto
+  void begins_anew() { in_a_row_ = 0; }  // beyond a switch, towards which steps are short
   bool never_ends() const { return in_a_row_ >= kTold; }
   double limit() const { return limit_; }  // of time, s, which steps that never end do not come beyond
   bool takes_long() const { return steps_ >= kMany && left_ > kLong; }
