@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kSideLooks[] = {0.25, 0.5, 0.75, 1};  // of a step
 constexpr double kKnown = 3e-3;                        // of a step, how well it tells when
-constexpr double kNear = 1e-4, kNearJump = 1e-5;       // of a step: accelerations change by as much and no more
+constexpr double kNearKink = 1e-4, kNearJump = 1e-5;   // of a step: accelerations change by as much and no more
 constexpr double kOfTolerance = 0.1;
 constexpr double kOfBend = 1.0 / 30;  // of |F'(s+) − F'(s−)|: what F differs by from a smooth function
 constexpr double kSoonAgain = 1e-8;   // of the run
 constexpr int kMostSoon = 20;         // on end
-constexpr double kInstant = 1e-14, kAside = 1e-13;  // of the run
+constexpr double kMoment = 1e-14, kOffJump = 1e-13;  // of the run
 
 double side_of(double x) {
   return x > 0 ? 1 : x < 0 ? -1 : 0;
@@ -51,7 +51,7 @@ void LawSwitches::begin() {
     const LawPath path = steps_.ahead(law.law, from + end_);
     for (Switch& of : law.switches) {
       of.side = side_of(value(law.law, of, path, 0));
-      if (of.side == 0 && of.jumps && !led) beyond_ = from + kAside * end_;
+      if (of.side == 0 && of.jumps && !led) beyond_ = from + kOffJump * end_;
     }
   }
   if (!crossed) return;
@@ -105,9 +105,9 @@ double LawSwitches::length(double h) {
     if (of.side * value(approached_.law, of, path, s) < 0) {
       const double left = span * root(approached_.law, of, path, before, s), rounding = resolution();
       const double within = long_ > 0 ? std::min(left * left / long_, 0.5 * left) : 0.5 * left;
-      const double near = std::max({(of.jumps ? kNearJump : kNear) * long_, kInstant * end_, rounding});
+      const double near = std::max({(of.jumps ? kNearJump : kNearKink) * long_, kMoment * end_, rounding});
       if (left > near) return std::min(h, left - within);
-      beyond_ = from + left + within + kInstant * end_ + rounding;
+      beyond_ = from + left + within + kMoment * end_ + rounding;
       return h;
     }
     before = s;
@@ -117,10 +117,10 @@ double LawSwitches::length(double h) {
 
 // s, what rounding of places leaves open of when the switch approached is crossed.
 double LawSwitches::resolution() const {
-  constexpr double kRounding = 4e-16, kMost = 1e-10;
+  constexpr double kRoundedExtent = 4e-16, kMost = 1e-10;
   if (!approached_.of->by_x) return 0;
   const LawSteps::Law& law = steps_.law(approached_.law);
-  const double v = std::abs(law.of.arguments(law.from, steps_.from()).v), open = kRounding * law.from.extent;
+  const double v = std::abs(law.of.arguments(law.from, steps_.from()).v), open = kRoundedExtent * law.from.extent;
   return open < kMost * end_ * v ? open / v : kMost * end_;
 }
 
@@ -151,9 +151,9 @@ double LawSwitches::value(std::size_t law, const Switch& of, const LawPath& path
 
 // Where the sign becomes what it is at `to`, by bisection.
 double LawSwitches::root(std::size_t law, const Switch& of, const LawPath& path, double from, double to) {
-  constexpr int kHalvings = 40;
+  constexpr int kBisections = 40;
   const double beyond = side_of(value(law, of, path, to));
-  for (int n = 0; n < kHalvings; ++n) {
+  for (int n = 0; n < kBisections; ++n) {
     const double middle = from + 0.5 * (to - from);
     (value(law, of, path, middle) * beyond > 0 ? to : from) = middle;
   }
