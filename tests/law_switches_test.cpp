@@ -96,6 +96,14 @@ TEST_P(LawSwitchesTest, CostNoDigitsAndFewRejections) {
   }
 }
 
+TEST_P(LawSwitchesTest, OfAJumpAtTheStartAreNotSearchedFor) {
+  for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+    const Recorded r = run(pulled(1, {"25*x + 0.5*sign(v)"}), settings(rtol, 0.5, 0.5));
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    EXPECT_LT(r.outcome.statistics.rejected_steps, 4) << rtol;
+  }
+}
+
 // Springs that switch at the same instant are one spring of as much force.
 TEST_P(LawSwitchesTest, MayCoincide) {
   const auto one = run(pulled(0.02, {"2e4*min(0, x) + 2"}), settings(1e-9, 1, 0.05)).samples;
