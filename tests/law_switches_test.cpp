@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/controlled_ways.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -13,27 +14,15 @@ namespace {
 
 using std::numbers::pi;
 
-struct SwitchedMethod {
-  std::string integrator, formulation;
-};
 // ida has its own error control, and finds kinks by that.
-std::vector<SwitchedMethod> switched_methods() {
-  std::vector<SwitchedMethod> all;
-  for (const IntegratorEntry& entry : integrators())
-    for (const FormulationEntry& formulation : formulations())
-      if (entry.controls_error && entry.name != "ida" && !refusal_of(entry, formulation.name))
-        all.push_back({std::string(entry.name), std::string(formulation.name)});
+std::vector<ControlledWay> ways_but_ida() {
+  std::vector<ControlledWay> all = controlled_ways();
+  std::erase_if(all, [](const ControlledWay& way) { return way.integrator == "ida"; });
   return all;
 }
 
-class LawSwitchesTest : public ::testing::TestWithParam<SwitchedMethod> {
- protected:
-  Settings settings(double rtol, double end, double every) const {
-    return controlled(GetParam().integrator, GetParam().formulation, rtol, end, every);
-  }
-};
-INSTANTIATE_TEST_SUITE_P(All, LawSwitchesTest, ::testing::ValuesIn(switched_methods()),
-                         [](const auto& test) { return test.param.integrator + "_" + test.param.formulation; });
+class LawSwitchesTest : public ControlledWays {};
+INSTANTIATE_TEST_SUITE_P(All, LawSwitchesTest, ::testing::ValuesIn(ways_but_ida()), name_of_way);
 
 // A body of 1 kg at x, pulled back by the force of a law; its spring is 3 m long where x is 0.
 Scene pulled(double x, std::initializer_list<const char*> laws) {
@@ -102,6 +91,14 @@ TEST_P(LawSwitchesTest, OfAJumpAtTheStartAreNotSearchedFor) {
     ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
     EXPECT_LT(r.outcome.statistics.rejected_steps, 4) << rtol;
   }
+}
+
+// A relay with a damper goes to and fro ever faster.
+TEST_P(LawSwitchesTest, ComeEverFaster) {
+  const Scene scene = pulled(0.5, {"sign(x) + 2*v"});
+  static const auto exact = motion(scene, controlled("dop853", "rA", 1e-12, 10, 10));
+  const auto found = motion(scene, settings(1e-8, 10, 10));
+  EXPECT_NEAR(found.back().bodies[0].rd.x(), exact.back().bodies[0].rd.x(), 5e-6);
 }
 
 // Springs that switch at the same instant are one spring of as much force.

@@ -5,24 +5,13 @@
 
 #include <cmath>
 
+#include "tests/support/controlled_ways.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
 namespace {
 
 using ::testing::IsEmpty;
-
-struct LawMethod {
-  std::string integrator, formulation;
-};
-std::vector<LawMethod> law_methods() {
-  std::vector<LawMethod> all;
-  for (const IntegratorEntry& entry : integrators())
-    for (const FormulationEntry& formulation : formulations())
-      if (entry.controls_error && !refusal_of(entry, formulation.name))
-        all.push_back({std::string(entry.name), std::string(formulation.name)});
-  return all;
-}
 
 Scene flying(const Vector3& velocity, const char* law, double length) {
   Scene scene;
@@ -49,17 +38,16 @@ Scene balls(const Vector3& gravity) {
   return scene;
 }
 
-class PassedLawsTest : public ::testing::TestWithParam<LawMethod> {
+class PassedLawsTest : public ControlledWays {
  protected:
   Recorded moved(const Scene& scene, double end) const {
-    const Recorded r = run(scene, controlled(GetParam().integrator, GetParam().formulation, 1e-8, end, end));
+    const Recorded r = run(scene, settings(1e-8, end, end));
     EXPECT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
     EXPECT_THAT(r.outcome.notices, IsEmpty());
     return r;
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, PassedLawsTest, ::testing::ValuesIn(law_methods()),
-                         [](const auto& test) { return test.param.integrator + "_" + test.param.formulation; });
+INSTANTIATE_TEST_SUITE_P(All, PassedLawsTest, ::testing::ValuesIn(controlled_ways()), name_of_way);
 
 // Balls of equal mass that meet in line exchange their velocities, at rest in space as well as in free fall.
 TEST_P(PassedLawsTest, BallsThatMeetExchangeTheirVelocities) {

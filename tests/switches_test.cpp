@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "integrators/stepping/switch_times.h"
+#include "tests/support/controlled_ways.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -86,26 +87,8 @@ TEST(SwitchTimes, TellOfASignThatRoundingDecides) {
   }
 }
 
-struct SwitchMethod {
-  std::string integrator, formulation;
-};
-std::vector<SwitchMethod> switch_methods() {
-  std::vector<SwitchMethod> all;
-  for (const IntegratorEntry& entry : integrators())
-    for (const FormulationEntry& formulation : formulations())
-      if (entry.controls_error && !refusal_of(entry, formulation.name))
-        all.push_back({std::string(entry.name), std::string(formulation.name)});
-  return all;
-}
-
-class Switches : public ::testing::TestWithParam<SwitchMethod> {
- protected:
-  Settings settings(double rtol, double end, double every) const {
-    return controlled(GetParam().integrator, GetParam().formulation, rtol, end, every);
-  }
-};
-INSTANTIATE_TEST_SUITE_P(All, Switches, ::testing::ValuesIn(switch_methods()),
-                         [](const auto& test) { return test.param.integrator + "_" + test.param.formulation; });
+class Switches : public ControlledWays {};
+INSTANTIATE_TEST_SUITE_P(All, Switches, ::testing::ValuesIn(controlled_ways()), name_of_way);
 
 // The velocity after an impulse is its integral, however short it is.
 TEST_P(Switches, ImpulsesAreNotSteppedOver) {
