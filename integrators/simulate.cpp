@@ -171,8 +171,9 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
     const double instant = chooses_steps(settings) ? instant_of(settings.end) : settings.step;
     std::string why = sticking_law(*problem, settings.linear(), state, instant);
+    if (why.empty()) why = resting_law(*problem, settings.linear(), state, instant);
     if (why.empty()) why = vanished_gradient(*problem, state);
-    if (!why.empty()) outcome.status.withdraw_remedy();  // nothing helps but to change what these two say
+    if (!why.empty()) outcome.status.withdraw_remedy();  // nothing helps but to change what these say
     if (why.empty()) {
       const NearSingular near =
           near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));

@@ -22,6 +22,22 @@ Scene point_on_rod() {
   return scene;
 }
 
+// Turns to and fro about a fixed axis, its centre at rest.
+Scene sprung_wheel() {
+  Scene scene;
+  Body wheel;
+  wheel.name = "wheel", wheel.mass = 1, wheel.inertia = Vector3(1, 2, 3).asDiagonal();
+  wheel.angular_velocity = {0, 0, 0.5};
+  scene.bodies.push_back(wheel);
+  Joint hinge;
+  hinge.type = JointType::revolute, hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
+  scene.joints.push_back(hinge);
+  TorsionSpring spring;
+  spring.i = kGround, spring.j = 0, spring.axis = {0, 0, 1}, spring.stiffness = 30;
+  scene.forces.push_back(spring);
+  return scene;
+}
+
 Settings implicit_euler(std::string_view formulation, double step, double end) {
   Settings s;
   s.integrator = "implicit_euler", s.formulation = formulation, s.step = step, s.end = end, s.tolerance = 1e-8;
@@ -56,9 +72,10 @@ Lost lost(const Scene& scene, const Settings& settings) {
 
 TEST(NumericalDamping, is_told_as_it_is) {
   int told = 0, silent = 0;
-  for (const char* model : {"", "double_four_bar", "double_pendulum", "gimbal_pendulum", "simple_pendulum",
+  for (const char* model : {"", "wheel", "double_four_bar", "double_pendulum", "gimbal_pendulum", "simple_pendulum",
                             "single_pendulum_free", "steel_pendulum", "stiff_pendulum"}) {
-    const Scene scene = *model ? scene_of(model) : point_on_rod();
+    const std::string_view name = model;
+    const Scene scene = name.empty() ? point_on_rod() : name == "wheel" ? sprung_wheel() : scene_of(model);
     for (const char* formulation : {"rA", "rp", "reps"})
       for (const double step : {1e-3, 1e-2, 2e-2}) {
         SCOPED_TRACE(fmt::format("{} {} {}", model, formulation, step));

@@ -41,6 +41,20 @@ Status FixedSteps::examine_end(bool& settled) {
   return jump > kLeft ? check_branch(last_seen()) : Status{};
 }
 
+void FixedSteps::look_for_jumps() {
+  constexpr int kApart = 8;  // steps
+  if (jump_told_ || run_.statistics.steps % kApart != 0) return;
+  sides_.swap(sides_before_);
+  jumps_.look(last_seen(), x_, sides_);
+  const SpringLaw* const law = jumps_.crossed(sides_before_, sides_);
+  if (!law) return;
+  jump_told_ = true;
+  run_.tell(fmt::format(
+      "shortly before t = {:.6g} s the force of {} jumps: steps of fixed length go over it, which costs {} its order "
+      "there; an integrator with error control steps onto it",
+      x_.t, law->called(problem_.model()), settings_.integrator));
+}
+
 Status FixedSteps::measure_rotation(Problem& problem, double t) {
   constexpr double kSudden = 10;
   const double before = std::exchange(rotation_, h_ * problem.fastest_turn());

@@ -1,6 +1,7 @@
 // A step that fails, done again from where it began. What is tried, until one of it leads on:
 //   other rows      once for where a step begins: what is kept may depend on one another where the step leads to
 //   parts           the two halves, each a step of its own that may fail in turn, down to h/2^10
+//   over a jump     the last of them, where a law of a spring jumps in it, by accelerations as they are (law_jumps.h)
 //   as it is        the step whose branch was in doubt, where parts did no better: it stands, and the doubt is told
 //   the beginning   is made the limit of states beside it, where it is a singular position; then all of this once more
 #include <algorithm>
@@ -37,15 +38,14 @@ bool jumps(std::span<const BodyState> before, std::span<const BodyState> after) 
 }  // namespace
 
 Status FixedSteps::advance(double t, bool sampled) {
-  const int halvings = divides_ ? kHalvings : 0;
   const double began = x_.t;
-  const Status status = reach_or_redo(t, sampled, halvings);
+  const Status status = reach_or_redo(t, sampled, kHalvings);
   if (!may_be_too_long(status.failure) || x_.t > began || !settles_beginning()) return status;
-  return reach_or_redo(t, sampled, halvings);
+  return reach_or_redo(t, sampled, kHalvings);
 }
 
 Status FixedSteps::reach_or_redo(double t, bool sampled, int halvings) {
-  if (halvings > 0 || chooses_) z_began_ = x_.z;
+  if (divides_ || chooses_ || !jumps_.none()) z_began_ = x_.z;
   const double began = x_.t;
   const auto failed = [&](const Status& status) { return may_be_too_long(status.failure) && x_.t == began; };
   on_branch_ = OnBranch::asked;
@@ -59,7 +59,9 @@ Status FixedSteps::reach_or_redo(double t, bool sampled, int halvings) {
     }
     if (others || status.message.empty()) status = reach(t, sampled);
   }
-  if (!failed(status) || halvings == 0) return status;
+  if (!failed(status)) return status;
+  if (!divides_ && halvings == kHalvings && !goes_over_jump(status, t)) return status;
+  if (halvings == 0) return reach_over_jump(t, sampled, std::move(status));
   const double half = began + 0.5 * (t - began);
   if (!(began < half && half < t) || !take_back().ok()) return status;
   return halvings == kHalvings ? redo_whole(t, half, sampled, std::move(status))
@@ -71,8 +73,11 @@ Status FixedSteps::redo_whole(double t, double half, bool sampled, Status as_one
   const bool doubted = on_branch_ == OnBranch::doubted;
   const Beginning beginning{x_, start_, rows_asked_, shortest_, run_.statistics.steps};
   const std::vector<BodyState> before = bodies();
+  const LawJumps::Sides sides = sides_of_jumps();
+  over_jumps_ = false;
   Status status = reach_in_halves(t, half, sampled, kHalvings);
-  if (status.ok() && jumps(before, bodies())) {
+  const auto forced = [&] { return over_jumps_ || jumps_.crossed(sides, sides_of_jumps()); };
+  if (status.ok() && jumps(before, bodies()) && !forced()) {
     begin_from(beginning);
     status = std::move(as_one);
   }
@@ -83,6 +88,33 @@ Status FixedSteps::redo_whole(double t, double half, bool sampled, Status as_one
   if (!take_back().ok()) return status;
   on_branch_ = OnBranch::granted;
   return reach(t, sampled);
+}
+
+// Where an implicit step to t has no solution, because the force of either side of a jump leads to the other.
+bool FixedSteps::goes_over_jump(const Status& failed, double t) {
+  if (!settings_.retry || jumps_.none() || !integrates() || failed.failure != Failure::not_converged) return false;
+  return take_back().ok() && comes_to_jump(jumps_, last_seen(), settings_.linear(), x_, t);
+}
+
+Status FixedSteps::reach_over_jump(double t, bool sampled, Status failed) {
+  if (!goes_over_jump(failed, t)) return failed;
+  led_ = x_;
+  Status status = lead_on(last_seen(), settings_.linear(), *led_, t);
+  status = status.ok() ? reach(t, sampled) : std::move(failed);
+  led_.reset();
+  return status;
+}
+
+void FixedSteps::go_to(const State& led) {
+  over_jumps_ = true;
+  x_ = led;
+  place(last_seen());
+}
+
+LawJumps::Sides FixedSteps::sides_of_jumps() {
+  LawJumps::Sides sides = jumps_.sides();
+  jumps_.look(stand(), x_, sides);
+  return sides;
 }
 
 void FixedSteps::begin_from(const Beginning& beginning) {

@@ -34,6 +34,9 @@ FixedSteps::FixedSteps(const Run& run)
       damping_(run),
       singular_ends_(run.settings),
       passed_(run.problem.model(), run.settings.end, run.tell),
+      jumps_(run.problem.model()),
+      sides_(jumps_.sides()),
+      sides_before_(sides_),
       output_(run.settings) {}
 
 Status FixedSteps::march() {
@@ -43,6 +46,7 @@ Status FixedSteps::march() {
   settles_ = settings_.retry && integrates();
   branch_.begin(problem_, x_.a());
   if (integrates() && passed_.due(h_)) passed_.look(problem_, x_, h_);
+  jumps_.look(problem_, x_, sides_);
   if (run_.singular_for > 0) start_ = Start::limit;
   divides_ = settings_.retry && divides();
   repeats_ = divides_ && !remembers();
@@ -59,7 +63,7 @@ Status FixedSteps::march() {
     const std::int64_t before = run_.statistics.steps;
     status = advance(grid_.time(n), sampled);
     if (run_.statistics.steps > before + 1) ++run_.statistics.divided_steps;
-    if (status.ok() && damps()) damping_.look(last_seen(), x_.v);
+    if (status.ok() && damps()) damping_.look(last_seen(), x_);
     if (n % kStillSteps == 0 && status.ok() && integrates()) still_.look(problem_, x_);
     if (status.ok() && integrates() && rests_.due()) status = rests_.look(problem_, settings_.linear(), x_);
     if (status.ok() && sampled) status = give_out(*standing_);
@@ -83,7 +87,11 @@ Status FixedSteps::reach(double t, bool sampled) {
   q_n_.swap(x_.q);
   v_n_.swap(x_.v);
   x_.multipliers_open = false;
-  Status status = step(t);
+  Status status;
+  if (led_)
+    go_to(*led_);
+  else
+    status = step(t);
   x_.t = t;
   bool settled = false;
   if (status.ok()) status = examine_end(settled);
@@ -95,7 +103,8 @@ Status FixedSteps::reach(double t, bool sampled) {
   }
   branch_.follow();
   if (integrates() && passed_.due(h_)) passed_.look(last_seen(), x_, h_);
-  start_ = settled ? Start::limit : Start::usual;
+  if (integrates() && !jumps_.none()) look_for_jumps();
+  start_ = settled ? Start::limit : led_ ? Start::rewritten : Start::usual;
   rows_asked_ = false;
   ++run_.statistics.steps;
   const bool due = discrete_ || (has_alternates_ && last_seen().exchanges_rows());

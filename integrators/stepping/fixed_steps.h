@@ -9,10 +9,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "integrators/stepping/branch.h"
 #include "integrators/stepping/index1_output.h"
+#include "integrators/stepping/law_jumps.h"
 #include "integrators/stepping/numerical_damping.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/passed_in_steps.h"
@@ -127,6 +129,10 @@ class FixedSteps {
   Status reach_in_halves(double t, double half, bool sampled, int halvings);
   void begin_from(const Beginning& beginning);
   Status take_back();
+  bool goes_over_jump(const Status& failed, double t);
+  Status reach_over_jump(double t, bool sampled, Status failed);
+  LawJumps::Sides sides_of_jumps();
+  void go_to(const State& led);
   bool choose_rows();
   void rewrite();
   bool settles_beginning();
@@ -138,6 +144,7 @@ class FixedSteps {
   Status examine_end(bool& settled);
   Status settle_end(bool& settled);
   bool settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at);
+  void look_for_jumps();
   Status measure_rotation(Problem& problem, double t);
   // Whether the step ends on the branch that its velocities lead to.
   Status check_branch(Problem& problem);
@@ -159,6 +166,11 @@ class FixedSteps {
   NumericalDamping damping_;
   SingularEnds singular_ends_;
   PassedInSteps passed_;
+  LawJumps jumps_;
+  LawJumps::Sides sides_, sides_before_;  // of jumps, at the last look and the one before
+  bool over_jumps_ = false;               // the step under way was led over some
+  bool jump_told_ = false;
+  std::optional<State> led_;    // where the step under way leads, by accelerations as they are
   std::optional<State> given_;  // a sample in a singular position
   OpenMultipliers open_multipliers_;
   bool settles_ = false;  // ends in singular positions are

@@ -1,5 +1,7 @@
 #include "integrators/stepping/law_path.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -124,6 +126,11 @@ double SpringLaw::change(const LawPlace& place) const {
   if (torsion >= 0) return place.second.x();
   const double length = place.d.norm(), v = place.d.dot(place.rate) / length;
   return (place.d.dot(place.second) + place.rate.squaredNorm() - v * v) / length;
+}
+
+std::string SpringLaw::called(const Model& model) const {
+  return torsion >= 0 ? fmt::format("torsion spring '{}'", model.torsions[index(torsion)].spring.name)
+                      : fmt::format("spring '{}'", model.springs[index(spring)].name);
 }
 
 LawPath::LawPath(const SpringLaw& of, const LawPlace& from, double t_from, double t_to)

@@ -11,20 +11,31 @@
 namespace poinsot {
 
 NumericalDamping::NumericalDamping(const Run& run)
-    : moves_(run.problem.nv() > run.problem.nc()), then_(run.state.v), momentum_(run.problem.nv()) {}
+    : moves_(run.problem.nv() > run.problem.nc()), momentum_(run.problem.nv()) {
+  if (!moves_) return;
+  bodies_.resize(index(run.problem.bodies()));
+  run.problem.to_bodies(run.state.a(), bodies_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) then_.push_back(motion(run.problem.model().bodies[b], bodies_[b]));
+}
 
-void NumericalDamping::add(const Problem& problem, const Eigen::VectorXd& v) {
+NumericalDamping::Motion NumericalDamping::motion(const Body& body, const BodyState& at) {
+  return {at.rd, at.A * (body.inertia * at.w), at.A * at.w};
+}
+
+void NumericalDamping::add(const Problem& problem, const State& x) {
   since_ = 0;
   if (!moves_) return;
   steps_ += kApart;
-  const Eigen::Index per_body = v.size() / problem.bodies();
-  for (Eigen::Index b = 0; b < problem.bodies(); ++b) {
-    const double square = (v - then_).segment<3>(b * per_body).squaredNorm();
-    taken_ += problem.model().bodies[index(b)].mass * square / kApart;
+  problem.to_bodies(x.a(), bodies_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Body& body = problem.model().bodies[b];
+    const Motion now = motion(body, bodies_[b]), &then = then_[b];
+    const double turning = std::max(0.0, (now.L - then.L).dot(now.w - then.w));
+    taken_ += (body.mass * (now.rd - then.rd).squaredNorm() + turning) / kApart;
+    then_[b] = now;
   }
-  problem.momentum(span(v), span(momentum_));
-  most_kinetic_ = std::max(most_kinetic_, 0.5 * v.dot(momentum_));
-  then_ = v;
+  problem.momentum(span(x.v), span(momentum_));
+  most_kinetic_ = std::max(most_kinetic_, 0.5 * x.v.dot(momentum_));
 }
 
 void NumericalDamping::say(const Run& run, double h) const {

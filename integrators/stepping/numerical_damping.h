@@ -4,16 +4,20 @@
 // h v, less ½ Δvᵀ M Δv with Δv = v − v_n. The end's forces on that way are more than the motion's by as much again
 // where they are those of constraints or of springs: on a circle, and in the mean of a vibration. So a step takes about
 //
-//   Σ m |Δṙ|²
+//   Σ m |Δṙ|² + ΔL · Δω
 //
-// of energy from the motion of the centres of mass: of a point that turns by φ in a step the part φ of its speed for
-// each radian. It goes with the step's length; constant forces leave less. Mechanisms without degrees of freedom keep
-// their motion whatever is lost. What rotation loses differs between the formulations (Rotations).
+// of energy from the motion, L being a body's angular momentum about its centre of mass and ω its rate, both in space:
+// of a point that turns by φ in a step the part φ of its speed for each radian. It goes with the step's length;
+// constant forces leave less. Mechanisms without degrees of freedom keep their motion whatever is lost. What rotation
+// loses that no moment changes differs between the formulations (Rotations), and is not in it.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
+#include "core/body_state.h"
+#include "core/scene.h"
 #include "integrators/integrator.h"
 
 namespace poinsot {
@@ -22,9 +26,9 @@ class NumericalDamping {
  public:
   explicit NumericalDamping(const Run& run);  // at its start; steps allocate nothing
 
-  // After each step, which ended with v; the problem stands there.
-  void look(const Problem& problem, const Eigen::VectorXd& v) {
-    if (++since_ == kApart) add(problem, v);
+  // After each step, which ended at x; the problem stands there.
+  void look(const Problem& problem, const State& x) {
+    if (++since_ == kApart) add(problem, x);
   }
   // At the end of a run in steps of length h.
   void say(const Run& run, double h) const;
@@ -32,11 +36,16 @@ class NumericalDamping {
  private:
   static constexpr int kApart = 4;  // steps from one look to the next; each has its part in how v changed
 
-  void add(const Problem& problem, const Eigen::VectorXd& v);
+  struct Motion {
+    Vector3 rd, L, w;  // in space
+  };
+  static Motion motion(const Body& body, const BodyState& at);
+  void add(const Problem& problem, const State& x);
 
-  const bool moves_;      // freely, if only in part
-  int since_ = 0;         // steps since the last look
-  Eigen::VectorXd then_;  // v of that look, whose ṙ are the same in all coordinates
+  const bool moves_;          // freely, if only in part
+  int since_ = 0;             // steps since the last look
+  std::vector<Motion> then_;  // at that look, of each body
+  std::vector<BodyState> bodies_;
   std::int64_t steps_ = 0;
   double taken_ = 0, most_kinetic_ = 0;  // J
   Eigen::VectorXd momentum_;

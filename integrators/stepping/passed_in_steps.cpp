@@ -36,15 +36,6 @@ bool keeps_its_sign(Bounds slope) {
          (slope.least >= -kRoundingOfForces * slope.most || slope.most <= -kRoundingOfForces * slope.least);
 }
 
-// How to call it, and in which unit its force is.
-std::string name_of_law(const Model& model, const SpringLaw& of) {
-  return of.torsion >= 0 ? fmt::format("torsion spring '{}'", model.torsions[index(of.torsion)].spring.name)
-                         : fmt::format("spring '{}'", model.springs[index(of.spring)].name);
-}
-const char* unit_of_law(const SpringLaw& of) {
-  return of.torsion >= 0 ? "N m" : "N";
-}
-
 // Of the part of a step that begins at s and in which F differs from that at its ends by half as much as at s, or more.
 double length_of_part(const LawPath& path, double s) {
   constexpr double kGrowth = 1.5, kFirst = 1e-5, kAsMuch = 0.5;
@@ -162,7 +153,7 @@ void PassedInSteps::tell_passed(const Law& law, const LawPath& path, double s, d
   tell_(fmt::format(
       "at t = {:.6g} s {} comes to {:.3g} {} within less than a step of {:g} s, which goes over that, "
       "whatever it does to the motion; take a step of at most {:.1g} s, or an integrator with error control",
-      t - h + s * h, name_of_law(model_, law.of), largest, unit_of_law(law.of), h, 0.9 * offered));
+      t - h + s * h, law.of.called(model_), largest, law.of.unit(), h, 0.9 * offered));
 }
 
 }  // namespace poinsot

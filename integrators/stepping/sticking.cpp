@@ -4,179 +4,173 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/index.h"
-#include "integrators/stepping/consistent.h"
-#include "integrators/stepping/vectors.h"
+#include "integrators/stepping/beside_jump.h"
 
 namespace poinsot {
 namespace {
 
 constexpr Eigen::Index kMostVelocities = 3000;  // a law's rate is differentiated by each velocity
 
-// The motion at a state and beside it, as far as it concerns one law.
-class BesideJump {
+// A law by one of its arguments, and the k-th of its switches, which jumps.
+class Along {
  public:
-  BesideJump(const Problem& problem, const LinearChoice& choice, const State& state, const SpringLaw& law)
-      : own_(problem.clone()),
-        consistent_(*own_, choice),
-        state_(state),
-        law_(law),
-        z_(state.z),
-        bodies_(index(problem.bodies())) {
-    own_->set_position(state.t, span(state.q));
+  Along(const SpringLaw& law, int k, const Arguments<double>& at, double Arguments<double>::*by)
+      : law_(law), k_(k), there_(at), by_(by), values_(index(law.F->switch_count())) {
+    from = at.*by;
+    part = kPart * (1 + std::abs(from));
+    here = value(from);
+    slope = (value(from + part) - value(from - part)) / (2 * part);
+    to = from - here / slope;
   }
+  double from, part, here, slope;
+  double to;  // where it jumps; not finite where it does not by this argument
 
-  // The law's arguments where velocities are v.
-  Arguments<double> arguments(const Eigen::VectorXd& v) {
-    own_->set_velocity(span(v));
-    own_->to_bodies(span(z_).first(index(v.size())), bodies_);
-    return law_.arguments(place(), state_.t);
+  double value(double u) {
+    there_.*by_ = u;
+    law_.F->switches(there_, values_);
+    return values_[index(k_)];
   }
-  // How fast the law's v changes there.
-  double change(const Eigen::VectorXd& v) {
-    own_->set_velocity(span(v));
-    if (!consistent_.accelerations(state_.t, span(z_)).ok()) return NAN;
-    own_->to_bodies(span(z_).first(index(v.size())), bodies_);
-    return law_.change(place());
+  double force(double u) {
+    there_.*by_ = u;
+    return law_.F->law(there_).F;
   }
-  // The direction in which the law's v moves velocities, by so much that v changes by 1; empty where nothing does.
-  Eigen::VectorXd direction() {
-    const Eigen::Index nv = state_.v.size();
-    Eigen::VectorXd v = state_.v, gradient = Eigen::VectorXd::Zero(state_.z.size());
-    const double here = arguments(v).v;
-    for (Eigen::Index k = 0; k < nv; ++k) {
-      v[k] += 1;
-      gradient[k] = arguments(v).v - here;
-      v[k] = state_.v[k];
-    }
-    Eigen::VectorXd u = gradient;
-    own_->set_velocity(span(v));
-    if (!consistent_.factor(state_.t).ok() || !consistent_.solve(state_.t, span(u)).ok()) return {};
-    const double moved = gradient.head(nv).dot(u.head(nv));
-    if (!(moved > 0)) return {};
-    return u.head(nv) / moved;
+  double largest_force() { return std::max(std::abs(force(to - part)), std::abs(force(to + part))); }
+  // How fast the place of the jump goes, where what it depends on besides goes on by so much a second.
+  double rate(const Arguments<double>& rates) {
+    const Arguments<double> now = there_;
+    there_.t += part * rates.t, there_.x += part * rates.x, there_.v += part * rates.v;
+    const double moved = -(value(from) - here) / part / slope;
+    there_ = now;
+    return moved;
   }
 
  private:
-  LawPlace place() const { return law_.place(own_->model(), *own_, bodies_); }
+  static constexpr double kPart = 1e-6;
 
-  std::unique_ptr<Problem> own_;
-  Consistent consistent_;
-  const State& state_;
   const SpringLaw& law_;
-  Eigen::VectorXd z_;
-  std::vector<BodyState> bodies_;
+  const int k_;
+  Arguments<double> there_;
+  double Arguments<double>::*by_;
+  std::vector<double> values_;
 };
 
-// F on either side of a jump that the motion cannot leave.
+// F on either side of a jump.
 struct Trap {
-  double v, before, after;
+  double at, before, after;
 };
-std::optional<Trap> trap_of(BesideJump& beside, const SpringLaw& law, const State& state, int k, double instant) {
-  constexpr double kAside = 1e-3;  // of how far away it may be
-  constexpr double kFar = 4;       // an inertia is smaller about some axes, and other forces act besides
-  std::vector<double> switches(index(law.F->switch_count()));
-  Arguments<double> there = beside.arguments(state.v);
-  const auto value = [&](double v) {
-    there.v = v;
-    law.F->switches(there, switches);
-    return switches[index(k)];
-  };
-  const auto force = [&](double v) {
-    there.v = v;
-    return law.F->law(there).F;
-  };
-  const double from = there.v, part = 1e-6 * (1 + std::abs(from)), here = value(from);
-  const double slope = (value(from + part) - value(from - part)) / (2 * part), at = from - here / slope;
-  const double reach =
-      kFar * std::max(std::abs(force(from - part)), std::abs(force(from + part))) / law.inertia * instant;
-  if (!(std::abs(at - from) <= reach)) return {};
-  // The place of the jump moves by what x and t do to it: v = c t, x + c v.
-  const Arguments<double> now = there;
-  there.t += part, there.x += from * part;
-  const double moves = -(value(from) - here) / part / slope;
-  there = now;
-  const Eigen::VectorXd direction = beside.direction();
-  if (direction.size() == 0) return {};
-  const double aside = kAside * reach;
-  const auto change = [&](double v) { return beside.change(state.v + (v - from) * direction) - moves; };
-  if (!(change(at - aside) > 0) || !(change(at + aside) < 0)) return {};
-  return Trap{std::abs(at) < aside ? 0 : at, force(at - aside), force(at + aside)};
+bool leads_back(double before, double after) {
+  constexpr double kLeast = 1e-6;  // of the accelerations on both sides
+  const double least = kLeast * (std::abs(before) + std::abs(after));
+  return before > least && after < -least;
+}
+constexpr double kBesideJump = 1e-3;  // of how far away it may be
+constexpr double kReaches = 4;        // an inertia is smaller about some axes, and other forces act besides
+
+// Of a jump by v, that the motion cannot leave.
+std::optional<Trap> trap_of(BesideJump& beside, const SpringLaw& law, int k, double instant) {
+  Along along(law, k, beside.here(), &Arguments<double>::v);
+  const double reach = kReaches * along.largest_force() / law.inertia * instant, aside = kBesideJump * reach;
+  if (!(std::abs(along.to - along.from) <= reach)) return {};
+  const double moves = along.rate({1, along.from, 0});  // v = c t, x + c v
+  const auto change = [&](double v) { return beside.change_beside_v(v - along.from) - moves; };
+  // At the jump itself: beside it damping leads back, too.
+  const double before = 2 * change(along.to - aside) - change(along.to - 2 * aside);
+  const double after = 2 * change(along.to + aside) - change(along.to + 2 * aside);
+  if (!leads_back(before, after)) return {};
+  return Trap{std::abs(along.to) < aside ? 0 : along.to, along.force(along.to - aside), along.force(along.to + aside)};
 }
 
-}  // namespace
-
-StickingWatch::StickingWatch(const Model& model, const LinearChoice& choice, double instant)
-    : choice_(choice), instant_(instant) {
-  std::size_t most = 0, all = 0;
-  for (const SpringLaw& law : spring_laws(model)) {
-    const int count = law.F->switch_count();
-    bool jumps = false;
-    for (int k = 0; k < count; ++k) jumps = jumps || law.F->switch_jumps(k);
-    if (!jumps) continue;
-    laws_.push_back(law);
-    most = std::max(most, index(count));
-    all += index(count);
-  }
-  if (laws_.empty()) return;
-  switches_.resize(most);
-  sides_.assign(all, 0);
-  bodies_.resize(model.bodies.size());
+// Of a jump by x, about which the motion vibrates.
+std::optional<Trap> rest_of(BesideJump& beside, const SpringLaw& law, int k, double instant) {
+  constexpr double kVibration = 10;  // instants
+  constexpr double kResolved = 1e-10;
+  if (std::isfinite(Along(law, k, beside.here(), &Arguments<double>::v).to)) return {};
+  Along along(law, k, beside.here(), &Arguments<double>::x);
+  const double span = kVibration * instant, reach = 0.5 * kReaches * along.largest_force() / law.inertia * span * span;
+  const double aside = std::max(kBesideJump * reach, kResolved * (1 + std::abs(along.to))), off = along.from - along.to;
+  if (!(std::abs(off) <= reach)) return {};
+  const double before = beside.change_beside_x(-aside - off), after = beside.change_beside_x(aside - off);
+  if (!leads_back(before, after)) return {};
+  const double v = beside.here().v - along.rate({1, 0, 0});
+  const double passes_at = std::sqrt(v * v + 2 * std::abs(off * (off > 0 ? after : before)));
+  if (!(2 * passes_at * (1 / before - 1 / after) <= span)) return {};
+  return Trap{std::abs(along.to) < aside ? 0 : along.to, along.force(along.to - aside), along.force(along.to + aside)};
 }
 
-Status StickingWatch::look(const Problem& problem, const State& at) {
-  constexpr double kBetween = 0.05;  // of a crossing, that a step without one takes back
-  constexpr double kToAndFro = 30;
-  constexpr double kShort = 0.1;
-  constexpr int kSeldomer = 4;
-  if (laws_.empty()) return {};
-  problem.to_bodies(at.a(), bodies_);
-  bool crossed = false;
-  auto side = sides_.begin();
-  for (const SpringLaw& law : laws_) {
-    const std::span<double> switches(switches_.data(), index(law.F->switch_count()));
-    law.F->switches(law.arguments(law.place(problem.model(), problem, bodies_), at.t), switches);
-    for (int k = 0; k < law.F->switch_count(); ++k, ++side) {
-      if (!law.F->switch_jumps(k)) continue;
-      crossed = crossed || switches[index(k)] * *side < 0;
-      *side = switches[index(k)];
-    }
-  }
-  crossings_ = crossed ? crossings_ + 1 : std::max(0.0, crossings_ - kBetween);
-  short_ = at.t - std::exchange(t_, at.t) < kShort * instant_ ? short_ + 1 : 0;
-  if (crossings_ < kToAndFro && short_ < many_) return {};
-  if (short_ >= many_) many_ *= kSeldomer;
-  crossings_ = 0;
-  if (sticking_law(problem, choice_, at, instant_).empty()) return {};
-  return {Failure::step_size_too_small, at.t,
-          fmt::format("at t = {:.9g} s steps go to and fro about a jump of a force, and do not get on", at.t)};
-}
-
-std::string sticking_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant) {
+// What `find` finds of the jumps of laws, the first of it in words.
+template <class Find>
+std::string law_that(Find&& find, const char* leads, const Problem& problem, const LinearChoice& choice,
+                     const State& state, double instant) {
   if (state.v.size() > kMostVelocities) return {};
   const Model& model = problem.model();
   for (const SpringLaw& law : spring_laws(model)) {
     for (int k = 0; k < law.F->switch_count(); ++k) {
       if (!law.F->switch_jumps(k)) continue;
       BesideJump beside(problem, choice, state, law);
-      const std::optional<Trap> trap = trap_of(beside, law, state, k, instant);
+      if (!beside.moves()) continue;
+      const std::optional<Trap> trap = find(beside, law, k, instant);
       if (!trap) continue;
-      const bool turns = law.torsion >= 0;
       const std::string& name =
-          turns ? model.torsions[index(law.torsion)].spring.name : model.springs[index(law.spring)].name;
-      return fmt::format(
-          "the law of force '{}' jumps from {:.3g} to {:.3g} {} where v passes {:.3g}, and either side leads back "
-          "there: no motion follows such a law, as of a body that sticks; one that is steep instead, as "
-          "min(max(v/c, -1), 1) with a small c in the place of sign(v), does not stop it",
-          name, trap->before, trap->after, turns ? "N m" : "N", trap->v);
+          law.torsion >= 0 ? model.torsions[index(law.torsion)].spring.name : model.springs[index(law.spring)].name;
+      return fmt::format("the law of force '{}' jumps from {:.3g} to {:.3g} {} where ", name, trap->before, trap->after,
+                         law.unit()) +
+             fmt::format(fmt::runtime(leads), trap->at);
     }
   }
   return {};
+}
+
+Status to_and_fro(double t) {
+  return {Failure::step_size_too_small, t,
+          fmt::format("at t = {:.9g} s steps go to and fro about a jump of a force, and do not get on", t)};
+}
+
+}  // namespace
+
+StickingWatch::StickingWatch(const Model& model, const LinearChoice& choice, double instant)
+    : choice_(choice), instant_(instant), jumps_(model), before_(jumps_.sides()), sides_(before_) {}
+
+Status StickingWatch::look(const Problem& problem, const State& at) {
+  constexpr double kBetween = 0.05;  // of a crossing, that a step without one takes back
+  constexpr double kToAndFro = 30;
+  constexpr double kShort = 0.1;
+  constexpr int kSeldomer = 4;
+  if (jumps_.none()) return {};
+  before_.swap(sides_);
+  jumps_.look(problem, at, sides_);
+  crossings_ = jumps_.crossed(before_, sides_) ? crossings_ + 1 : std::max(0.0, crossings_ - kBetween);
+  short_ = at.t - std::exchange(t_, at.t) < kShort * instant_ ? short_ + 1 : 0;
+  if (crossings_ < kToAndFro && short_ < many_) return {};
+  if (short_ >= many_) many_ *= kSeldomer;
+  crossings_ = 0;
+  return sticking_law(problem, choice_, at, instant_).empty() ? Status{} : to_and_fro(at.t);
+}
+
+Status StickingWatch::look_for_rest(const Problem& problem, const State& at) const {
+  if (jumps_.none() || resting_law(problem, choice_, at, instant_).empty()) return {};
+  return to_and_fro(at.t);
+}
+
+std::string sticking_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant) {
+  return law_that(trap_of,
+                  "v passes {:.3g}, and either side leads back there: no motion follows such a law, as of a body that "
+                  "sticks; one that is steep instead, as min(max(v/c, -1), 1) with a small c in the place of sign(v), "
+                  "does not stop it",
+                  problem, choice, state, instant);
+}
+
+std::string resting_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant) {
+  return law_that(
+      rest_of,
+      "x passes {:.3g}, and either side leads back there, so that the motion goes to and fro about it ever "
+      "faster; a law that is steep instead, as min(max(x/c, -1), 1) with a small c in the place of sign(x), "
+      "does not stop it",
+      problem, choice, state, instant);
 }
 
 }  // namespace poinsot

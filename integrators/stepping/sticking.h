@@ -1,21 +1,23 @@
 // A law of a spring that jumps where a run stopped, with either side leading back to the jump: sign(v) of dry friction
-// once a body comes to rest.
+// once a body comes to rest, sign(x) of a body that damping brings to rest there.
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "formulations/problem.h"
 #include "integrators/state.h"
-#include "integrators/stepping/law_path.h"
+#include "integrators/stepping/law_jumps.h"
 #include "linsolve/linear_system.h"
 
 namespace poinsot {
 
-// A sentence; empty where there is no such law, and in mechanisms too large to differentiate its rate by each velocity.
+// Sentences; empty where there is no such law, and in mechanisms too large to differentiate its rate by each velocity.
 // `instant`: s, within which forces as they are would bring the motion to the jump. Either side leads back where the
 // accelerations do, of states that differ in the one direction in which the force acts.
+//   sticking_law  a jump by v, which the motion cannot leave
+//   resting_law   a jump by x, about which it vibrates to and fro within a few instants
 std::string sticking_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant);
+std::string resting_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant);
 
 // The instant for methods that choose their steps, in a run up to `end`.
 inline double instant_of(double end) {
@@ -30,13 +32,14 @@ class StickingWatch {
   // The end of a step, where the problem stands. Failed where many steps have ended on the other side of a jump than
   // the one before, few in between have not, and sticking_law() says of one that the motion cannot leave it.
   Status look(const Problem& problem, const State& at);
+  // Where the rest of the run would be a matter of hours. Failed where resting_law() says of one that it rests there.
+  Status look_for_rest(const Problem& problem, const State& at) const;
 
  private:
   const LinearChoice choice_;
   const double instant_;
-  std::vector<SpringLaw> laws_;  // that jump
-  std::vector<BodyState> bodies_;
-  std::vector<double> switches_, sides_;  // of a law, and of all at the step before
+  LawJumps jumps_;
+  LawJumps::Sides before_, sides_;  // at the step before, and at this one
   double crossings_ = 0, t_ = 0;
   int short_ = 0, many_ = 200;  // short steps on end, and how many are looked at
 };

@@ -1,0 +1,73 @@
+#include "integrators/stepping/law_jumps.h"
+
+#include <algorithm>
+#include <memory>
+#include <span>
+
+#include "core/index.h"
+#include "integrators/stepping/consistent.h"
+#include "integrators/stepping/sticking.h"
+
+namespace poinsot {
+
+LawJumps::LawJumps(const Model& model) {
+  for (const SpringLaw& law : spring_laws(model)) {
+    std::size_t jumps = 0;
+    for (int k = 0; k < law.F->switch_count(); ++k) jumps += law.F->switch_jumps(k) ? 1 : 0;
+    if (jumps == 0) continue;
+    laws_.push_back(law);
+    switches_.resize(std::max(switches_.size(), index(law.F->switch_count())));
+    size_ += jumps;
+  }
+  if (!laws_.empty()) bodies_.resize(model.bodies.size());
+}
+
+void LawJumps::look(const Problem& problem, const State& at, Sides& sides) {
+  if (none()) return;
+  problem.to_bodies(at.a(), bodies_);
+  auto side = sides.begin();
+  for (const SpringLaw& law : laws_) {
+    const std::span<double> switches(switches_.data(), index(law.F->switch_count()));
+    law.F->switches(law.arguments(law.place(problem.model(), problem, bodies_), at.t), switches);
+    for (int k = 0; k < law.F->switch_count(); ++k)
+      if (law.F->switch_jumps(k)) *side++ = switches[index(k)];
+  }
+}
+
+const SpringLaw* LawJumps::crossed(const Sides& before, const Sides& after) const {
+  std::size_t side = 0;
+  for (const SpringLaw& law : laws_) {
+    for (int k = 0; k < law.F->switch_count(); ++k) {
+      if (!law.F->switch_jumps(k)) continue;
+      if (before[side] * after[side] < 0) return &law;
+      ++side;
+    }
+  }
+  return nullptr;
+}
+
+bool comes_to_jump(LawJumps& jumps, const Problem& problem, const LinearChoice& choice, const State& from, double t) {
+  const double h = t - from.t;
+  if (!sticking_law(problem, choice, from, h).empty() || !resting_law(problem, choice, from, h).empty()) return false;
+  const std::unique_ptr<Problem> own = problem.clone();
+  Consistent consistent(*own, choice);
+  State ahead = from;
+  consistent.stand(ahead);
+  if (!consistent.accelerations(ahead).ok()) return false;
+  LawJumps::Sides before = jumps.sides(), after = before;
+  jumps.look(*own, ahead, before);
+  consistent.lead(ahead, t + h);
+  consistent.stand(ahead);
+  jumps.look(*own, ahead, after);
+  return jumps.crossed(before, after) != nullptr;
+}
+
+Status lead_on(const Problem& problem, const LinearChoice& choice, State& x, double t) {
+  const std::unique_ptr<Problem> own = problem.clone();
+  Consistent consistent(*own, choice);
+  consistent.stand(x);
+  if (Status status = consistent.accelerations(x); !status.ok()) return status;
+  return consistent.cross(x, t);
+}
+
+}  // namespace poinsot

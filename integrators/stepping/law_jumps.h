@@ -1,0 +1,41 @@
+// Jumps of laws of springs by the state: on which side of each one a motion is, and how a step comes over one at which
+// an implicit equation has no solution, the force of either side leading to the other.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "formulations/problem.h"
+#include "integrators/state.h"
+#include "integrators/stepping/law_path.h"
+#include "linsolve/linear_system.h"
+
+namespace poinsot {
+
+class LawJumps {
+ public:
+  using Sides = std::vector<double>;  // by their signs
+
+  explicit LawJumps(const Model& model);  // which has to live as long
+
+  bool none() const { return laws_.empty(); }
+  Sides sides() const { return Sides(size_, 0.0); }
+  // Those of a state, where the problem stands.
+  void look(const Problem& problem, const State& at, Sides& sides);
+  // A law whose jump lies between the two; none: null.
+  const SpringLaw* crossed(const Sides& before, const Sides& after) const;
+
+ private:
+  std::vector<SpringLaw> laws_;  // that jump
+  std::vector<BodyState> bodies_;
+  std::vector<double> switches_;  // of a law
+  std::size_t size_ = 0;
+};
+
+// Whether accelerations as they are at `from` lead over a jump before t or as far again, to which the motion does not
+// stick and on which it does not rest (sticking.h).
+bool comes_to_jump(LawJumps& jumps, const Problem& problem, const LinearChoice& choice, const State& from, double t);
+// x becomes the state at t, near to it, to which its accelerations lead, consistent there.
+Status lead_on(const Problem& problem, const LinearChoice& choice, State& x, double t);
+
+}  // namespace poinsot
