@@ -48,7 +48,7 @@ Status RestWatch::look(const Problem& problem, const LinearChoice& choice, const
 
 bool RestWatch::left_branch(const Problem& problem, const LinearChoice& choice, const State& at,
                             const Look& then) const {
-  constexpr double kStretches = 3, kSteeper = 4;
+  constexpr double kStretches = 3, kFarSteeper = 4;
   const double fastest = std::max(largest(span(at.v)), largest(span(before_[0].v)));
   if (!(fastest < kStretches * (at.t - before_[0].t) * std::max(largest(span(a_)), largest(span(then.a)))))
     return false;
@@ -61,7 +61,7 @@ bool RestWatch::left_branch(const Problem& problem, const LinearChoice& choice, 
   };
   const auto of = [&](const Look& look) { return steepness(look.t, look.q, look.v); };
   const double first = of(before_[1]), last = of(before_[0]), now = steepness(at.t, at.q, at.v);
-  if (!(std::max({first, last, now}) > kSteeper * std::min({first, last, now}))) return false;
+  if (!(std::max({first, last, now}) > kFarSteeper * std::min({first, last, now}))) return false;
   return now < HUGE_VAL && consistent.lies_free(at.t, a_ - then.a);
 }
 

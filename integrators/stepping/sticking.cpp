@@ -88,11 +88,11 @@ std::optional<Trap> trap_of(BesideJump& beside, const SpringLaw& law, int k, dou
 // Of a jump by x, about which the motion vibrates.
 std::optional<Trap> rest_of(BesideJump& beside, const SpringLaw& law, int k, double instant) {
   constexpr double kVibration = 10;  // instants
-  constexpr double kResolved = 1e-10;
+  constexpr double kOfPlace = 1e-10;
   if (std::isfinite(Along(law, k, beside.here(), &Arguments<double>::v).to)) return {};
   Along along(law, k, beside.here(), &Arguments<double>::x);
   const double span = kVibration * instant, reach = 0.5 * kReaches * along.largest_force() / law.inertia * span * span;
-  const double aside = std::max(kBesideJump * reach, kResolved * (1 + std::abs(along.to))), off = along.from - along.to;
+  const double aside = std::max(kBesideJump * reach, kOfPlace * (1 + std::abs(along.to))), off = along.from - along.to;
   if (!(std::abs(off) <= reach)) return {};
   const double before = beside.change_beside_x(-aside - off), after = beside.change_beside_x(aside - off);
   if (!leads_back(before, after)) return {};
