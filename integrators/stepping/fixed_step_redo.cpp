@@ -1,7 +1,8 @@
 // A step that fails, done again from where it began. What is tried, until one of it leads on:
 //   other rows      once for where a step begins: what is kept may depend on one another where the step leads to
 //   parts           the two halves, each a step of its own that may fail in turn, down to h/2^10
-//   over a jump     the last of them, where a law of a spring jumps in it, by accelerations as they are (law_jumps.h)
+//   over a jump     the last of them, where a law of a spring jumps in it, by accelerations as they are (law_jumps.h):
+//                   for that alone methods are divided, too, that otherwise are not
 //   as it is        the step whose branch was in doubt, where parts did no better: it stands, and the doubt is told
 //   the beginning   is made the limit of states beside it, where it is a singular position; then all of this once more
 #include <algorithm>
@@ -23,7 +24,7 @@ bool may_be_too_long(Failure failure) {
 // Parts of a step creep up to a singular position, where a whole step goes over it: there rounding may choose the
 // branch, and velocities jump. Those of a step worth its name change by a fraction, as accelerations beside such a
 // position do not.
-bool jumps(std::span<const BodyState> before, std::span<const BodyState> after) {
+bool velocities_jump(std::span<const BodyState> before, std::span<const BodyState> after) {
   constexpr double kFraction = 0.5;
   double way = 0, turn = 0, speed = 0, rate = 0;
   for (std::size_t b = 0; b < before.size(); ++b) {
@@ -77,7 +78,7 @@ Status FixedSteps::redo_whole(double t, double half, bool sampled, Status as_one
   over_jumps_ = false;
   Status status = reach_in_halves(t, half, sampled, kHalvings);
   const auto forced = [&] { return over_jumps_ || jumps_.crossed(sides, sides_of_jumps()); };
-  if (status.ok() && jumps(before, bodies()) && !forced()) {
+  if (status.ok() && velocities_jump(before, bodies()) && !forced()) {
     begin_from(beginning);
     status = std::move(as_one);
   }

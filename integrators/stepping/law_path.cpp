@@ -128,9 +128,12 @@ double SpringLaw::change(const LawPlace& place) const {
   return (place.d.dot(place.second) + place.rate.squaredNorm() - v * v) / length;
 }
 
+const std::string& SpringLaw::name(const Model& model) const {
+  return torsion >= 0 ? model.torsions[index(torsion)].spring.name : model.springs[index(spring)].name;
+}
+
 std::string SpringLaw::called(const Model& model) const {
-  return torsion >= 0 ? fmt::format("torsion spring '{}'", model.torsions[index(torsion)].spring.name)
-                      : fmt::format("spring '{}'", model.springs[index(spring)].name);
+  return fmt::format("{}spring '{}'", torsion >= 0 ? "torsion " : "", name(model));
 }
 
 LawPath::LawPath(const SpringLaw& of, const LawPlace& from, double t_from, double t_to)

@@ -36,7 +36,8 @@ struct SpringLaw {
   LawPlace place(const Model& model, const Problem& problem, std::span<const BodyState> bodies) const;
   Arguments<double> arguments(const LawPlace& place, double t) const;
   double change(const LawPlace& place) const;  // of v with time
-  std::string called(const Model& model) const;
+  const std::string& name(const Model& model) const;
+  std::string called(const Model& model) const;                    // what it is, too
   const char* unit() const { return torsion >= 0 ? "N m" : "N"; }  // of F
 };
 // Those that a step may pass over: neither constants nor functions of the program.

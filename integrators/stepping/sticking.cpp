@@ -63,6 +63,9 @@ class Along {
 struct Trap {
   double at, before, after;
 };
+Trap trap_at(Along& along, double aside) {
+  return {std::abs(along.to) < aside ? 0 : along.to, along.force(along.to - aside), along.force(along.to + aside)};
+}
 bool leads_back(double before, double after) {
   constexpr double kLeast = 1e-6;  // of the accelerations on both sides
   const double least = kLeast * (std::abs(before) + std::abs(after));
@@ -82,7 +85,7 @@ std::optional<Trap> trap_of(BesideJump& beside, const SpringLaw& law, int k, dou
   const double before = 2 * change(along.to - aside) - change(along.to - 2 * aside);
   const double after = 2 * change(along.to + aside) - change(along.to + 2 * aside);
   if (!leads_back(before, after)) return {};
-  return Trap{std::abs(along.to) < aside ? 0 : along.to, along.force(along.to - aside), along.force(along.to + aside)};
+  return trap_at(along, aside);
 }
 
 // Of a jump by x, about which the motion vibrates.
@@ -99,7 +102,7 @@ std::optional<Trap> rest_of(BesideJump& beside, const SpringLaw& law, int k, dou
   const double v = beside.here().v - along.rate({1, 0, 0});
   const double passes_at = std::sqrt(v * v + 2 * std::abs(off * (off > 0 ? after : before)));
   if (!(2 * passes_at * (1 / before - 1 / after) <= span)) return {};
-  return Trap{std::abs(along.to) < aside ? 0 : along.to, along.force(along.to - aside), along.force(along.to + aside)};
+  return trap_at(along, aside);
 }
 
 // What `find` finds of the jumps of laws, the first of it in words.
@@ -115,10 +118,8 @@ std::string law_that(Find&& find, const char* leads, const Problem& problem, con
       if (!beside.moves()) continue;
       const std::optional<Trap> trap = find(beside, law, k, instant);
       if (!trap) continue;
-      const std::string& name =
-          law.torsion >= 0 ? model.torsions[index(law.torsion)].spring.name : model.springs[index(law.spring)].name;
-      return fmt::format("the law of force '{}' jumps from {:.3g} to {:.3g} {} where ", name, trap->before, trap->after,
-                         law.unit()) +
+      return fmt::format("the law of force '{}' jumps from {:.3g} to {:.3g} {} where ", law.name(model), trap->before,
+                         trap->after, law.unit()) +
              fmt::format(fmt::runtime(leads), trap->at);
     }
   }
@@ -167,8 +168,8 @@ std::string sticking_law(const Problem& problem, const LinearChoice& choice, con
 std::string resting_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant) {
   return law_that(
       rest_of,
-      "x passes {:.3g}, and either side leads back there, so that the motion goes to and fro about it ever "
-      "faster; a law that is steep instead, as min(max(x/c, -1), 1) with a small c in the place of sign(x), "
+      "x passes {:.3g}, and either side leads back there: the motion goes to and fro about it, the faster the "
+      "nearer; a law that is steep instead, as min(max(x/c, -1), 1) with a small c in the place of sign(x), "
       "does not stop it",
       problem, choice, state, instant);
 }
