@@ -11,6 +11,10 @@ target_compile_options(poinsot_warnings INTERFACE
                        $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>)
 # Clang asks for the inner braces of an aggregate in an aggregate, which C++ lets be left out.
 target_compile_options(poinsot_warnings INTERFACE $<$<CXX_COMPILER_ID:Clang>:-Wno-missing-braces>)
+# Of files compiled together clang takes a file's local name to hide a constant that another one keeps to itself.
+if(CMAKE_UNITY_BUILD)
+  target_compile_options(poinsot_warnings INTERFACE $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>)
+endif()
 add_compile_options(-fno-math-errno -fno-trapping-math)
 
 # What a program has to be compiled with as well to fit this library: Eigen's alignment follows the instruction set.

@@ -94,6 +94,23 @@ std::vector<SpringLaw> spring_laws(const Model& model) {
   return laws;
 }
 
+std::vector<SpringLaw> springs_that_turn_round(const Model& model) {
+  std::vector<SpringLaw> springs;
+  for (std::size_t k = 0; k < model.springs.size(); ++k) {
+    const Spring& s = model.springs[k];
+    if (s.law && !s.law->is_constant()) continue;
+    const double F = s.law ? s.law->law(Arguments<double>{}).F : -s.stiffness * s.length;
+    if (F == 0) continue;
+    const double mass = std::min(mass_that_moves(model, s.i), mass_that_moves(model, s.j));
+    springs.push_back({nullptr, static_cast<int>(k), -1, s.length, mass, F});
+  }
+  return springs;
+}
+
+double SpringLaw::force_of_no_length(double t) const {
+  return F ? F->law(Arguments<double>{t, -zero, 0}).F : without_length;
+}
+
 LawPlace SpringLaw::place(const Model& model, const Problem& problem, std::span<const BodyState> bodies) const {
   if (spring >= 0) {
     const Spring& s = model.springs[index(spring)];
@@ -172,7 +189,7 @@ Arguments<double> LawPath::arguments(double s) const {
 }
 
 Arguments<double> LawPath::moving(double s) const {
-  return of_.arguments({at(s), rate_ + s * (change_ + (1 - s) * bulge_)}, t_ + s * h_);
+  return of_.arguments(place(s), t_ + s * h_);
 }
 
 double LawPath::force(double s) const {

@@ -27,21 +27,25 @@ struct LawPlace {
 };
 
 struct SpringLaw {
-  const Expression* F;
-  int spring, torsion;  // of the model; one is −1
-  double zero;          // m, rad
-  double inertia;       // kg, kg m², of the lighter body
+  const Expression* F;        // null of a spring whose law is linear or constant
+  int spring, torsion;        // of the model; one is −1
+  double zero;                // m, rad
+  double inertia;             // kg, kg m², of the lighter body
+  double without_length = 0;  // N, where F is null: its force there
 
   // As it is where the problem, and the bodies, stand.
   LawPlace place(const Model& model, const Problem& problem, std::span<const BodyState> bodies) const;
   Arguments<double> arguments(const LawPlace& place, double t) const;
   double change(const LawPlace& place) const;  // of v with time
+  double force_of_no_length(double t) const;   // N, of a spring
   const std::string& name(const Model& model) const;
   std::string called(const Model& model) const;                    // what it is, too
   const char* unit() const { return torsion >= 0 ? "N m" : "N"; }  // of F
 };
 // Those that a step may pass over: neither constants nor functions of the program.
 std::vector<SpringLaw> spring_laws(const Model& model);
+// Of the others those whose force where they have no length is not zero.
+std::vector<SpringLaw> springs_that_turn_round(const Model& model);
 
 // F by s from 0 to 1.
 class LawPath {
@@ -56,6 +60,8 @@ class LawPath {
   Arguments<double> moving(double s) const;
   Bounds force(double from, double to) const;
   double slope(double s) const;  // of F by x
+  // Of a spring, d and ḋ at s as moving() has them.
+  LawPlace place(double s) const { return {at(s), rate_ + s * (change_ + (1 - s) * bulge_)}; }
 
  private:
   using Vector = Vector3;

@@ -6,6 +6,7 @@ namespace poinsot {
 
 LawSteps::LawSteps(const Model& model) : model_(model) {
   for (const SpringLaw& of : spring_laws(model)) laws_.push_back({of, {}, {}, {}});
+  for (const SpringLaw& of : springs_that_turn_round(model)) laws_.push_back({of, {}, {}, {}});
   if (!laws_.empty()) bodies_.resize(model.bodies.size());
 }
 

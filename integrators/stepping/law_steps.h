@@ -1,5 +1,5 @@
-// Laws of springs over the steps of a run under error control: where the ends of each spring stand at either end of a
-// step, and how they go in between.
+// Laws of springs over the steps of a run under error control, those of linear ones that push or pull without length
+// included: where the ends of each spring stand at either end of a step, and how they go in between.
 #pragma once
 
 #include <vector>
@@ -18,7 +18,7 @@ class LawSteps {
     LawPlace before, from, to;
   };
 
-  // Of the expressions of the model, which has to live as long.
+  // Of a model that has to live as long.
   explicit LawSteps(const Model& model);
 
   bool none() const { return laws_.empty(); }

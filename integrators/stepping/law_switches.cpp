@@ -28,13 +28,15 @@ LawSwitches::LawSwitches(const LawSteps& steps, double end, double rtol, double 
     : steps_(steps), end_(end), rtol_(rtol), atol_(atol) {
   const Bounds unknown = Bounds::unknown();
   for (std::size_t n = 0; n < steps.size(); ++n) {
-    const Expression& F = *steps.law(n).of.F;
+    const Expression* F = steps.law(n).of.F;
+    const int switches = F ? F->switch_count() : 0;
     Law law{n, {}};
-    for (int k = 0; k < F.switch_count(); ++k)
-      if (F.switch_range(k, {{}, unknown, unknown}).is_unknown())
-        law.switches.push_back({k, F.switch_jumps(k), F.switch_range(k, {{}, unknown, {}}).is_unknown()});
+    for (int k = 0; k < switches; ++k)
+      if (F->switch_range(k, {{}, unknown, unknown}).is_unknown())
+        law.switches.push_back({k, F->switch_jumps(k), F->switch_range(k, {{}, unknown, {}}).is_unknown()});
+    if (steps.law(n).of.spring >= 0) law.switches.push_back({kNoLength, true, true});
     if (law.switches.empty()) continue;
-    values_.resize(std::max(values_.size(), index(F.switch_count())));
+    values_.resize(std::max(values_.size(), index(switches)));
     laws_.push_back(std::move(law));
   }
 }
@@ -51,7 +53,7 @@ void LawSwitches::begin() {
     const LawPath path = steps_.ahead(law.law, from + end_);
     for (Switch& of : law.switches) {
       of.side = side_of(value(law.law, of, path, 0));
-      if (of.side == 0 && of.jumps && !led) beyond_ = from + kOffJump * end_;
+      if (of.side == 0 && of.jumps && !led && begins_on(of, path)) beyond_ = from + kOffJump * end_;
     }
   }
   if (!crossed) return;
@@ -125,17 +127,17 @@ double LawSwitches::resolution() const {
 }
 
 void LawSwitches::look(Law& law, const LawPath& path, double h, Crossing& first) {
-  const Expression& F = *steps_.law(law.law).of.F;
   for (Switch& of : law.switches) of.next = of.side;
   double before = 0;
   for (const double s : kSideLooks) {
-    F.switches(path.moving(s), values_);
+    find_values(law.law, path, s);
     for (Switch& of : law.switches) {
-      const double side = side_of(values_[index(of.k)]);
+      const double side = side_of(value(of, path, s));
       if (side == 0) continue;
-      if (side * of.next < 0 && before < first.s) {
+      const bool longest = of.k == kNoLength && side < 0;
+      if (side * of.next < 0 && !longest && before < first.s) {
         const double at = root(law.law, of, path, before, s);
-        F.switches(path.moving(s), values_);  // again those here
+        find_values(law.law, path, s);  // again those here
         if (at < first.s && (&of == approached_.of || counts(law.law, of, path, at, h))) first = {&of, law.law, at};
       }
       of.next = side;
@@ -144,9 +146,27 @@ void LawSwitches::look(Law& law, const LawPath& path, double h, Crossing& first)
   }
 }
 
+void LawSwitches::find_values(std::size_t law, const LawPath& path, double s) {
+  if (const Expression* F = steps_.law(law).of.F) F->switches(path.moving(s), values_);
+}
+
+// Those of laws have been found.
+double LawSwitches::value(const Switch& of, const LawPath& path, double s) const {
+  if (of.k != kNoLength) return values_[index(of.k)];
+  const LawPlace place = path.place(s);
+  return place.d.dot(place.rate);
+}
+
 double LawSwitches::value(std::size_t law, const Switch& of, const LawPath& path, double s) {
-  steps_.law(law).of.F->switches(path.moving(s), values_);
-  return values_[index(of.k)];
+  if (of.k != kNoLength) find_values(law, path, s);
+  return value(of, path, s);
+}
+
+// d · ḋ is zero at rest, too.
+bool LawSwitches::begins_on(const Switch& of, const LawPath& path) const {
+  if (of.k != kNoLength) return true;
+  const LawPlace place = path.place(0);
+  return place.d.isZero(0) && !place.rate.isZero(0);
 }
 
 // Where the sign becomes what it is at `to`, by bisection.
@@ -162,8 +182,25 @@ double LawSwitches::root(std::size_t law, const Switch& of, const LawPath& path,
 
 // Whether a step over it comes out wrong by more than the tolerance, as a velocity of the lighter body.
 bool LawSwitches::counts(std::size_t law, const Switch& of, const LawPath& path, double s, double h) const {
-  constexpr double kBeside = 1e-5;
   if (of.soon > kMostSoon) return false;
+  const LawSteps::Law& steps = steps_.law(law);
+  const double wrong = of.k == kNoLength ? turned_round(law, path, s) : bent(law, of, path, s);
+  return wrong > kOfTolerance * tolerance(steps) * steps.of.inertia / h;
+}
+
+// N, by how much the force of a spring changes that is shortest at s: 0 where error control is to see how it turns, in
+// about the time |d|/|ḋ|.
+double LawSwitches::turned_round(std::size_t law, const LawPath& path, double s) const {
+  const LawSteps::Law& steps = steps_.law(law);
+  const LawPlace place = path.place(s);
+  const double F = 2 * std::abs(steps.of.force_of_no_length(steps_.from()));
+  const bool at_once = place.d.norm() * F < kOfTolerance * tolerance(steps) * steps.of.inertia * place.rate.norm();
+  return at_once ? F : 0;
+}
+
+// N, N m: what F differs by from a smooth function.
+double LawSwitches::bent(std::size_t law, const Switch& of, const LawPath& path, double s) const {
+  constexpr double kBeside = 1e-5;
   const LawSteps::Law& steps = steps_.law(law);
   const auto slope = [&](double from, double to, const Arguments<double>& at) {
     const LawValue<double> F = steps.of.F->law(at);
@@ -177,7 +214,7 @@ bool LawSwitches::counts(std::size_t law, const Switch& of, const LawPath& path,
     const double by_slope = kBeside * (slope_before + slope_after);
     wrong += std::abs(steps.of.F->law(after).F - steps.of.F->law(before).F - by_slope);
   }
-  return wrong > kOfTolerance * (atol_ + rtol_ * steps.from.rate.norm()) * steps.of.inertia / h;
+  return wrong;
 }
 
 }  // namespace poinsot

@@ -1,5 +1,6 @@
 // Kinks and jumps of laws of springs by the state: where along the way the argument of an abs, sign or step, or the
-// difference of the two of a min or max, changes its sign, as of a ball that comes to the floor.
+// difference of the two of a min or max, changes its sign, as of a ball that comes to the floor. And where the force of
+// a spring turns round at once, because it passes through no length or next to it: d · ḋ changes its sign there.
 //
 // Error control alone gets over such a place by rejections, and its estimate, made for smooth forces, is off by what
 // the bend does: some ten rejections and ten to a thousand tolerances each (radau5, dopri5). So a step that would go
@@ -35,7 +36,7 @@ class LawSwitches {
 
  private:
   struct Switch {
-    int k;
+    int k;  // of the law's switches; kNoLength: the spring through no length
     bool jumps;
     bool by_x;
     double side = 0, next = 0;  // its sign where the step began, and where it ends; 0: on neither side as yet
@@ -54,13 +55,21 @@ class LawSwitches {
   };
 
   void look(Law& law, const LawPath& path, double h, Crossing& first);
+  void find_values(std::size_t law, const LawPath& path, double s);
+  double value(const Switch& of, const LawPath& path, double s) const;
   double value(std::size_t law, const Switch& of, const LawPath& path, double s);
+  bool begins_on(const Switch& of, const LawPath& path) const;
   double root(std::size_t law, const Switch& of, const LawPath& path, double from, double to);
   double resolution() const;
   void note_crossing(Switch& of, double t) const;
   bool counts(std::size_t law, const Switch& of, const LawPath& path, double s, double h) const;
+  double turned_round(std::size_t law, const LawPath& path, double s) const;
+  double bent(std::size_t law, const Switch& of, const LawPath& path, double s) const;
+
+  double tolerance(const LawSteps::Law& steps) const { return atol_ + rtol_ * steps.from.rate.norm(); }
 
   static constexpr double kNever = std::numeric_limits<double>::infinity();
+  static constexpr int kNoLength = -1;
 
   const LawSteps& steps_;
   const double end_, rtol_, atol_;

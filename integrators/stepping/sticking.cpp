@@ -88,10 +88,11 @@ std::optional<Trap> trap_of(BesideJump& beside, const SpringLaw& law, int k, dou
   return trap_at(along, aside);
 }
 
+constexpr double kVibration = 10;  // instants
+constexpr double kOfPlace = 1e-10;
+
 // Of a jump by x, about which the motion vibrates.
 std::optional<Trap> rest_of(BesideJump& beside, const SpringLaw& law, int k, double instant) {
-  constexpr double kVibration = 10;  // instants
-  constexpr double kOfPlace = 1e-10;
   if (std::isfinite(Along(law, k, beside.here(), &Arguments<double>::v).to)) return {};
   Along along(law, k, beside.here(), &Arguments<double>::x);
   const double span = kVibration * instant, reach = 0.5 * kReaches * along.largest_force() / law.inertia * span * span;
@@ -103,6 +104,19 @@ std::optional<Trap> rest_of(BesideJump& beside, const SpringLaw& law, int k, dou
   const double passes_at = std::sqrt(v * v + 2 * std::abs(off * (off > 0 ? after : before)));
   if (!(2 * passes_at * (1 / before - 1 / after) <= span)) return {};
   return trap_at(along, aside);
+}
+
+// Whether either side leads back to where a spring that pulls there has no length.
+bool rests_without_length(BesideJump& beside, const SpringLaw& spring, double F, double instant) {
+  constexpr double kLeast = 1e-6;  // of the acceleration that F is good for
+  const double length = beside.here().x + spring.zero, span = kVibration * instant;
+  const double reach = 0.5 * kReaches * F / spring.inertia * span * span;
+  const double aside = std::max(kBesideJump * reach, kOfPlace);
+  if (!(length <= reach)) return false;
+  const double back = -beside.change_beside_x(-aside - length), back_again = -beside.change_beside_x(aside - length);
+  if (!(std::min(back, back_again) > kLeast * F / spring.inertia)) return false;
+  const double v = beside.here().v, passes_at = std::sqrt(v * v + 2 * length * std::max(back, back_again));
+  return 2 * passes_at * (1 / back + 1 / back_again) <= span;
 }
 
 // What `find` finds of the jumps of laws, the first of it in words.
@@ -122,6 +136,27 @@ std::string law_that(Find&& find, const char* leads, const Problem& problem, con
                          trap->after, law.unit()) +
              fmt::format(fmt::runtime(leads), trap->at);
     }
+  }
+  return {};
+}
+
+// The first spring that rests without length, in words.
+std::string spring_without_length(const Problem& problem, const LinearChoice& choice, const State& state,
+                                  double instant) {
+  if (state.v.size() > kMostVelocities) return {};
+  std::vector<SpringLaw> springs = springs_that_turn_round(problem.model());
+  for (const SpringLaw& law : spring_laws(problem.model()))
+    if (law.spring >= 0) springs.push_back(law);
+  for (const SpringLaw& spring : springs) {
+    const double F = spring.force_of_no_length(state.t);
+    if (!(F > 0) || !std::isfinite(F)) continue;
+    BesideJump beside(problem, choice, state, spring);
+    if (!beside.moves() || !rests_without_length(beside, spring, F, instant)) continue;
+    return fmt::format(
+        "the force '{}', {:.3g} N, turns round where the spring has no length, and leads back there from either side: "
+        "the motion goes to and fro about it, the faster the nearer; a law that is steep instead, as this one times "
+        "min((x + length)/c, 1) with a small c, does not stop it",
+        spring.name(problem.model()), F);
   }
   return {};
 }
@@ -153,8 +188,7 @@ Status StickingWatch::look(const Problem& problem, const State& at) {
 }
 
 Status StickingWatch::look_for_rest(const Problem& problem, const State& at) const {
-  if (jumps_.none() || resting_law(problem, choice_, at, instant_).empty()) return {};
-  return to_and_fro(at.t);
+  return resting_law(problem, choice_, at, instant_).empty() ? Status{} : to_and_fro(at.t);
 }
 
 std::string sticking_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant) {
@@ -166,12 +200,13 @@ std::string sticking_law(const Problem& problem, const LinearChoice& choice, con
 }
 
 std::string resting_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant) {
-  return law_that(
-      rest_of,
-      "x passes {:.3g}, and either side leads back there: the motion goes to and fro about it, the faster the "
-      "nearer; a law that is steep instead, as min(max(x/c, -1), 1) with a small c in the place of sign(x), "
-      "does not stop it",
-      problem, choice, state, instant);
+  std::string why =
+      law_that(rest_of,
+               "x passes {:.3g}, and either side leads back there: the motion goes to and fro about it, the faster the "
+               "nearer; a law that is steep instead, as min(max(x/c, -1), 1) with a small c in the place of sign(x), "
+               "does not stop it",
+               problem, choice, state, instant);
+  return why.empty() ? spring_without_length(problem, choice, state, instant) : why;
 }
 
 }  // namespace poinsot

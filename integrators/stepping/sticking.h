@@ -1,5 +1,6 @@
 // A law of a spring that jumps where a run stopped, with either side leading back to the jump: sign(v) of dry friction
-// once a body comes to rest, sign(x) of a body that damping brings to rest there.
+// once a body comes to rest, sign(x) of a body that damping brings to rest there; or a spring that pulls on where it
+// has no length.
 #pragma once
 
 #include <string>
@@ -15,7 +16,7 @@ namespace poinsot {
 // `instant`: s, within which forces as they are would bring the motion to the jump. Either side leads back where the
 // accelerations do, of states that differ in the one direction in which the force acts.
 //   sticking_law  a jump by v, which the motion cannot leave
-//   resting_law   a jump by x, about which it vibrates to and fro within a few instants
+//   resting_law   a jump by x, or a spring without length, about which it vibrates to and fro within a few instants
 std::string sticking_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant);
 std::string resting_law(const Problem& problem, const LinearChoice& choice, const State& state, double instant);
 
