@@ -85,6 +85,57 @@ TEST_P(LawSwitchesTest, CostNoDigitsAndFewRejections) {
   }
 }
 
+// A body of 1 kg at x on a spring that begins where x is 0.
+Scene on_spring(double x, double v, double length, double stiffness, const char* law) {
+  Scene scene = pulled(x, {});
+  scene.bodies[0].velocity = {v, 0, 0};
+  Spring spring;
+  spring.j = 0, spring.length = length, spring.stiffness = stiffness;
+  if (law) spring.law = Expression::parse_law(law);
+  scene.forces.push_back(spring);
+  return scene;
+}
+double of_string(double t) {  // 1 towards 0 with v = 1 from 0
+  const double part = std::fmod(t, 4), in = std::fmod(part, 2);
+  return (part < 2 ? 1 : -1) * 0.5 * in * (2 - in);
+}
+double of_pushing_spring(double t) {  // 25 (|x| − 0.3) from 1 at rest
+  const double quarter = std::acos(-0.3 / 0.7) / 5, half = std::fmod(t, 2 * quarter);
+  const auto out = [](double s) { return 0.3 + 0.7 * std::cos(5 * s); };
+  const double side = std::fmod(std::floor(t / (2 * quarter)), 2) == 0 ? 1 : -1;
+  return side * (half < quarter ? out(half) : -out(2 * quarter - half));
+}
+
+// The force of a spring turns round where it has no length.
+TEST_P(LawSwitchesTest, OfSpringsThroughNoLength) {
+  const struct {
+    const char* name;
+    Scene scene;
+    double (*x)(double);
+    double passages;  // in 5 s
+  } cases[] = {{"linear", on_spring(1, 0, 0.3, 25, nullptr), of_pushing_spring, 6.3},
+               {"law", on_spring(1, 0, 0.3, 0, "25*x + 0*t"), of_pushing_spring, 6.3},
+               {"constant, from there", on_spring(0, 1, 0, 0, "1"), of_string, 3.5}};
+  for (const auto& c : cases) {
+    for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+      const Recorded r = run(c.scene, settings(rtol, 5, 0.003));
+      ASSERT_TRUE(r.outcome.status.ok()) << c.name << ": " << r.outcome.status.message;
+      double most = 0;
+      for (const Snapshot& s : r.samples) most = std::max(most, std::abs(s.bodies[0].r.x() - c.x(s.t)));
+      EXPECT_LT(most, 50 * rtol) << c.name << ' ' << rtol;
+      EXPECT_LT(r.outcome.statistics.rejected_steps, 5 * c.passages + 12) << c.name << ' ' << rtol;
+    }
+  }
+}
+
+// One that passes beside that place turns round in a time that error control has to see: here 1e-5 s.
+TEST_P(LawSwitchesTest, OfSpringsBesideNoLengthAreSeen) {
+  Scene scene = on_spring(0.5, 1, 0, 0, "5");
+  scene.bodies[0].velocity.y() = 1e-4;
+  static const auto exact = motion(scene, controlled("dop853", "rA", 1e-13, 1, 1));
+  EXPECT_LT(distance(motion(scene, settings(1e-10, 1, 1)), exact).r, 3e-8);
+}
+
 TEST_P(LawSwitchesTest, OfAJumpAtTheStartAreNotSearchedFor) {
   for (const double rtol : {1e-6, 1e-8, 1e-10}) {
     const Recorded r = run(pulled(1, {"25*x + 0.5*sign(v)"}), settings(rtol, 0.5, 0.5));

@@ -12,6 +12,16 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+// A body beside a place that the force of a law draws it to, against its weight.
+Scene drawn(const char* law) {
+  return parse_scene(fmt::format(R"json({{"scene": 1, "name": "drawn", "gravity": [0, 0, -1], "bodies": [
+    {{"name": "body", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0.3]}}],
+    "forces": [{{"type": "spring", "name": "string", "bodies": ["ground", "body"], "s_i": [0, 0, 0], "s_j": [0, 0, 0],
+    "length": 0, "law": "{}"}}]}})json",
+                                 law),
+                     "test");
+}
+
 // A wheel at 3 rad/s and a slide at 1 m/s beside it, each with a law of its own.
 Scene sliding(const char* on_wheel, const char* on_slide) {
   return parse_scene(fmt::format(R"json({{"scene": 1, "name": "sliding", "gravity": [0, 0, -9.81], "bodies": [
@@ -103,6 +113,24 @@ TEST_P(Sticking, OnAPlaceEndsTheRunAndSaysWhichLaw) {
     }
     settings.end = 2.5;
     expect_helped(sliding("0", "100*min(max((x - 5)/0.01, -1), 1) + 40*v"), settings);
+  });
+}
+
+// Likewise on the place where a spring that still pulls has no length.
+TEST_P(Sticking, WithoutLengthEndsTheRunAndSaysWhichSpring) {
+  by_each(GetParam(), [&](Settings settings) {
+    settings.end = 10;
+    const Recorded r = run(drawn("100 + 20*v"), settings);
+    if (r.outcome.status.ok()) {
+      EXPECT_FALSE(chooses_steps(settings));
+    } else {
+      expect_stopped(r, r.outcome.status.failure, "force 'string'", "where the spring has no length");
+      EXPECT_THAT(r.outcome.status.message, HasSubstr("min((x + length)/c, 1)"));
+      EXPECT_THAT(r.outcome.status.message, Not(HasSubstr("; try ")));
+      EXPECT_GT(r.outcome.status.time, 0.2);
+    }
+    settings.end = 1;
+    expect_helped(drawn("(100 + 20*v)*min(x/0.001, 1)"), settings);
   });
 }
 

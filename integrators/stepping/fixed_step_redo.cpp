@@ -46,7 +46,7 @@ Status FixedSteps::advance(double t, bool sampled) {
 }
 
 Status FixedSteps::reach_or_redo(double t, bool sampled, int halvings) {
-  if (divides_ || chooses_ || !jumps_.none()) z_began_ = x_.z;
+  if (divides_ || chooses_ || jumps_.steps_may_fail()) z_began_ = x_.z;
   const double began = x_.t;
   const auto failed = [&](const Status& status) { return may_be_too_long(status.failure) && x_.t == began; };
   on_branch_ = OnBranch::asked;
@@ -93,7 +93,8 @@ Status FixedSteps::redo_whole(double t, double half, bool sampled, Status as_one
 
 // Where an implicit step to t has no solution, because the force of either side of a jump leads to the other.
 bool FixedSteps::goes_over_jump(const Status& failed, double t) {
-  if (!settings_.retry || jumps_.none() || !integrates() || failed.failure != Failure::not_converged) return false;
+  if (!settings_.retry || !jumps_.steps_may_fail() || !integrates() || failed.failure != Failure::not_converged)
+    return false;
   return take_back().ok() && comes_to_jump(jumps_, last_seen(), settings_.linear(), x_, t);
 }
 

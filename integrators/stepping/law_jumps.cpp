@@ -10,8 +10,9 @@
 
 namespace poinsot {
 
-LawJumps::LawJumps(const Model& model) {
+LawJumps::LawJumps(const Model& model) : springs_(springs_that_turn_round(model)) {
   for (const SpringLaw& law : spring_laws(model)) {
+    if (law.spring >= 0 && law.force_of_no_length(0) != 0) springs_.push_back(law);
     std::size_t jumps = 0;
     for (int k = 0; k < law.F->switch_count(); ++k) jumps += law.F->switch_jumps(k) ? 1 : 0;
     if (jumps == 0) continue;
@@ -46,6 +47,20 @@ const SpringLaw* LawJumps::crossed(const Sides& before, const Sides& after) cons
   return nullptr;
 }
 
+std::vector<Vector3> LawJumps::stretches(const Problem& problem, const State& at) const {
+  std::vector<BodyState> bodies(problem.model().bodies.size());
+  problem.to_bodies(at.a(), bodies);
+  std::vector<Vector3> stretches;
+  for (const SpringLaw& spring : springs_) stretches.push_back(spring.place(problem.model(), problem, bodies).d);
+  return stretches;
+}
+
+bool LawJumps::turned_round(const std::vector<Vector3>& before, const std::vector<Vector3>& after) {
+  for (std::size_t k = 0; k < before.size(); ++k)
+    if (before[k].dot(after[k]) < 0) return true;
+  return false;
+}
+
 bool comes_to_jump(LawJumps& jumps, const Problem& problem, const LinearChoice& choice, const State& from, double t) {
   const double h = t - from.t;
   if (!sticking_law(problem, choice, from, h).empty() || !resting_law(problem, choice, from, h).empty()) return false;
@@ -56,10 +71,11 @@ bool comes_to_jump(LawJumps& jumps, const Problem& problem, const LinearChoice& 
   if (!consistent.accelerations(ahead).ok()) return false;
   LawJumps::Sides before = jumps.sides(), after = before;
   jumps.look(*own, ahead, before);
+  const std::vector<Vector3> stretched = jumps.stretches(*own, ahead);
   consistent.lead(ahead, t + h);
   consistent.stand(ahead);
   jumps.look(*own, ahead, after);
-  return jumps.crossed(before, after) != nullptr;
+  return jumps.crossed(before, after) || LawJumps::turned_round(stretched, jumps.stretches(*own, ahead));
 }
 
 Status lead_on(const Problem& problem, const LinearChoice& choice, State& x, double t) {

@@ -1,5 +1,6 @@
 // Jumps of laws of springs by the state: on which side of each one a motion is, and how a step comes over one at which
-// an implicit equation has no solution, the force of either side leading to the other.
+// an implicit equation has no solution, the force of either side leading to the other. So it is, too, where the force
+// of a spring turns round that passes through no length: that is looked for where a step has failed alone.
 #pragma once
 
 #include <cstddef>
@@ -19,21 +20,26 @@ class LawJumps {
   explicit LawJumps(const Model& model);  // which has to live as long
 
   bool none() const { return laws_.empty(); }
+  bool steps_may_fail() const { return !none() || !springs_.empty(); }  // because of them
   Sides sides() const { return Sides(size_, 0.0); }
   // Those of a state, where the problem stands.
   void look(const Problem& problem, const State& at, Sides& sides);
   // A law whose jump lies between the two; none: null.
   const SpringLaw* crossed(const Sides& before, const Sides& after) const;
+  // How the springs stretch where the problem stands, and whether one has turned round between the two.
+  std::vector<Vector3> stretches(const Problem& problem, const State& at) const;
+  static bool turned_round(const std::vector<Vector3>& before, const std::vector<Vector3>& after);
 
  private:
-  std::vector<SpringLaw> laws_;  // that jump
+  std::vector<SpringLaw> laws_;     // that jump
+  std::vector<SpringLaw> springs_;  // whose force turns round
   std::vector<BodyState> bodies_;
   std::vector<double> switches_;  // of a law
   std::size_t size_ = 0;
 };
 
-// Whether accelerations as they are at `from` lead over a jump before t or as far again, to which the motion does not
-// stick and on which it does not rest (sticking.h).
+// Whether accelerations as they are at `from` lead over a jump, or a spring through no length, before t or as far
+// again, to which the motion does not stick and on which it does not rest (sticking.h).
 bool comes_to_jump(LawJumps& jumps, const Problem& problem, const LinearChoice& choice, const State& from, double t);
 // x becomes the state at t, near to it, to which its accelerations lead, consistent there.
 Status lead_on(const Problem& problem, const LinearChoice& choice, State& x, double t);

@@ -33,12 +33,13 @@ class Progress {
   bool never_ends() const { return in_a_row_ >= kTold; }
   double limit() const { return limit_; }  // of time, s, which steps that never end do not come beyond
   bool takes_long() const { return steps_ >= kMany && left_ > kLong; }
+  bool takes_long_for_a_rest() const { return steps_ >= kMany && left_ > kLongForARest; }
   double steps_left() const { return left_; }  // if it goes on as it did
 
  private:
   static constexpr int kTold = 4;
   static constexpr std::int64_t kFirst = 1024, kMany = 32 * kFirst;
-  static constexpr double kPart = 0.95, kLong = 1e8;
+  static constexpr double kPart = 0.95, kLong = 1e8, kLongForARest = 1e7;
   double end_, limit_, left_ = 0, t_ = 0, way_ = 0;
   std::int64_t steps_ = 0, next_ = kFirst;
   int in_a_row_ = 0;
