@@ -165,7 +165,7 @@ class Session {
 
   // A step is not offered back, so that what laws do within it is looked for before it, as the motion goes on now.
   double seen_by_laws(double stop, double ahead) {
-    if (course_.laws.none() || !(ahead > at_t_)) return stop;
+    if (course_.passed_laws.none() || !(ahead > at_t_)) return stop;
     ida_.read_end(at_t_, next_);
     problem_.set_position(at_t_, span(next_.q));
     problem_.set_velocity(span(next_.v));

@@ -10,7 +10,10 @@ namespace poinsot {
 
 PassedLaws::PassedLaws(const LawSteps& steps, double end, double rtol, double atol, Tell tell)
     : steps_(steps), end_(end), rtol_(rtol), atol_(atol), tell_(std::move(tell)), watches_(steps.size()) {
-  for (std::size_t k = 0; k < steps.size(); ++k) watches_[k].on = steps.law(k).of.F != nullptr;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    watches_[k].on = steps.law(k).of.F != nullptr;
+    none_ = none_ && !watches_[k].on;
+  }
 }
 
 double PassedLaws::reach() {

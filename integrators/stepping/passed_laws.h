@@ -21,6 +21,7 @@ class PassedLaws {
   // Of steps that have to live as long, in a run up to a time `end`.
   PassedLaws(const LawSteps& steps, double end, double rtol, double atol, Tell tell);
 
+  bool none() const { return none_; }
   // How far the step looked at may go; its end where it may so.
   double reach();
   // As far as is known at its beginning, where the motion goes on as it does there up to a time `to`.
@@ -45,6 +46,7 @@ class PassedLaws {
   const double end_, rtol_, atol_;
   const Tell tell_;
   std::vector<Watch> watches_;  // by law
+  bool none_ = true;
 };
 
 }  // namespace poinsot
