@@ -1,6 +1,7 @@
 #include "integrators/stepping/law_jumps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 
@@ -12,7 +13,7 @@ namespace poinsot {
 
 LawJumps::LawJumps(const Model& model) : springs_(springs_that_turn_round(model)) {
   for (const SpringLaw& law : spring_laws(model)) {
-    if (law.spring >= 0 && law.force_of_no_length(0) != 0) springs_.push_back(law);
+    if (law.spring >= 0) springs_.push_back(law);
     std::size_t jumps = 0;
     for (int k = 0; k < law.F->switch_count(); ++k) jumps += law.F->switch_jumps(k) ? 1 : 0;
     if (jumps == 0) continue;
@@ -55,9 +56,12 @@ std::vector<Vector3> LawJumps::stretches(const Problem& problem, const State& at
   return stretches;
 }
 
-bool LawJumps::turned_round(const std::vector<Vector3>& before, const std::vector<Vector3>& after) {
-  for (std::size_t k = 0; k < before.size(); ++k)
-    if (before[k].dot(after[k]) < 0) return true;
+bool LawJumps::turned_round(const std::vector<Vector3>& before, const std::vector<Vector3>& after, double t) const {
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    const double length = std::max(before[k].norm(), after[k].norm()), F = springs_[k].at_rest(0, t);
+    const bool alike = std::abs(springs_[k].at_rest(length, t) - F) <= 0.5 * std::abs(F);
+    if (before[k].dot(after[k]) < 0 && alike && std::isfinite(F)) return true;
+  }
   return false;
 }
 
@@ -75,7 +79,7 @@ bool comes_to_jump(LawJumps& jumps, const Problem& problem, const LinearChoice& 
   consistent.lead(ahead, t + h);
   consistent.stand(ahead);
   jumps.look(*own, ahead, after);
-  return jumps.crossed(before, after) || LawJumps::turned_round(stretched, jumps.stretches(*own, ahead));
+  return jumps.crossed(before, after) || jumps.turned_round(stretched, jumps.stretches(*own, ahead), t);
 }
 
 Status lead_on(const Problem& problem, const LinearChoice& choice, State& x, double t) {

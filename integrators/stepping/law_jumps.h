@@ -26,9 +26,9 @@ class LawJumps {
   void look(const Problem& problem, const State& at, Sides& sides);
   // A law whose jump lies between the two; none: null.
   const SpringLaw* crossed(const Sides& before, const Sides& after) const;
-  // How the springs stretch where the problem stands, and whether one has turned round between the two.
+  // How the springs stretch where the problem stands, and whether one has done nothing but turn round between the two.
   std::vector<Vector3> stretches(const Problem& problem, const State& at) const;
-  static bool turned_round(const std::vector<Vector3>& before, const std::vector<Vector3>& after);
+  bool turned_round(const std::vector<Vector3>& before, const std::vector<Vector3>& after, double t) const;
 
  private:
   std::vector<SpringLaw> laws_;     // that jump

@@ -102,13 +102,13 @@ std::vector<SpringLaw> springs_that_turn_round(const Model& model) {
     const double F = s.law ? s.law->law(Arguments<double>{}).F : -s.stiffness * s.length;
     if (F == 0) continue;
     const double mass = std::min(mass_that_moves(model, s.i), mass_that_moves(model, s.j));
-    springs.push_back({nullptr, static_cast<int>(k), -1, s.length, mass, F});
+    springs.push_back({nullptr, static_cast<int>(k), -1, s.length, mass, F, s.law ? 0 : s.stiffness});
   }
   return springs;
 }
 
-double SpringLaw::force_of_no_length(double t) const {
-  return F ? F->law(Arguments<double>{t, -zero, 0}).F : without_length;
+double SpringLaw::at_rest(double length, double t) const {
+  return F ? F->law(Arguments<double>{t, length - zero, 0}).F : without_length + stiffness * length;
 }
 
 LawPlace SpringLaw::place(const Model& model, const Problem& problem, std::span<const BodyState> bodies) const {

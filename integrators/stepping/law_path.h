@@ -27,17 +27,17 @@ struct LawPlace {
 };
 
 struct SpringLaw {
-  const Expression* F;        // null of a spring whose law is linear or constant
-  int spring, torsion;        // of the model; one is −1
-  double zero;                // m, rad
-  double inertia;             // kg, kg m², of the lighter body
-  double without_length = 0;  // N, where F is null: its force there
+  const Expression* F;                       // null of a spring whose law is linear or constant
+  int spring, torsion;                       // of the model; one is −1
+  double zero;                               // m, rad
+  double inertia;                            // kg, kg m², of the lighter body
+  double without_length = 0, stiffness = 0;  // N, N/m, where F is null: its force there, and how that grows
 
   // As it is where the problem, and the bodies, stand.
   LawPlace place(const Model& model, const Problem& problem, std::span<const BodyState> bodies) const;
   Arguments<double> arguments(const LawPlace& place, double t) const;
-  double change(const LawPlace& place) const;  // of v with time
-  double force_of_no_length(double t) const;   // N, of a spring
+  double change(const LawPlace& place) const;     // of v with time
+  double at_rest(double length, double t) const;  // N, the force of a spring
   const std::string& name(const Model& model) const;
   std::string called(const Model& model) const;                    // what it is, too
   const char* unit() const { return torsion >= 0 ? "N m" : "N"; }  // of F

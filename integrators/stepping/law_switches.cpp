@@ -184,18 +184,20 @@ double LawSwitches::root(std::size_t law, const Switch& of, const LawPath& path,
 bool LawSwitches::counts(std::size_t law, const Switch& of, const LawPath& path, double s, double h) const {
   if (of.soon > kMostSoon) return false;
   const LawSteps::Law& steps = steps_.law(law);
-  const double wrong = of.k == kNoLength ? turned_round(law, path, s) : bent(law, of, path, s);
+  const double wrong = of.k == kNoLength ? turned_round(law, path, s, h) : bent(law, of, path, s);
   return wrong > kOfTolerance * tolerance(steps) * steps.of.inertia / h;
 }
 
 // N, by how much the force of a spring changes that is shortest at s: 0 where error control is to see how it turns, in
-// about the time |d|/|ḋ|.
-double LawSwitches::turned_round(std::size_t law, const LawPath& path, double s) const {
+// about the time |d|/|ḋ|, or what else it does so near.
+double LawSwitches::turned_round(std::size_t law, const LawPath& path, double s, double h) const {
   const LawSteps::Law& steps = steps_.law(law);
   const LawPlace place = path.place(s);
-  const double F = 2 * std::abs(steps.of.force_of_no_length(steps_.from()));
-  const bool at_once = place.d.norm() * F < kOfTolerance * tolerance(steps) * steps.of.inertia * place.rate.norm();
-  return at_once ? F : 0;
+  const double t = steps_.from(), F = steps.of.at_rest(0, t), near = kNearJump * std::max(long_, h);  // s
+  const double beside = path.place(s - near / h).d.norm();
+  const double impulse = kOfTolerance * tolerance(steps) * steps.of.inertia;
+  const bool at_once = place.d.norm() * 2 * std::abs(F) < impulse * place.rate.norm();
+  return at_once && std::abs(steps.of.at_rest(beside, t) - F) * near < impulse ? 2 * std::abs(F) : 0;
 }
 
 // N, N m: what F differs by from a smooth function.

@@ -63,7 +63,7 @@ class LawSwitches {
   double resolution() const;
   void note_crossing(Switch& of, double t) const;
   bool counts(std::size_t law, const Switch& of, const LawPath& path, double s, double h) const;
-  double turned_round(std::size_t law, const LawPath& path, double s) const;
+  double turned_round(std::size_t law, const LawPath& path, double s, double h) const;
   double bent(std::size_t law, const Switch& of, const LawPath& path, double s) const;
 
   double tolerance(const LawSteps::Law& steps) const { return atol_ + rtol_ * steps.from.rate.norm(); }

@@ -148,7 +148,7 @@ std::string spring_without_length(const Problem& problem, const LinearChoice& ch
   for (const SpringLaw& law : spring_laws(problem.model()))
     if (law.spring >= 0) springs.push_back(law);
   for (const SpringLaw& spring : springs) {
-    const double F = spring.force_of_no_length(state.t);
+    const double F = spring.at_rest(0, state.t);
     if (!(F > 0) || !std::isfinite(F)) continue;
     BesideJump beside(problem, choice, state, spring);
     if (!beside.moves() || !rests_without_length(beside, spring, F, instant)) continue;
