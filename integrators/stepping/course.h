@@ -66,8 +66,7 @@ class Course {
       if (progress_.never_ends()) return never_beyond(run_.problem, at, progress_.limit());
       if (progress_.takes_long_for_a_rest())
         if (Status status = sticking_.look_for_rest(run_.problem, at); !status.ok()) return status;
-      if (progress_.takes_long() && !std::exchange(long_told_, true))
-        tell_long_way(run_, at.t, progress_.steps_left());
+      if (progress_.takes_long() && !std::exchange(long_told_, true)) tell_long_way(run_, at.t, progress_.steps_left());
     }
     return sticking_.look(run_.problem, at);
   }

@@ -33,7 +33,8 @@ class StickingWatch {
   // The end of a step, where the problem stands. Failed where many steps have ended on the other side of a jump than
   // the one before, few in between have not, and sticking_law() says of one that the motion cannot leave it.
   Status look(const Problem& problem, const State& at);
-  // Where the rest of the run would be a matter of minutes or more. Failed where resting_law() says of one that it rests there.
+  // Where the rest of the run would be a matter of minutes or more. Failed where resting_law() says of one that it
+  // rests there.
   Status look_for_rest(const Problem& problem, const State& at) const;
 
  private:
