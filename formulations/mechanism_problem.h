@@ -13,6 +13,9 @@
 #include <vector>
 
 #include "core/check.h"
+#include "formulations/alternates.h"
+#include "formulations/blocks.h"
+#include "formulations/counted_turn.h"
 #include "formulations/faults.h"
 #include "formulations/mechanism.h"
 #include "formulations/mechanism_matrix.h"
@@ -168,16 +171,11 @@ class MechanismProblem final : public Problem {
   bool has_discrete_state() const override {
     return F::space == CoordinateSpace::charts || !mechanism_.c.twist.empty() || !mechanism_.c.followed.empty();
   }
-  bool exchanges_rows() const override {
-    const std::vector<char>& stood = mechanism_.c.alternate_stood_in;
-    for (std::size_t k = 0; k < stood.size(); ++k)
-      if (stood[k] != alternate_stands_in(k)) return true;
-    return false;
-  }
+  bool exchanges_rows() const override { return alternates_change(mechanism_.c); }
   Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double>,
                 bool& rewritten) override {
     auto& c = mechanism_.c;
-    if (Status status = exchange_alternates(t); !status.ok()) return status;
+    if (Status status = exchange_alternates(c, t); !status.ok()) return status;
     for (std::size_t k = 0; k < c.twist.size(); ++k) {
       c.twist[k] = Torsion<F, double>::angle(c, c.elements->torsions[k], c.twist[k]);
     }
@@ -230,33 +228,7 @@ class MechanismProblem final : public Problem {
     for (const auto& rate : mechanism_.c.rate) square = std::max(square, rate.w.squaredNorm());
     return std::sqrt(square);
   }
-  CountedTurn counted_turn() const override {
-    const auto& c = mechanism_.c;
-    const Elements& e = *c.elements;
-    const auto turn = [&](int body) {
-      return body == kGround ? Vector3(Vector3::Zero()) : c.rate[static_cast<std::size_t>(body)].wg;
-    };
-    const auto about = [&](int a, int b, int i, int j) {
-      const Vector3 axis = c.s[static_cast<std::size_t>(a)].cross(c.s[static_cast<std::size_t>(b)]);
-      return std::abs(axis.dot(turn(j) - turn(i)));
-    };
-    CountedTurn fastest;
-    for (std::size_t k = 0; k < e.torsions.size(); ++k) {
-      const TorsionSpringElement& spring = e.torsions[k];
-      const double rate = about(spring.a, spring.b, spring.i, spring.j);
-      if (rate > fastest.rate) fastest = {rate, static_cast<int>(k), -1, -1};
-    }
-    for (const AngleRow& k : e.angle) {
-      const double rate = std::abs(c.f[static_cast<std::size_t>(k.f)].fd);
-      if (rate > fastest.rate) fastest = {rate, -1, e.model_row[static_cast<std::size_t>(k.row)], -1};
-    }
-    for (std::size_t k = 0; k < e.followed.size(); ++k) {
-      const FollowedAngle& angle = e.model->followed[k];
-      const double rate = about(e.followed[k].a, e.followed[k].b, angle.i, angle.j);
-      if (rate > fastest.rate) fastest = {rate, -1, -1, static_cast<int>(k)};
-    }
-    return fastest;
-  }
+  CountedTurn counted_turn() const override { return fastest_counted_turn(mechanism_.c); }
 
   std::string describe_unknown(int k) const override {
     const Elements& e = *mechanism_.c.elements;
@@ -266,77 +238,8 @@ class MechanismProblem final : public Problem {
   }
 
  private:
-  bool alternate_stands_in(std::size_t k) const {
-    const AlternateRow& row = mechanism_.c.elements->alternates[k];
-    const DP1Row& now = mechanism_.c.dp1[static_cast<std::size_t>(row.primary)];
-    return now.u == row.alternate.u && now.v == row.alternate.v && now.f == row.alternate.f;
-  }
-  // A row and its alternate tell the same motion where one takes the other's place: with the one that stands now
-  // satisfied, so is the one that stood.
-  Status exchange_alternates(double t) {
-    constexpr double kLost = 1e-5;  // rad, as of rows set aside (integrators/start/over_constrained.h)
-    auto& c = mechanism_.c;
-    for (std::size_t k = 0; k < c.alternate_stood_in.size(); ++k) {
-      const AlternateRow& row = c.elements->alternates[k];
-      const char stands = alternate_stands_in(k);
-      char& stood = c.alternate_stood_in[k];
-      if (stood == stands) continue;
-      const DP1Row& other = stands ? row.normal : row.alternate;
-      const Vector3 &u = c.s[static_cast<std::size_t>(other.u)], &v = c.s[static_cast<std::size_t>(other.v)];
-      const double off = std::abs(u.dot(v) - c.f[static_cast<std::size_t>(other.f)].f) / (u.norm() * v.norm());
-      if (stood == 2 || !(off > kLost)) {
-        stood = stands;
-        continue;
-      }
-      return {Failure::constraint_lost, t,
-              fmt::format(
-                  "at t = {:.9g} s, where |f| passes 0.9, {} and its alternate contradict one another: with one "
-                  "satisfied the other is violated by {:.3g}; f and the directions of both have to tell the "
-                  "same motion, or an angle driver takes the place of both",
-                  t, describe_row(*c.elements->model, c.elements->model_row[static_cast<std::size_t>(row.normal.row)]),
-                  off)};
-    }
-    return {};
-  }
-
   using M = Mechanism<F, double>;
   using Matrix = MechanismMatrix<F, double>;
-
-  // Records the places of a matrix's blocks, or adds their values. One sink for both, so that what writes into it is
-  // compiled once. Values that no cache holds are fetched ahead.
-  struct Blocks {
-    explicit Blocks(std::vector<Block>* recorded) : places(recorded), adds_alone(false) {}
-    Blocks(std::span<const int> slots, std::span<double> of)
-        : slot(slots.data()), values(of.data()), end(slots.data() + slots.size()) {
-      constexpr std::size_t kCached = 1u << 17, kAhead = 64;  // numbers: 1 MB; columns of blocks
-      adds_alone = of.size() <= kCached || slots.size() <= kAhead;
-      if (!adds_alone) ahead = slot + kAhead;
-    }
-    bool places_only() const { return places != nullptr; }
-    template <class Derived>
-    void block(int row, int col, const Eigen::MatrixBase<Derived>& m) {
-      constexpr int kRows = Derived::RowsAtCompileTime, kCols = Derived::ColsAtCompileTime;
-      if (!adds_alone) [[unlikely]] {
-        if (places_only()) return record({row, col, kRows, kCols});
-        fetch(kCols);
-      }
-      for (Eigen::Index c = 0; c < kCols; ++c) {
-        double* column = values + *slot++;
-        for (Eigen::Index r = 0; r < kRows; ++r) column[r] += m(r, c);
-      }
-    }
-    [[gnu::noinline]] void record(const Block& place) { places->push_back(place); }
-    [[gnu::noinline]] void fetch(int columns) {
-      for (; columns > 0 && ahead != end; --columns) __builtin_prefetch(values + *ahead++, 1);
-      adds_alone = ahead == end;
-    }
-
-    std::vector<Block>* places = nullptr;  // null where values are written
-    const int* slot = nullptr;
-    double* values = nullptr;
-    const int *end = nullptr, *ahead = nullptr;
-    bool adds_alone = true;
-  };
 
   template <class T>
   static void expect(std::span<T> vector, int size) {

@@ -11,9 +11,8 @@
 
 namespace poinsot {
 
-LawJumps::LawJumps(const Model& model) : springs_(springs_that_turn_round(model)) {
+LawJumps::LawJumps(const Model& model) : springs_(springs_that_may_turn_round(model)) {
   for (const SpringLaw& law : spring_laws(model)) {
-    if (law.spring >= 0) springs_.push_back(law);
     std::size_t jumps = 0;
     for (int k = 0; k < law.F->switch_count(); ++k) jumps += law.F->switch_jumps(k) ? 1 : 0;
     if (jumps == 0) continue;

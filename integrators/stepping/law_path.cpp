@@ -107,6 +107,13 @@ std::vector<SpringLaw> springs_that_turn_round(const Model& model) {
   return springs;
 }
 
+std::vector<SpringLaw> springs_that_may_turn_round(const Model& model) {
+  std::vector<SpringLaw> springs = springs_that_turn_round(model);
+  for (const SpringLaw& law : spring_laws(model))
+    if (law.spring >= 0) springs.push_back(law);
+  return springs;
+}
+
 double SpringLaw::at_rest(double length, double t) const {
   return F ? F->law(Arguments<double>{t, length - zero, 0}).F : without_length + stiffness * length;
 }

@@ -46,6 +46,8 @@ struct SpringLaw {
 std::vector<SpringLaw> spring_laws(const Model& model);
 // Of the others those whose force where they have no length is not zero.
 std::vector<SpringLaw> springs_that_turn_round(const Model& model);
+// These, and those of laws: their force may turn round.
+std::vector<SpringLaw> springs_that_may_turn_round(const Model& model);
 
 // F by s from 0 to 1.
 class LawPath {

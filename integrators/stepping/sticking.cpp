@@ -144,10 +144,7 @@ std::string law_that(Find&& find, const char* leads, const Problem& problem, con
 std::string spring_without_length(const Problem& problem, const LinearChoice& choice, const State& state,
                                   double instant) {
   if (state.v.size() > kMostVelocities) return {};
-  std::vector<SpringLaw> springs = springs_that_turn_round(problem.model());
-  for (const SpringLaw& law : spring_laws(problem.model()))
-    if (law.spring >= 0) springs.push_back(law);
-  for (const SpringLaw& spring : springs) {
+  for (const SpringLaw& spring : springs_that_may_turn_round(problem.model())) {
     const double F = spring.at_rest(0, state.t);
     if (!(F > 0) || !std::isfinite(F)) continue;
     BesideJump beside(problem, choice, state, spring);
