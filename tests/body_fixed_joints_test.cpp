@@ -13,6 +13,7 @@
 #include "integrators/start/closure.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/rough_pose.h"
+#include "tests/support/loops.h"
 #include "tests/support/random_model.h"
 #include "tests/support/simulation.h"
 
@@ -220,6 +221,28 @@ TEST(BodyFixedJoints, AMechanismIsTheSameFromARoughPose) {
     const Distance d = distance({{0, start.bodies, {}}}, {{0, start_of(scene).bodies, {}}});
     EXPECT_LT(std::max({d.r, d.A, d.rd, d.w}), 1e-10) << d;
   }
+}
+
+// A pose given to a few digits leaves redundant rows open; they are redundant all the same.
+TEST(BodyFixedJoints, RedundantRowsAreSoFromPosesThatAreOffByLittle) {
+  Random random(27);
+  for (const int links : {4, 5})
+    for (const double off : {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3}) {
+      const Scene scene = body_fixed(loop({.links = links}));
+      const InitialState exact = start_of(scene);
+      Scene given = scene;
+      for (Body& body : given.bodies) {
+        body.position += off * random.vector();
+        body.orientation = body.orientation * Eigen::AngleAxisd(off, random.unit()).toRotationMatrix();
+      }
+      const InitialState start = start_of(given);
+      ASSERT_TRUE(start.status.ok()) << start.status.message;
+      EXPECT_EQ(start.rank.aside.size(), exact.rank.aside.size()) << links << ' ' << off;
+      EXPECT_EQ(start.rank.doubtful, -1) << links << ' ' << off;
+      const Distance d = distance({{0, start.bodies, {}}}, {{0, exact.bodies, {}}});
+      EXPECT_LT(std::max(d.r, d.A), 100 * off) << links;
+      EXPECT_LT(violation(std::make_shared<const Model>(compile(scene)), start.bodies).position, 1e-13) << off;
+    }
 }
 
 Scene driven_pendulum(const char* angle) {

@@ -162,5 +162,39 @@ TEST(LargeRotations, a_step_onto_another_branch_stops_the_run) {
     }
 }
 
+// A shaft that is held half a metre from its centre of mass, which rests; a bar on two ropes, which does not turn: what
+// rounding makes of the one or the other velocity is no branch.
+TEST(LargeRotations, centres_that_rest_and_bodies_that_do_not_turn_are_on_no_other_branch) {
+  Scene shaft, bar;
+  bar.gravity = {0, 0, -9.81};
+  Body body;
+  body.name = "body", body.mass = 1, body.inertia = Vector3(0.02, 0.05, 0.05).asDiagonal();
+  shaft.bodies.push_back(body);
+  Joint bearing;
+  bearing.j = 0, bearing.point = {0.5, 0, 0}, bearing.axis = {1, 0, 0};
+  shaft.joints.push_back(bearing);
+  Driver motor;
+  motor.j = 0, motor.axis = {1, 0, 0}, motor.value = Expression::parse("3*t");
+  shaft.drivers.push_back(motor);
+  body.position = {0, 0, -3}, body.velocity = {0, 3, 0};
+  bar.bodies.push_back(body);
+  for (const double end : {-0.5, 0.5}) {
+    Constraint rope;
+    rope.type = ConstraintType::D, rope.j = 0;
+    rope.s_i = rope.s_j = {end, 0, 0}, rope.f = Expression(9);
+    bar.constraints.push_back(rope);
+  }
+  for (const IntegratorEntry& entry : integrators()) {
+    if (entry.controls_error || entry.analysis == Analysis::kinematics) continue;
+    for (const char* formulation : kAllFormulations)
+      for (const Scene* scene : {&shaft, &bar}) {
+        const Recorded r = run(*scene, with(entry.name, formulation, 1e-3, 2));
+        EXPECT_TRUE(r.outcome.status.ok()) << entry.name << ' ' << formulation << ": " << r.outcome.status.message;
+        EXPECT_THAT(r.outcome.notices, testing::Not(testing::Contains(testing::HasSubstr("certain"))));
+        EXPECT_EQ(r.outcome.statistics.divided_steps, 0) << entry.name << ' ' << formulation;
+      }
+  }
+}
+
 }  // namespace
 }  // namespace poinsot::test

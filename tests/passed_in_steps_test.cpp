@@ -1,4 +1,5 @@
-// Steps of a fixed length that pass over contacts and catches say so, with a step that sees them; others say nothing.
+// Steps of a fixed length that pass over contacts and catches say so, with a step that sees them; so do those over
+// which springs pass through no length. Others say nothing.
 #include "integrators/stepping/passed_in_steps.h"
 
 #include <gmock/gmock.h>
@@ -139,8 +140,46 @@ TEST_P(PassedInStepsTest, WhatStepsSeeIsNotTold) {
        {"100*x + 50*x^3", "1e3*min(0, x)", "20*abs(x)*x", "200*exp(-(x/0.05)^2)", "5*sin(20*x)",
         "10*tanh(100*v) + 50*x", "10*sign(v)*step(1 - abs(v))", "50*x + 3*v*abs(v)", "x^2", "1 + cos(3*x)*sin(x)"}) {
     quiet(thrown(law, 3));
-    quiet(thrown(law, 0.5, 1));
+    Scene beside = thrown(law, 0.5, 1);  // where the spring has no length
+    beside.bodies[0].position.y() = 0.3;
+    quiet(beside);
   }
+}
+
+// A ball that goes through the other end of its spring, or beside it.
+Scene through_its_spring(double beside, const char* law) {
+  Scene scene = thrown(law, 0);
+  scene.bodies[0].position = {-1, beside, 0};
+  return scene;
+}
+Scene through_linear_spring() {
+  Scene scene = through_its_spring(0, "0");
+  Spring& spring = std::get<Spring>(scene.forces[0]);
+  spring.law.reset();
+  spring.stiffness = 20, spring.length = 0.25;
+  return scene;
+}
+
+TEST_P(PassedInStepsTest, SpringsThroughNoLengthAreTold) {
+  const auto told = [&](const Scene& scene, const char* force) {
+    const Recorded r = moved(scene, 1e-3, 1);
+    EXPECT_THAT(r.outcome.notices, ElementsAre(AllOf(HasSubstr("spring 'bump' passes through no length within a step"),
+                                                     HasSubstr(force), HasSubstr("at t = 0."))));
+  };
+  for (const double beside : {0.0, 1e-6, 2e-4})
+    for (const char* law : {"5", "5 + 20*x", "5 + 20*x + 0.1*v"}) told(through_its_spring(beside, law), ", 5 N");
+  told(through_linear_spring(), ", -5 N");
+}
+
+TEST_P(PassedInStepsTest, SpringsBesideNoLengthAreNot) {
+  const auto quiet = [&](double beside, const char* law) {
+    const Recorded r = moved(through_its_spring(beside, law), 1e-3, 2);
+    EXPECT_THAT(r.outcome.notices, IsEmpty()) << law << " " << beside;
+  };
+  quiet(0.02, "5 + 20*x");
+  quiet(0, "20*x");
+  quiet(0, "20*x + 50*x^3");
+  quiet(0, "1e-5 + 20*x");
 }
 
 }  // namespace

@@ -107,5 +107,16 @@ TEST_P(PassedLawsTest, PointsOnWheelsMeetPosts) {
   EXPECT_NEAR(r.samples.back().bodies[0].w.z(), -10, 1e-4);  // 500 J hold 50
 }
 
+// A force that jumps to and fro along the way, at both ends of a step the same: x = 1 + t − 5/2 t² up to 1.1, ...
+TEST_P(PassedLawsTest, CombsAreFelt) {
+  for (const char* law : {"5*sign(sin(10*x))", "5*(2*step(sin(7*x)) - 1)"}) {
+    Scene scene = flying({1, 0, 0}, law, 1);
+    scene.bodies[0].position.x() = 1, std::get<Spring>(scene.forces[0]).s_i.setZero();
+    const Recorded r = moved(scene, 1.5);
+    EXPECT_NEAR(r.samples.back().bodies[0].r.x(), 0.925, 1e-6) << law;
+    EXPECT_NEAR(r.samples.back().bodies[0].rd.x(), 0.5, 1e-6) << law;
+  }
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "core/scene_generator.h"
 #include "integrators/start/initial_state.h"
+#include "integrators/start/row_space.h"
 #include "tests/support/hubs.h"
 #include "tests/support/scene_transform.h"
 
@@ -255,6 +256,24 @@ TEST(Rank, IsInvariant) {
     const RankAnalysis analysis = analyze(scaled);
     EXPECT_EQ(analysis.rank, 29) << scale;
     EXPECT_EQ(analysis.degrees_of_freedom(), 1) << scale;
+  }
+}
+
+// The same slider, its centre of mass at the joints' points but for a rounding of these.
+TEST(Rank, OfABodyWithAllButNoArms) {
+  for (const double off : {0.0, 1e-17, 1e-12, 1e-9, 1e-7}) {
+    Scene scene = free_bodies(3);
+    scene.bodies[0].position = {0, 0, 0}, scene.bodies[1].position = {0.025, 0.025, 0.1};
+    scene.bodies[2].position = {0.05, 0, 0.2};
+    const Vector3 middle = scene.bodies[1].position + Vector3(off, -off, 0);
+    scene.joints = {joint(JointType::revolute, kGround, 0, {0, 0, 0}),
+                    joint(JointType::revolute, kGround, 2, {0.05, 0, 0.2}),
+                    joint(JointType::translational, 0, 1, middle, {1, 1, 0}),
+                    joint(JointType::translational, 1, 2, middle, {1, -1, 0})};
+    const RankAnalysis rank = analyze(scene);
+    EXPECT_EQ(rank.aside.size(), 3u) << off;
+    EXPECT_EQ(rank.doubtful, -1) << off;
+    EXPECT_GT(body_sizes(compile(scene))[1], 0.01) << off;
   }
 }
 

@@ -268,5 +268,21 @@ TEST_P(Switches, WhatTheProjectionMovesIsAnError) {
   EXPECT_LT(d.w, 1e-5) << d;  // of some 1000 rad/s
 }
 
+// Thirty-two pulses between two kinks each, without a force at either.
+TEST_P(Switches, PulsesBetweenKinksAreFelt) {
+  Scene scene;
+  Body body;
+  body.name = "body", body.mass = 1, body.inertia = Matrix3::Identity();
+  scene.bodies.push_back(body);
+  PointForce push;
+  push.body = 0;
+  push.force[0] = Expression::parse("1e3*max(0, sin(200*t) - 0.999)");
+  scene.forces.push_back(push);
+  const double half = std::acos(0.999), each = 1e3 * 2 * (std::sin(half) - 0.999 * half) / 200;
+  const Recorded r = run(scene, settings(1e-8, 1, 1));
+  ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+  EXPECT_NEAR(r.samples.back().bodies[0].rd.x(), 32 * each, 1e-7);
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <iterator>
-#include <optional>
 #include <utility>
 
 #include "core/check.h"
@@ -49,15 +48,6 @@ void measure(SceneCheck& result) {
   result.extent = box.sizes();
 }
 
-// Where the rows are looked at in place of the given pose, which is no more than a guess: where it closes.
-std::optional<std::vector<BodyState>> pose_meant(const SceneCheck& result, const std::vector<BodyState>& given) {
-  if (result.violation.position <= kSatisfied || !std::ranges::any_of(result.model->groups, &Group::body_fixed))
-    return {};
-  ClosedPose pose = close_mechanism(*result.model, given);
-  if (!pose.closed) return {};
-  return std::move(pose.states);
-}
-
 }  // namespace
 
 std::string_view left_free(const Group& joint) {
@@ -76,7 +66,15 @@ bool without_freedom(const Scene& scene) {
   const auto model = std::make_shared<const Model>(compile(scene));
   const auto pfaffian = [](const Row& row) { return row.type == RowType::pfaffian; };
   return std::none_of(model->rows.begin(), model->rows.end(), pfaffian) &&
-         analyze_rank(model, given_state(*model), RankNames::none).degrees_of_freedom() == 0;
+         analyze_rank(model, pose_meant(model), RankNames::none).degrees_of_freedom() == 0;
+}
+
+std::vector<BodyState> pose_meant(const std::shared_ptr<const Model>& model) {
+  std::vector<BodyState> given = given_state(*model);
+  if (violation(model, given).position <= kSatisfied) return given;
+  ClosedPose pose = close_mechanism(*model, given);
+  if (!pose.closed || (pose.from_beside && !std::ranges::any_of(model->groups, &Group::body_fixed))) return given;
+  return std::move(pose.states);
 }
 
 namespace {
@@ -89,11 +87,11 @@ SceneCheck checked(const Scene& scene) {
   measure(result);
   const std::vector<BodyState> given = given_state(*result.model);
   result.violation = violation(result.model, given);
-  const std::optional<std::vector<BodyState>> meant = pose_meant(result, given);
-  result.rank = analyze_rank(result.model, meant ? *meant : given, RankNames::all);
+  result.rank = analyze_rank(result.model, pose_meant(result.model), RankNames::all);
   if (!result.rank.conflicts.empty()) return result;
   try {
-    result.start = find_initial_state(result.model, Settings{}, meant ? nullptr : &result.rank);
+    const bool as_given = result.violation.position <= kSatisfied;
+    result.start = find_initial_state(result.model, Settings{}, as_given ? &result.rank : nullptr);
   } catch (const InputError& refused) {
     result.refusal = refused.what();
     return result;

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "bench/study/name_list.h"
-#include "integrators/start/initial_state.h"
+#include "bench/study/scene_check.h"
 #include "integrators/start/rank.h"
 
 namespace poinsot::study {
@@ -16,7 +16,7 @@ constexpr double kStill = 1e-9;  // of the mechanism's motion: rounding
 std::vector<std::string> scene_waste(const Scene& scene, const Motion& motion) {
   std::vector<std::string> sentences;
   const auto model = std::make_shared<const Model>(compile(scene));
-  const RankAnalysis rank = analyze_rank(model, given_state(*model), RankNames::all);
+  const RankAnalysis rank = analyze_rank(model, pose_meant(model), RankNames::all);
   if (const std::vector<int> dependent = rank.dependent_rows(); !dependent.empty()) {
     std::vector<std::string> names;
     for (const int row : dependent) names.push_back(describe_row(*model, row));

@@ -157,8 +157,10 @@ class Session {
       const double wanted = std::min({turn.before, t + kStages * reach, settings_.end});
       const double seen = course_.pulses.reach(t, wanted);
       if (seen < wanted) creeping.limited();
+      // So its first step is not to end at the next switch, where a force may be what it is here.
+      const bool sees_ends_alone = seen < wanted || (h == 0 && wanted == turn.before);
       ida_.stop_at(
-          seen_by_laws(seen < wanted ? t + (seen - t) / kStages : std::min(turn.before, settings_.end), ahead));
+          seen_by_laws(sees_ends_alone ? t + (seen - t) / kStages : std::min(turn.before, settings_.end), ahead));
     }
     return turn;
   }

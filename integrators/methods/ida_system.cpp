@@ -84,7 +84,10 @@ double IdaSystem::last_step() const {
 }
 
 double IdaSystem::next_step() const {
+  long steps = 0;
   double h = 0;
+  IDAGetNumSteps(objects_.ida.get(), &steps);
+  if (steps == 0) return 0;  // begun anew, IDA keeps the one of before
   IDAGetCurrentStep(objects_.ida.get(), &h);
   return h;
 }

@@ -41,7 +41,7 @@ double size_of(const std::vector<BodyState>& states) {
 class Assembler {
  public:
   Assembler(const std::shared_ptr<const Model>& model, const Settings& settings, const RankAnalysis* rank)
-      : model_(model), settings_(settings), known_(rank), given_(given_state(*model)) {}
+      : model_(model), settings_(settings), known_(rank), scene_(given_state(*model)), given_(scene_) {}
 
   InitialState run() {
     tell_far_joints(*model_, result_.notices);
@@ -49,8 +49,9 @@ class Assembler {
     before_ = violation(model_, given_);
     close_from_afar();
     refuse_any();
+    close_from_nearby();
     result_.bodies = given_;
-    result_.rank = known_ && !closed_ ? *known_ : analyze_rank(model_, given_, RankNames::none);
+    result_.rank = known_ && !moved_ ? *known_ : analyze_rank(model_, given_, RankNames::none);
     refuse_conflicts();
     tell_rank();
     if (settings_.analysis == Analysis::kinematics && leaves_rates_open()) {
@@ -106,10 +107,19 @@ class Assembler {
           "correct it, or start from a pose nearer to the one meant; `poinsot check` names conflicting constraints",
           describe_group(*model_, pose.worst), describe(pose.gap), describe_group(*model_, group), describe(*most)));
     }
-    closed_ = true;
+    closed_ = moved_ = true;
     tell_closed(pose, group, *most);
     given_ = pose.states;
     before_ = violation(model_, given_);
+  }
+
+  // Off the constraints rows that follow from others look independent.
+  void close_from_nearby() {
+    if (closed_ || !off_position()) return;
+    ClosedPose pose = close_mechanism(*model_, given_);
+    if (!pose.closed || pose.from_beside) return;
+    moved_ = true;
+    given_ = std::move(pose.states);
   }
 
   std::string far_message(int group, const Gap& gap, double limit) const {
@@ -255,7 +265,7 @@ class Assembler {
     double moved = 0, turned = 0, velocity = 0, spin = 0;
     std::size_t body = 0;
     for (std::size_t b = 0; b < given_.size(); ++b) {
-      const BodyState &x = given_[b], &y = result_.bodies[b];
+      const BodyState &x = scene_[b], &y = result_.bodies[b];
       const double dr = (y.r - x.r).norm();
       const double turn = turn_between(x.A, y.A);
       if (std::max(dr, turn) > std::max(moved, turned)) body = b;
@@ -283,9 +293,11 @@ class Assembler {
 
   std::shared_ptr<const Model> model_;
   const Settings& settings_;
-  const RankAnalysis* known_;     // null where it is not; of the given state
-  std::vector<BodyState> given_;  // or what a pose far from the constraints was closed to
-  bool closed_ = false;
+  const RankAnalysis* known_;           // null where it is not; of the given state
+  const std::vector<BodyState> scene_;  // the given state
+  std::vector<BodyState> given_;        // or what that was closed to
+  bool closed_ = false;                 // from afar
+  bool moved_ = false;                  // from wherever
   Violation before_;
   InitialState result_;
 };

@@ -33,6 +33,17 @@ Most most(const Problem& problem, const Eigen::VectorXd& v) {
   return most(problem, [&](Eigen::Index k) { return v[k]; });
 }
 
+// The larger of two velocities, of which points and turns are no less than a part of the other: where centres of mass
+// rest while bodies turn, or bodies all but do not turn while they move, these are rounding, or begin.
+Most larger(const Problem& problem, const Most& a, const Most& b) {
+  constexpr double kPart = 1e-2;
+  double length = 0;  // m, the longest arm
+  for (const Row& row : problem.model().rows) length = std::max({length, row.s_i.norm(), row.s_j.norm()});
+  if (length == 0) length = 1;
+  const double way = std::max(a.way, b.way), turn = std::max(a.turn, b.turn);
+  return {std::max(way, kPart * turn * length), std::max(turn, kPart * way / length)};
+}
+
 }  // namespace
 
 void BranchWatch::begin(const Problem& problem, std::span<const double> a) {
@@ -47,8 +58,9 @@ double BranchWatch::jump(const Problem& problem, const Eigen::VectorXd& v_n, con
   way_ = change.way / h, turn_ = change.turn / h;
   if (!(way_ > kUnusual * usual_way_ || turn_ > kUnusual * usual_turn_)) return 0;
   const Most before = most(problem, v_n), after = most(problem, v);
+  const Most size = larger(problem, before, after);
   const auto part = [&](double Most::*of) {  // of no start from rest, which has no branch to leave
-    return before.*of > kMoved * after.*of ? change.*of / std::max(before.*of, after.*of) : 0;
+    return before.*of > kMoved * after.*of ? change.*of / size.*of : 0;
   };
   return std::max(part(&Most::way), part(&Most::turn));
 }
@@ -83,11 +95,8 @@ Departure departure(Problem& problem, const LinearChoice& choice, const StepEnd&
   };
   Consistent consistent(problem, choice);
   if (!consistent.factor(to.t).ok() || !consistent.solve(to.t, span(rhs)).ok()) return departed(HUGE_VAL);
-  const Most delta = most(problem, rhs), before = most(problem, from.v), after = most(problem, to.v);
-  const auto share = [&](double Most::*of) {
-    const double size = std::max(before.*of, after.*of);
-    return size > 0 ? delta.*of / size : 0;
-  };
+  const Most delta = most(problem, rhs), size = larger(problem, most(problem, from.v), most(problem, to.v));
+  const auto share = [&](double Most::*of) { return size.*of > 0 ? delta.*of / size.*of : 0; };
   return departed(std::max(share(&Most::way), share(&Most::turn)));
 }
 

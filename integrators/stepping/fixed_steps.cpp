@@ -34,6 +34,7 @@ FixedSteps::FixedSteps(const Run& run)
       damping_(run),
       singular_ends_(run.settings),
       passed_(run.problem.model(), run.settings.end, run.tell),
+      turned_(run.problem.model(), run.tell),
       jumps_(run.problem.model()),
       sides_(jumps_.sides()),
       sides_before_(sides_),
@@ -45,7 +46,7 @@ Status FixedSteps::march() {
   if (status.ok()) status = measure_rotation(problem_, 0);
   settles_ = settings_.retry && integrates();
   branch_.begin(problem_, x_.a());
-  if (integrates() && passed_.due(h_)) passed_.look(problem_, x_, h_);
+  if (integrates()) look_at_springs(problem_);
   jumps_.look(problem_, x_, sides_);
   if (run_.singular_for > 0) start_ = Start::limit;
   divides_ = settings_.retry && divides();
@@ -102,7 +103,7 @@ Status FixedSteps::reach(double t, bool sampled) {
     return status;
   }
   branch_.follow();
-  if (integrates() && passed_.due(h_)) passed_.look(last_seen(), x_, h_);
+  if (integrates()) look_at_springs(last_seen());
   if (integrates() && !jumps_.none()) look_for_jumps();
   start_ = settled ? Start::limit : led_ ? Start::rewritten : Start::usual;
   rows_asked_ = false;
@@ -111,6 +112,12 @@ Status FixedSteps::reach(double t, bool sampled) {
   if (!due && !sampled) return {};
   standing_ = &stand();
   return due ? accept(*standing_) : Status{};
+}
+
+// What springs do within the step to x_, where the problem stands.
+void FixedSteps::look_at_springs(const Problem& problem) {
+  if (passed_.due(h_)) passed_.look(problem, x_, h_);
+  if (turned_.due(h_)) turned_.look(problem, x_, h_);
 }
 
 Status FixedSteps::begin() {

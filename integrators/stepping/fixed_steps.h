@@ -22,6 +22,7 @@
 #include "integrators/stepping/singular_ends.h"
 #include "integrators/stepping/still_watch.h"
 #include "integrators/stepping/time_grid.h"
+#include "integrators/stepping/turned_in_steps.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
@@ -144,6 +145,7 @@ class FixedSteps {
   Status examine_end(bool& settled);
   Status settle_end(bool& settled);
   bool settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at);
+  void look_at_springs(const Problem& problem);
   void look_for_jumps();
   Status measure_rotation(Problem& problem, double t);
   // Whether the step ends on the branch that its velocities lead to.
@@ -166,6 +168,7 @@ class FixedSteps {
   NumericalDamping damping_;
   SingularEnds singular_ends_;
   PassedInSteps passed_;
+  TurnedInSteps turned_;
   LawJumps jumps_;
   LawJumps::Sides sides_, sides_before_;  // of jumps, at the last look and the one before
   bool over_jumps_ = false;               // the step under way was led over some

@@ -57,9 +57,8 @@ std::vector<Vector3> LawJumps::stretches(const Problem& problem, const State& at
 
 bool LawJumps::turned_round(const std::vector<Vector3>& before, const std::vector<Vector3>& after, double t) const {
   for (std::size_t k = 0; k < springs_.size(); ++k) {
-    const double length = std::max(before[k].norm(), after[k].norm()), F = springs_[k].at_rest(0, t);
-    const bool alike = std::abs(springs_[k].at_rest(length, t) - F) <= 0.5 * std::abs(F);
-    if (before[k].dot(after[k]) < 0 && alike && std::isfinite(F)) return true;
+    const double length = std::max(before[k].norm(), after[k].norm());
+    if (before[k].dot(after[k]) < 0 && springs_[k].turning(length, t) != 0) return true;
   }
   return false;
 }

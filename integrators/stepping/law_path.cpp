@@ -118,6 +118,11 @@ double SpringLaw::at_rest(double length, double t) const {
   return F ? F->law(Arguments<double>{t, length - zero, 0}).F : without_length + stiffness * length;
 }
 
+double SpringLaw::turning(double length, double t) const {
+  const double there = at_rest(0, t);
+  return std::isfinite(there) && std::abs(at_rest(length, t) - there) <= 0.5 * std::abs(there) ? there : 0;
+}
+
 LawPlace SpringLaw::place(const Model& model, const Problem& problem, std::span<const BodyState> bodies) const {
   if (spring >= 0) {
     const Spring& s = model.springs[index(spring)];
@@ -238,6 +243,31 @@ UnseenForce first_unseen(const LawPath& path, Bounds ends, double nothing) {
   seen.add(there[kShownPlaces - 1]), seen.add(there[there.size() - kShownPlaces]);
   int pieces = kLawPieces;
   return first_in_part(path, seen, 0, 1, kLawPartings, pieces);
+}
+
+UnseenForce first_between(const LawPath& path, Bounds ends, double nothing) {
+  constexpr double kBeside = 1e-3, kOff = 0.35;  // of the step; of the range of F over it, more than a kink is
+  const double from = path.force(0), to = path.force(1);
+  if (SeenForce(ends, nothing).holds(path.force(0, 1)) && from == to) return {};
+  const double out = (path.force(kBeside) - from) / kBeside, in = (to - path.force(1 - kBeside)) / kBeside;
+  std::array<double, std::size(kLookedAt)> there;
+  std::ranges::transform(kLookedAt, there.begin(), [&](double s) { return path.force(s); });
+  const auto [least, most] = std::ranges::minmax(there);
+  const double much = std::max(kOff * (most - least), nothing);
+  const auto off = [&](double s, double F) {  // from Hermite's cubic
+    const double r = 1 - s;
+    return std::abs(F - r * r * ((1 + 2 * s) * from + s * out) - s * s * ((1 + 2 * r) * to - r * in)) > much;
+  };
+  for (std::size_t k = 1; k < there.size(); ++k) {
+    if (!off(kLookedAt[k], there[k])) continue;
+    double before = kLookedAt[k - 1], after = kLookedAt[k];
+    for (int j = 0; j < kTowardsEntry; ++j) {
+      const double middle = before + 0.5 * (after - before);
+      (off(middle, path.force(middle)) ? after : before) = middle;
+    }
+    return {after, true};
+  }
+  return {};
 }
 
 }  // namespace poinsot

@@ -38,6 +38,8 @@ struct SpringLaw {
   Arguments<double> arguments(const LawPlace& place, double t) const;
   double change(const LawPlace& place) const;     // of v with time
   double at_rest(double length, double t) const;  // N, the force of a spring
+  // N, what turns round where a spring passes through no length: 0 where up to `length` the force does not stay alike.
+  double turning(double length, double t) const;
   const std::string& name(const Model& model) const;
   std::string called(const Model& model) const;                    // what it is, too
   const char* unit() const { return torsion >= 0 ? "N m" : "N"; }  // of F
@@ -87,5 +89,8 @@ struct UnseenForce {
 };
 // `ends`: of F at the ends of the step.
 UnseenForce first_unseen(const LawPath& path, Bounds ends, double nothing);
+// The same for a method that looks at forces where its steps end, and nowhere between: where F leaves what its ends,
+// and the slopes there, lead to.
+UnseenForce first_between(const LawPath& path, Bounds ends, double nothing);
 
 }  // namespace poinsot

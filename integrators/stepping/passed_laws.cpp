@@ -19,7 +19,7 @@ PassedLaws::PassedLaws(const LawSteps& steps, double end, double rtol, double at
 double PassedLaws::reach() {
   double reach = steps_.to();
   for (std::size_t k = 0; k < watches_.size(); ++k)
-    if (watches_[k].on) reach = std::min(reach, cut(k, steps_.path(k), steps_.to()));
+    if (watches_[k].on) reach = std::min(reach, cut(k, steps_.path(k), steps_.to(), first_unseen));
   if (reach < steps_.to()) leave_unknown(reach);
   return reach;
 }
@@ -27,18 +27,21 @@ double PassedLaws::reach() {
 double PassedLaws::ahead(double to) {
   double reach = to;
   for (std::size_t k = 0; k < watches_.size(); ++k)
-    if (watches_[k].on) reach = std::min(reach, cut(k, steps_.ahead(k, to), to));
+    if (watches_[k].on) {
+      const LawPath path = steps_.ahead(k, to);
+      reach = std::min({reach, cut(k, path, to, first_unseen), cut(k, path, to, first_between)});
+    }
   if (reach < to) leave_unknown(reach);
   return reach;
 }
 
-double PassedLaws::cut(std::size_t k, const LawPath& path, double to) {
+double PassedLaws::cut(std::size_t k, const LawPath& path, double to, const Look& look) {
   Watch& watch = watches_[k];
   const double from = steps_.from(), h = to - from, before = path.force(0), after = path.force(1);
   watch.largest = std::max({watch.largest, std::abs(before), std::abs(after)});
   if (h <= kResolved * end_) return to;
   const double nothing = kUnseen * std::max(rtol_ * watch.largest, atol_ * steps_.law(k).of.inertia / h);
-  const UnseenForce first = first_unseen(path, {std::min(before, after), std::max(before, after)}, nothing);
+  const UnseenForce first = look(path, {std::min(before, after), std::max(before, after)}, nothing);
   if (!(first.s < 1)) return to;
   watch.unknown = first.known ? 0 : watch.unknown + 1;
   return from + h * (first.known || first.s > kPart ? first.s : 0.5);

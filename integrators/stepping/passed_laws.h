@@ -24,7 +24,8 @@ class PassedLaws {
   bool none() const { return none_; }
   // How far the step looked at may go; its end where it may so.
   double reach();
-  // As far as is known at its beginning, where the motion goes on as it does there up to a time `to`.
+  // As far as is known at its beginning, where the motion goes on as it does there up to a time `to`; of a method that
+  // looks at forces where its steps end alone.
   double ahead(double to);
 
  private:
@@ -39,7 +40,8 @@ class PassedLaws {
     int unknown = 0;     // steps on end that it cut for nothing
   };
 
-  double cut(std::size_t k, const LawPath& path, double to);
+  using Look = decltype(first_unseen);
+  double cut(std::size_t k, const LawPath& path, double to, const Look& look);
   void leave_unknown(double t);
 
   const LawSteps& steps_;

@@ -1,0 +1,41 @@
+// Steps of a fixed length over which a spring passes through no length, and its force turns round: error control steps
+// onto that (law_switches.h), here it is told, once a run.
+//
+// What the force does in the meantime is unknown to the step, which leaves F h/m of velocity open: an error of first
+// order, whatever the method's. Nothing is looked at while the ends cannot have come near one another.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "integrators/integrator.h"
+#include "integrators/state.h"
+#include "integrators/stepping/law_path.h"
+
+namespace poinsot {
+
+class TurnedInSteps {
+ public:
+  // Of a model that has to live as long.
+  TurnedInSteps(const Model& model, Tell tell);
+
+  // Whether the end of the step under way is to be looked at.
+  bool due(double h) { return !springs_.empty() && (--wait_ <= 0 || h != h_); }
+  // The problem stands at `at`, where a step of h has ended or the run begins.
+  void look(const Problem& problem, const State& at, double h);
+
+ private:
+  struct Spring {
+    SpringLaw of;
+    LawPlace from;  // where the last look was
+  };
+
+  const Model& model_;
+  const Tell tell_;
+  std::vector<Spring> springs_;
+  std::vector<BodyState> bodies_;
+  double t_ = 0, h_ = 0;  // of the last look, of the steps from there
+  std::int64_t wait_ = 0;
+};
+
+}  // namespace poinsot
