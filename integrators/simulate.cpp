@@ -82,10 +82,11 @@ void explain(Status& status, const Problem& problem) {
 void tell_of_switches(const Model& model, const IntegratorEntry& integrator, const Settings& settings,
                       const Tell& notice) {
   if (integrator.controls_error || integrator.analysis == Analysis::kinematics) return;
+  constexpr double kStart = 1e-9;
   const double end = settings.end;
   SwitchTimes times(model, end, notice);
   SwitchTimes::Switch first = times.first(0, end);
-  if (first.before <= 0) first = times.first(first.after, end);  // no step goes over the start
+  if (first.before <= kStart * settings.step) first = times.first(first.after, end);  // no step goes over the start
   if (first.before < end)
     notice(fmt::format(
         "a driver or a force has a kink or a jump at t = {:.6g} s: steps of fixed length go over it, which costs {} "

