@@ -72,8 +72,10 @@ bool without_freedom(const Scene& scene) {
 std::vector<BodyState> pose_meant(const std::shared_ptr<const Model>& model) {
   std::vector<BodyState> given = given_state(*model);
   if (violation(model, given).position <= kSatisfied) return given;
+  const bool rough = std::ranges::any_of(model->groups, &Group::body_fixed);
+  if (!rough && given.size() > kMostClosed) return given;
   ClosedPose pose = close_mechanism(*model, given);
-  if (!pose.closed || (pose.from_beside && !std::ranges::any_of(model->groups, &Group::body_fixed))) return given;
+  if (!pose.closed || (pose.from_beside && !rough)) return given;
   return std::move(pose.states);
 }
 

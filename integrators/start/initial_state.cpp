@@ -114,9 +114,10 @@ class Assembler {
     before_ = violation(model_, given_);
   }
 
-  // Off the constraints rows that follow from others look independent.
+  // Off the constraints rows that follow from others look independent. Scenes too large for it are written by programs,
+  // to all digits.
   void close_from_nearby() {
-    if (closed_ || !off_position()) return;
+    if (closed_ || !off_position() || given_.size() > kMostClosed) return;
     ClosedPose pose = close_mechanism(*model_, given_);
     if (!pose.closed || pose.from_beside) return;
     moved_ = true;

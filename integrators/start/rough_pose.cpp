@@ -12,9 +12,10 @@ namespace poinsot {
 namespace {
 
 constexpr int kSteps = 300;
-constexpr double kClosed = 1e-9;          // of the size: the projection that follows does the rest
-constexpr double kLargestTurn = 1.0 / 3;  // rad, of a body in a step
-constexpr double kLeastDamping = 1e-9, kMostDamping = 1e9;
+constexpr double kClosed = 1e-9;                             // of the size: the projection that follows does the rest
+constexpr double kRoundedTo = 4e-16;                         // of the coordinates
+constexpr double kLargestTurn = 1.0 / 3;                     // rad, of a body in a step
+constexpr double kLeastDamping = 1e-13, kMostDamping = 1e9;  // the least: long mechanisms are soft
 constexpr double kLeastWeight = 1e-4;  // of the largest mass, and of mass times size² for moments
 
 class Closing {
@@ -24,12 +25,14 @@ class Closing {
     for (const Row& row : model.rows) size_ = std::max({size_, row.s_i.norm(), row.s_j.norm()});
     if (size_ == 0) size_ = 1;
     for (const Body& body : model.bodies) heaviest_ = std::max(heaviest_, body.mass);
+    for (const BodyState& state : states_) rounding_ = std::max(rounding_, kRoundedTo * state.r.cwiseAbs().maxCoeff());
+    rounding_ = std::max(rounding_, 1e-14 * size_);
   }
 
   // Whether nothing is left open.
   bool run() {
     double damping = 1e-3, cost = open();
-    for (int step = 0; step < kSteps && largest() > 1e-14 * size_; ++step) {
+    for (int step = 0; step < kSteps && largest() > rounding_; ++step) {
       const Eigen::VectorXd delta = bounded(solve(damping));
       if (!delta.allFinite()) break;
       const std::vector<BodyState> before = states_;
@@ -37,7 +40,7 @@ class Closing {
       move(delta);
       cost = open();
       if (cost < was) {
-        damping = std::max(kLeastDamping, damping / 10);
+        damping = std::max(kLeastDamping, damping / (cost < 1e-4 * was ? 1000 : 10));
         if (was - cost <= 1e-10 * was && largest() > kClosed * size_) break;  // it comes no nearer
         continue;
       }
@@ -141,6 +144,7 @@ class Closing {
   std::vector<BodyState> states_;
   const Eigen::Index n_;
   double size_ = 0, heaviest_ = 0;
+  double rounding_ = 0;  // m, of coordinates: no pose closes further
   std::vector<OpenPart> parts_;
 };
 

@@ -32,6 +32,9 @@ struct ClosedPose {
   Gap gap = {};
 };
 
+// Larger mechanisms, long ones above all, are too soft to be closed to rounding by these steps.
+inline constexpr std::size_t kMostClosed = 1000;  // bodies
+
 ClosedPose close_mechanism(const Model& model, std::span<const BodyState> given);
 
 }  // namespace poinsot
