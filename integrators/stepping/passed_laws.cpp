@@ -35,7 +35,7 @@ double PassedLaws::ahead(double to) {
   return reach;
 }
 
-double PassedLaws::cut(std::size_t k, const LawPath& path, double to, const Look& look) {
+double PassedLaws::cut(std::size_t k, const LawPath& path, double to, Look look) {
   Watch& watch = watches_[k];
   const double from = steps_.from(), h = to - from, before = path.force(0), after = path.force(1);
   watch.largest = std::max({watch.largest, std::abs(before), std::abs(after)});

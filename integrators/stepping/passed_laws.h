@@ -40,8 +40,8 @@ class PassedLaws {
     int unknown = 0;     // steps on end that it cut for nothing
   };
 
-  using Look = decltype(first_unseen);
-  double cut(std::size_t k, const LawPath& path, double to, const Look& look);
+  using Look = UnseenForce (*)(const LawPath&, Bounds, double);
+  double cut(std::size_t k, const LawPath& path, double to, Look look);
   void leave_unknown(double t);
 
   const LawSteps& steps_;
