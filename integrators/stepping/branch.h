@@ -34,8 +34,8 @@ class BranchWatch {
 };
 
 struct Departure {
-  double share = 0;  // |δ|/|v|: of the larger one of v_n and v, points and turns each for itself; infinite where it
-                     // ends in a singular position
+  double share = 0;  // |δ|/|v|: of the larger one of v_n and v, points and turns each for itself, but beside no less
+                     // than a hundredth of the other; infinite where it ends in a singular position
   int row = 0;       // whose impulse μ is the largest, as an unknown of the problem
 };
 struct StepEnd {
