@@ -33,13 +33,17 @@ Most most(const Problem& problem, const Eigen::VectorXd& v) {
   return most(problem, [&](Eigen::Index k) { return v[k]; });
 }
 
+// m
+double longest_arm(const Model& model) {
+  double length = 0;
+  for (const Row& row : model.rows) length = std::max({length, row.s_i.norm(), row.s_j.norm()});
+  return length > 0 ? length : 1;
+}
+
 // The larger of two velocities, of which points and turns are no less than a part of the other: where centres of mass
 // rest while bodies turn, or bodies all but do not turn while they move, these are rounding, or begin.
-Most larger(const Problem& problem, const Most& a, const Most& b) {
+Most larger(double length, const Most& a, const Most& b) {
   constexpr double kPart = 1e-2;
-  double length = 0;  // m, the longest arm
-  for (const Row& row : problem.model().rows) length = std::max({length, row.s_i.norm(), row.s_j.norm()});
-  if (length == 0) length = 1;
   const double way = std::max(a.way, b.way), turn = std::max(a.turn, b.turn);
   return {std::max(way, kPart * turn * length), std::max(turn, kPart * way / length)};
 }
@@ -49,6 +53,7 @@ Most larger(const Problem& problem, const Most& a, const Most& b) {
 void BranchWatch::begin(const Problem& problem, std::span<const double> a) {
   const Most change = most(problem, [&](Eigen::Index k) { return a[index(k)]; });
   usual_way_ = change.way, usual_turn_ = change.turn;
+  length_ = longest_arm(problem.model());
 }
 
 double BranchWatch::jump(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h) {
@@ -58,7 +63,7 @@ double BranchWatch::jump(const Problem& problem, const Eigen::VectorXd& v_n, con
   way_ = change.way / h, turn_ = change.turn / h;
   if (!(way_ > kUnusual * usual_way_ || turn_ > kUnusual * usual_turn_)) return 0;
   const Most before = most(problem, v_n), after = most(problem, v);
-  const Most size = larger(problem, before, after);
+  const Most size = larger(length_, before, after);
   const auto part = [&](double Most::*of) {  // of no start from rest, which has no branch to leave
     return before.*of > kMoved * after.*of ? change.*of / size.*of : 0;
   };
@@ -95,7 +100,8 @@ Departure departure(Problem& problem, const LinearChoice& choice, const StepEnd&
   };
   Consistent consistent(problem, choice);
   if (!consistent.factor(to.t).ok() || !consistent.solve(to.t, span(rhs)).ok()) return departed(HUGE_VAL);
-  const Most delta = most(problem, rhs), size = larger(problem, most(problem, from.v), most(problem, to.v));
+  const Most delta = most(problem, rhs),
+             size = larger(longest_arm(problem.model()), most(problem, from.v), most(problem, to.v));
   const auto share = [&](double Most::*of) { return size.*of > 0 ? delta.*of / size.*of : 0; };
   return departed(std::max(share(&Most::way), share(&Most::turn)));
 }

@@ -30,6 +30,7 @@ class BranchWatch {
 
  private:
   bool begun_ = false;
+  double length_ = 1;                                           // m, the longest arm
   double way_ = 0, turn_ = 0, usual_way_ = 0, usual_turn_ = 0;  // changes of velocities per second
 };
 

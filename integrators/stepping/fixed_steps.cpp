@@ -46,7 +46,8 @@ Status FixedSteps::march() {
   if (status.ok()) status = measure_rotation(problem_, 0);
   settles_ = settings_.retry && integrates();
   branch_.begin(problem_, x_.a());
-  if (integrates()) look_at_springs(problem_);
+  if (integrates() && passed_.due(h_)) passed_.look(problem_, x_, h_);
+  if (integrates() && turned_.due(h_)) turned_.look(problem_, x_, h_);
   jumps_.look(problem_, x_, sides_);
   if (run_.singular_for > 0) start_ = Start::limit;
   divides_ = settings_.retry && divides();
@@ -103,7 +104,8 @@ Status FixedSteps::reach(double t, bool sampled) {
     return status;
   }
   branch_.follow();
-  if (integrates()) look_at_springs(last_seen());
+  if (integrates() && passed_.due(h_)) passed_.look(last_seen(), x_, h_);
+  if (integrates() && turned_.due(h_)) turned_.look(last_seen(), x_, h_);
   if (integrates() && !jumps_.none()) look_for_jumps();
   start_ = settled ? Start::limit : led_ ? Start::rewritten : Start::usual;
   rows_asked_ = false;
@@ -112,12 +114,6 @@ Status FixedSteps::reach(double t, bool sampled) {
   if (!due && !sampled) return {};
   standing_ = &stand();
   return due ? accept(*standing_) : Status{};
-}
-
-// What springs do within the step to x_, where the problem stands.
-void FixedSteps::look_at_springs(const Problem& problem) {
-  if (passed_.due(h_)) passed_.look(problem, x_, h_);
-  if (turned_.due(h_)) turned_.look(problem, x_, h_);
 }
 
 Status FixedSteps::begin() {

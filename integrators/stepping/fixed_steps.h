@@ -145,7 +145,6 @@ class FixedSteps {
   Status examine_end(bool& settled);
   Status settle_end(bool& settled);
   bool settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at);
-  void look_at_springs(const Problem& problem);
   void look_for_jumps();
   Status measure_rotation(Problem& problem, double t);
   // Whether the step ends on the branch that its velocities lead to.
