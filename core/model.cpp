@@ -182,6 +182,18 @@ bool has_alternates(const Model& model) {
   return std::ranges::any_of(model.rows, [](const Row& row) { return row.alternate != nullptr; });
 }
 
+double longest_arm(const Model& model) {
+  double of_bodies = 0, of_ground = 0;
+  for (const Row& row : model.rows) {
+    for (const auto& [body, arm] : {std::pair{row.i, row.s_i.norm()}, std::pair{row.j, row.s_j.norm()}}) {
+      double& longest = body == kGround ? of_ground : of_bodies;
+      longest = std::max(longest, arm);
+    }
+  }
+  if (of_bodies > 0) return of_bodies;
+  return of_ground > 0 ? of_ground : 1;
+}
+
 Model compile(const Scene& scene) {
   with_names_of_errors(scene, [&] { validate(scene); });
   return Compiler(scene).run();

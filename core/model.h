@@ -86,6 +86,9 @@ void for_each_joint(const Model& model, Visit&& visit) {
 // Whether rows stand in for others where those are singular.
 bool has_alternates(const Model& model);
 
+// Of the rows' points from the frames of their bodies, m; of those on the ground where bodies have none, 1 if neither.
+double longest_arm(const Model& model);
+
 // Throws InputError where the scene breaks a rule of core/scene_validation.h. Names are given to what has none,
 // axes are normalized, inertias and orientations given to a few digits made symmetric and orthogonal.
 Model compile(const Scene& scene);

@@ -18,7 +18,7 @@ namespace {
 constexpr double kNothing = 1e-13;  // of a coefficient, or of what is left of a column, beside a column of unit length
 constexpr double kClear = 0.2;      // of a column of unit length: it need not wait
 constexpr double kLeansOn = 1e-3;   // of a column of unit length
-constexpr double kFar = 100;        // |y| that a few bodies do not come to
+constexpr double kFarApart = 100;   // |y| that a few bodies do not come to
 constexpr Eigen::Index kMostWait = 16;  // columns of a front
 
 }  // namespace
@@ -173,7 +173,7 @@ void FrontQr::take(Front& front, Eigen::Index k, double norm) {
   } else {
     most_left_ = std::max(most_left_, norm);
     const double grown = grown_[index(order_.back())];
-    if (grown > kFar && norm > kNothing) ++stretched_;
+    if (grown > kFarApart && norm > kNothing) ++stretched_;
     dependent_.push_back(column_at(k));
     if (dependent_.size() > most_) std::vector<Entry>().swap(R_), has_R_ = false;
   }

@@ -7,8 +7,8 @@ namespace poinsot {
 namespace {
 
 constexpr double kDoubtfulPivot = 1e-7;
-constexpr double kRounding = 1e-11;  // above what rounding leaves of a pivot that should be zero
-constexpr double kOutgrown = 1e3;    // a scaled entry beyond this: the scaling of earlier values does not fit any more
+constexpr double kPivotOfRounding = 1e-11;  // above what rounding leaves of a pivot that should be zero
+constexpr double kOutgrown = 1e3;  // a scaled entry beyond this: the scaling of earlier values does not fit any more
 
 }  // namespace
 
@@ -87,7 +87,7 @@ LinearStatus ScaledLu::factor_fresh() {
   statistics_.reciprocal_condition = 1 / condition;
   if (!(condition < kSingularCondition)) return singular(open);
   examined_ = true;
-  doubtful_ = std::clamp(smallest_ / 10, kRounding, kDoubtfulPivot);
+  doubtful_ = std::clamp(smallest_ / 10, kPivotOfRounding, kDoubtfulPivot);
   return {};
 }
 
@@ -110,7 +110,7 @@ double ScaledLu::estimate() {
 // The column of the first pivot that is nothing but rounding; those after it were made with its inverse.
 int ScaledLu::suspect() {
   for (int k = 0; k < layout_.n; ++k)
-    if (!(std::abs(pivot(k)) >= kRounding)) return pivot_column(k);
+    if (!(std::abs(pivot(k)) >= kPivotOfRounding)) return pivot_column(k);
   return -1;
 }
 

@@ -21,9 +21,10 @@ constexpr double kLeastWeight = 1e-4;  // of the largest mass, and of mass times
 class Closing {
  public:
   Closing(const Model& model, std::span<const BodyState> given)
-      : model_(model), states_(given.begin(), given.end()), n_(static_cast<Eigen::Index>(6 * given.size())) {
-    for (const Row& row : model.rows) size_ = std::max({size_, row.s_i.norm(), row.s_j.norm()});
-    if (size_ == 0) size_ = 1;
+      : model_(model),
+        states_(given.begin(), given.end()),
+        n_(static_cast<Eigen::Index>(6 * given.size())),
+        size_(longest_arm(model)) {
     for (const Body& body : model.bodies) heaviest_ = std::max(heaviest_, body.mass);
     for (const BodyState& state : states_) rounding_ = std::max(rounding_, kRoundedTo * state.r.cwiseAbs().maxCoeff());
     rounding_ = std::max(rounding_, 1e-14 * size_);
@@ -143,7 +144,7 @@ class Closing {
   const Model& model_;
   std::vector<BodyState> states_;
   const Eigen::Index n_;
-  double size_ = 0, heaviest_ = 0;
+  double size_, heaviest_ = 0;
   double rounding_ = 0;  // m, of coordinates: no pose closes further
   std::vector<OpenPart> parts_;
 };

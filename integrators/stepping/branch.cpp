@@ -33,13 +33,6 @@ Most most(const Problem& problem, const Eigen::VectorXd& v) {
   return most(problem, [&](Eigen::Index k) { return v[k]; });
 }
 
-// m
-double longest_arm(const Model& model) {
-  double length = 0;
-  for (const Row& row : model.rows) length = std::max({length, row.s_i.norm(), row.s_j.norm()});
-  return length > 0 ? length : 1;
-}
-
 // The larger of two velocities, of which points and turns are no less than a part of the other: where centres of mass
 // rest while bodies turn, or bodies all but do not turn while they move, these are rounding, or begin.
 Most larger(double length, const Most& a, const Most& b) {

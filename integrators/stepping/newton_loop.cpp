@@ -13,15 +13,6 @@ namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-double longest_arm(const Model& model) {
-  double arm = 0;
-  for (const Row& row : model.rows) {
-    if (row.i != kGround) arm = std::max(arm, row.s_i.norm());
-    if (row.j != kGround) arm = std::max(arm, row.s_j.norm());
-  }
-  return arm > 0 ? arm : 1;
-}
-
 double rounding_of(const Problem& problem, const Eigen::VectorXd& q) {
   return 16 * kEpsilon * std::sqrt(problem.bodies()) * std::max(1.0, q.cwiseAbs().maxCoeff());
 }

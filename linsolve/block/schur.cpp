@@ -12,7 +12,7 @@
 namespace poinsot::block {
 namespace {
 
-constexpr int kMostUnknowns = 16;
+constexpr int kWidest = 16;
 constexpr int kFewestRows = 5;         // the heavy top, with three, takes as long in fronts
 constexpr double kLeftOfPivot = 1e-6;  // part of a pivot's size that cancellation leaves, at least
 
@@ -26,8 +26,8 @@ constexpr SchurKernel schur_kernel() {
   return {N, U, kPanel<N>, kPanels<N>, &invert_schur<N, U>, &multipliers<N, U>};
 }
 // One and two bodies on hinges, without and with a driver; others take one that is larger.
-constexpr std::array kSchurKernels{schur_kernel<5, 8>(), schur_kernel<6, 8>(), schur_kernel<8, kMostUnknowns>(),
-                                   schur_kernel<10, kMostUnknowns>(), schur_kernel<12, kMostUnknowns>()};
+constexpr std::array kSchurKernels{schur_kernel<5, 8>(), schur_kernel<6, 8>(), schur_kernel<8, kWidest>(),
+                                   schur_kernel<10, kWidest>(), schur_kernel<12, kWidest>()};
 
 struct PartKernel {
   decltype(&invert_in_order<1>) invert;
@@ -67,7 +67,7 @@ void visit_entries(const CscLayout& layout, Visit&& visit) {
 }  // namespace
 
 bool Schur::lay_out(const Pattern& pattern, const CscLayout& layout) {
-  if (layout.n > 2 * kMostUnknowns || !find_parts(pattern, layout)) return false;
+  if (layout.n > 2 * kWidest || !find_parts(pattern, layout)) return false;
   const auto kernel = std::ranges::find_if(
       kSchurKernels, [&](const SchurKernel& k) { return k.rows >= rows_ && k.unknowns >= size_of(unknown_); });
   if (rows_ < kFewestRows || kernel == kSchurKernels.end()) return false;
