@@ -20,6 +20,7 @@ constexpr double kFarOff = 0.25;
 // what rounding leaves.
 constexpr double kRoundingAtWorst = 1e-7, kShrinksNoMore = 0.9;
 constexpr double kStandsStill = 1e-10;  // by a first correction: no motion to be uncertain of
+constexpr int kMostSharpenings = 3;
 
 }  // namespace
 
@@ -35,7 +36,34 @@ PrescribedState::PrescribedState(const Run& run, PhaseClock& clock)
 
 Status PrescribedState::find(double t, double tolerance, bool carefully, State& x, Vector& beyond) {
   if (Status status = find_position(t, tolerance, carefully, x, beyond); !status.ok()) return status;
-  return find_rates(t, x);
+  Status status = find_rates(t, x);
+  for (int k = 0; status.ok() && k < kMostSharpenings && says_little(x, tolerance); ++k) {
+    problem_.position_residual(span(delta_));
+    if (status = correct(t, x, beyond); !status.ok()) break;
+    fresh_ = true, last_ = delta_.squaredNorm();
+    status = find_rates(t, x);
+  }
+  return status;
+}
+
+// Whether what is left of the position's error changes the velocities by more than the tolerance, relatively, as it
+// does beside singular positions, where they bend sharply: per length by ‖a‖/‖v‖² where drivers' rates are constant,
+// and half as much, times the last correction, is what Newton's method leaves of that.
+bool PrescribedState::says_little(const State& x, double tolerance) const {
+  const double v = x.v.squaredNorm(), bend = x.z.head(x.v.size()).squaredNorm() * last_;
+  if (fresh_) return 0.5 * bend > tolerance * v * v;
+  return std::sqrt(bend) * std::min(shrinks_by_, 1.0) > tolerance * v;
+}
+
+// By Φ in delta_ and the matrix that there is.
+Status PrescribedState::correct(double t, State& x, Vector& beyond) {
+  delta_ = -delta_;
+  if (Status status = system_.solve(t, span(delta_)); !status.ok()) return status;  // (14d)
+  problem_.retract(span(x.q), span(delta_), span(q_next_));                         // (14a), (12)
+  beyond += delta_;
+  x.q.swap(q_next_);
+  ++run_.statistics.newton_iterations;
+  return {};
 }
 
 Status PrescribedState::find_position(double t, double tolerance, bool carefully, State& x, Vector& beyond) {
@@ -46,17 +74,15 @@ Status PrescribedState::find_position(double t, double tolerance, bool carefully
     problem_.set_position(t, span(x.q));
     problem_.position_residual(span(delta_));
     // Where a matrix of a position before serves too little to be certain of a step, its parts have their own.
-    if ((carefully && slow_) || due(refresh_, k, carefully || slow_ || !system_.ready())) {
+    fresh_ = (carefully && slow_) || due(refresh_, k, carefully || slow_ || !system_.ready());
+    if (fresh_) {
       if (Status status = refresh(t); !status.ok()) return status;
     }
-    delta_ = -delta_;
-    if (Status status = system_.solve(t, span(delta_)); !status.ok()) return status;  // (14d)
-    problem_.retract(span(x.q), span(delta_), span(q_next_));                         // (14a), (12)
-    beyond += delta_;
-    x.q.swap(q_next_);
-    ++run_.statistics.newton_iterations;
+    if (Status status = correct(t, x, beyond); !status.ok()) return status;
     const double before = correction;
     correction = delta_.norm();
+    last_ = correction * correction;
+    shrinks_by_ = k > 0 ? correction / before : 1;
     slow_ = k > 0 && !(correction < kSlow * before);
     if (k == 0) {
       // Beside a singular position corrections are as large as can be, and what they shrink by says nothing.

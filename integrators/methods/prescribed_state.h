@@ -34,7 +34,9 @@ class PrescribedState {
   using Vector = Eigen::VectorXd;
 
   Status find_position(double t, double tolerance, bool carefully, State& x, Vector& beyond);
+  Status correct(double t, State& x, Vector& beyond);
   Status find_rates(double t, State& x);
+  bool says_little(const State& x, double tolerance) const;
   double largest_turn() const;
 
   const Run& run_;
@@ -43,7 +45,10 @@ class PrescribedState {
   const Refresh refresh_;
   StepSystem system_;
   Vector delta_, q_next_;
-  bool slow_ = false;  // corrections did not shrink as they should
+  bool slow_ = false;      // corrections did not shrink as they should
+  bool fresh_ = false;     // the last correction was found with the matrix of where it began
+  double last_ = 0;        // squared
+  double shrinks_by_ = 1;  // the last two
   double contraction_ = 0;
 };
 
