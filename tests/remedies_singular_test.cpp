@@ -125,6 +125,39 @@ TEST_P(SingularRemedies, OfVelocitiesOnNoBranchAreThoseOfOneOrAStartBeside) {
   expect_helped(posts(1, 0.01, kSpin, false), settings);
 }
 
+// Two pendulums in parallel planes, which turn at a rate, and what holds their ends together.
+Scene held_together(Constraint by, double rate) {
+  Scene scene;
+  scene.gravity = {5, 0, -9.81};
+  for (const int k : {0, 1}) {
+    Body& body = scene.bodies.emplace_back();
+    body.name = k == 0 ? "left" : "right", body.mass = 1, body.inertia = 0.1 * Matrix3::Identity();
+    body.position = {0, 0.2 * k, -0.5};
+    body.velocity = {-0.5 * rate, 0, 0}, body.angular_velocity = {0, rate, 0};
+    Joint& hinge = scene.joints.emplace_back();
+    hinge.type = JointType::revolute, hinge.j = k, hinge.point = {0, 0.2 * k, 0}, hinge.axis = Vector3::UnitY();
+  }
+  by.name = "together", by.i = 0, by.j = 1, by.s_i = by.s_j = {0, 0, -0.5};
+  scene.constraints.push_back(by);
+  return scene;
+}
+
+// A bar as long as the planes are apart leaves no regular position, however they move; a coordinate does.
+TEST_P(SingularRemedies, OfConstraintsThatMeetWithoutCrossingAreOthers) {
+  Constraint bar, coordinate;
+  bar.type = ConstraintType::D, coordinate.type = ConstraintType::CD;
+  bar.f = Expression(0.04), coordinate.c = {1, 0, 0};
+  const Settings settings = controlled("dop853", GetParam(), 1e-8, 0.3);
+  for (const double rate : {0.0, 1.0}) {
+    const Recorded refused = run(held_together(bar, rate), settings);
+    EXPECT_EQ(refused.outcome.status.failure, Failure::singular_position);
+    EXPECT_THAT(refused.outcome.status.message,
+                AllOf(HasSubstr("and so are all found beside it"), HasSubstr("; write what they amount to by other"),
+                      Not(HasSubstr("start beside it"))));
+    expect_helped(held_together(coordinate, rate), settings);
+  }
+}
+
 TEST_P(SingularRemedies, OfABodyWithoutInertiaIsInertia) {
   const Scene with = scene_of("free_body");
   Scene without = with;

@@ -17,6 +17,7 @@
 #include "integrators/start/closure.h"
 #include "integrators/start/far_bodies.h"
 #include "integrators/start/rank.h"
+#include "integrators/start/regular_beside.h"
 #include "integrators/start/rough_pose.h"
 #include "integrators/stepping/consistent.h"
 
@@ -226,14 +227,24 @@ class Assembler {
 
   Status stuck() const {
     const RankAnalysis& rank = result_.rank;
-    return {Failure::singular_position, 0,
-            fmt::format("the initial pose is a singular position of the mechanism, and the initial velocities do not "
-                        "lead away from it: singular here: {}; {}; start beside it, or with a velocity along the "
-                        "branch that is meant",
-                        names(rank.singular),
-                        rank.singular.front().others.empty() && rank.singular.size() == 1
-                            ? "its gradient vanishes, so that it constrains nothing here"
-                            : "what the constraints leave free here and what they leave free beside it differ")};
+    if (!has_regular_positions_beside(model_, given_))
+      return with_remedy(
+          Failure::singular_position, 0,
+          fmt::format("the initial pose is a singular position of the mechanism, and so are all found beside it that "
+                      "satisfy the constraints: singular here: {}; constraints meet there without crossing, as where a "
+                      "length or a cosine is as large or as small as the others let it be, and forbid what no gradient "
+                      "shows",
+                      names(rank.singular)),
+          "write what they amount to by other constraints");
+    return with_remedy(
+        Failure::singular_position, 0,
+        fmt::format("the initial pose is a singular position of the mechanism, and the initial velocities do not lead "
+                    "away from it: singular here: {}; {}",
+                    names(rank.singular),
+                    rank.singular.front().others.empty() && rank.singular.size() == 1
+                        ? "its gradient vanishes, so that it constrains nothing here"
+                        : "what the constraints leave free here and what they leave free beside it differ"),
+        "start beside it, or with a velocity along the branch that is meant");
   }
 
   // Rates are found from the constraints alone, and are rounding where a row is all but dependent on the others.

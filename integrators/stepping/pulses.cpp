@@ -134,10 +134,11 @@ void Pulses::leave_unknown(double t, bool shortest) {
     const bool bends = Bend(*of.f, t, seen_to_).largest * ahead * ahead > 8 * of.nothing;
     of.unknown = bends && !shortest ? 0 : of.unknown + 1;
     if (of.unknown < kMostUnknown) return false;
-    tell_(
-        fmt::format("from t = {:.6g} s on '{}' is not watched for pulses that are shorter than a step, since its "
-                    "second derivative has no close bounds there",
-                    t, of.f->text()));
+    tell_(fmt::format(
+        "from t = {:.6g} s on '{}' is not watched for pulses that are shorter than a step, nor for kinks of "
+        "roots and inverse functions, since its second derivative has no close bounds there; kinks of abs, "
+        "min and max are found",
+        t, of.f->text()));
     return true;
   });
 }
