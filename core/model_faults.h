@@ -14,6 +14,11 @@ std::string fault_of_functions(const Model& model, double t);
 // The sentence that begins so.
 std::string fault_sentence(double t, const std::string& whose, const std::string& what);
 
+// "constraint 'tilt' asks for a cosine beyond 1 from t = 2 s on": the first row that from a time in [from, to] on asks
+// for what no position of any two bodies has, a cosine beyond ±1 or the square of a distance below 0; empty where there
+// is none.
+std::string beyond_any_position(const Model& model, double from, double to);
+
 // The failure that a fault is.
 Status no_value(double t, const std::string& fault);
 

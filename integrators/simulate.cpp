@@ -10,7 +10,6 @@
 #include "core/flush_subnormals.h"
 #include "core/index.h"
 #include "core/input_error.h"
-#include "core/model_faults.h"
 #include "core/places.h"
 #include "core/scene_doubts.h"
 #include "formulations/registry.h"
@@ -22,10 +21,9 @@
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
 #include "integrators/stepping/pulses.h"
-#include "integrators/stepping/singular_position.h"
-#include "integrators/stepping/sticking.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
+#include "integrators/stop_causes.h"
 #include "integrators/stopping_test.h"
 #include "linsolve/registry.h"
 
@@ -60,21 +58,6 @@ void refuse_free_motion(const Problem& problem) {
         fmt::format("kinematics needs a mechanism without degrees of freedom, this one has {}; add drivers, "
                     "or use analysis dynamics",
                     free));
-  }
-}
-
-// A function without a finite value is why, or a number that overflows, whatever it looked like to the method that came
-// upon it.
-void explain(Status& status, const Problem& problem) {
-  if (status.ok()) return;
-  std::string fault = problem.fault();
-  if (fault.empty()) fault = fault_of_functions(problem.model(), status.time);  // it may have gone back a step
-  if (!fault.empty()) {
-    status = no_value(status.time, fault);
-  } else if (const std::string why = overflowing(problem.model(), status.time); !why.empty()) {
-    status = with_remedy(Failure::not_finite, status.time,
-                         fmt::format("at t = {:.9g} s a number overflows: {}", status.time, why),
-                         "give it in units in which it is smaller");
   }
 }
 
@@ -132,7 +115,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   State state(*problem);
   outcome.status = find_first_state(start, settings, *problem, state, notice);
   std::vector<BodyState>().swap(start.bodies);  // memory of large scenes
-  explain(outcome.status, *problem);
+  (void)explain_by_functions(outcome.status, *problem, settings);
   if (!outcome.status.ok()) return outcome;
   if (settings.analysis == Analysis::dynamics) {  // kinematics finds its pose itself
     problem->set_position(0, span(state.q));
@@ -149,7 +132,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
                                              rotation.senseless,
                                              start.rank.singular_position() ? start.rank.time_beside : 0, jumps_after});
   }
-  explain(outcome.status, *problem);
+  const bool explained = explain_by_functions(outcome.status, *problem, settings);
   const double largest = outcome.statistics.largest_rotation;
   if (outcome.status.ok() && largest > rotation.wrong) {
     notice(fmt::format(
@@ -164,26 +147,9 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
         fmt::format("a body turns by up to {:.2g} rad in a step: rounding alone leaves its orientation open by "
                     "{:.1g} rad there, more than rtol",
                     largest, kEpsilon * largest));
-  const Failure failure = outcome.status.failure;
-  const bool unexplained = failure == Failure::step_size_too_small || failure == Failure::not_converged ||
-                           failure == Failure::singular_matrix ||
-                           (failure == Failure::rotation_too_large && outcome.status.time > 0);
-  if (settings.analysis == Analysis::dynamics && (unexplained || failure == Failure::singular_position)) {
+  if (settings.analysis == Analysis::dynamics && !explained) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
-    const double instant = chooses_steps(settings) ? instant_of(settings.end) : settings.step;
-    std::string why = sticking_law(*problem, settings.linear(), state, instant);
-    if (why.empty()) why = resting_law(*problem, settings.linear(), state, instant);
-    if (why.empty()) why = vanished_gradient(*problem, state);
-    if (!why.empty()) outcome.status.withdraw_remedy();  // nothing helps but to change what these say
-    if (why.empty()) {
-      const NearSingular near =
-          near_singular_position(*problem, rows, span(q_start), outcome.status.time, span(state.q));
-      if (unexplained || near.barred) why = near.sentence;
-      if (near.barred) outcome.status.withdraw_remedy();
-    }
-    if (why.empty() && failure == Failure::step_size_too_small && outcome.status.remedy == 0)
-      why = growing_motion(*problem, state);
-    if (!why.empty()) outcome.status.message += "; " + why;
+    explain_by_position(outcome.status, *problem, settings, rows, q_start, state);
   }
   outcome.statistics.linear = systems.work();
   return outcome;

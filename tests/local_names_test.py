@@ -77,7 +77,8 @@ def main():
              "double f(const A& a,\n         int b) {\n}\n}  // namespace\nvoid g() {\n}\n"
     assert [name[:2] for name in local_names(sample)] == [("kOne", None), ("A", None), ("f", ("const A&", "int"))]
     found = list(taken_twice(root))
-    print("\n".join(found))
+    for line in found:
+        print(line)
     sys.exit(bool(found))
 
 

@@ -215,5 +215,28 @@ TEST_P(SingularRemedies, OfADriverThatAsksForTooMuchIsToEndBefore) {
   }
 }
 
+TEST_P(SingularRemedies, OfACosineBeyondOneIsToEndBefore) {
+  Scene scene;
+  Body& arm = scene.bodies.emplace_back();
+  arm.name = "arm", arm.mass = 2, arm.inertia = Vector3(0.1, 0.2, 0.25).asDiagonal(), arm.position = {0, 1, 0};
+  arm.velocity = {0, 0, 0.5}, arm.angular_velocity = {0.5, 0, 0};
+  Joint& hinge = scene.joints.emplace_back();
+  hinge.name = "hinge", hinge.i = kGround, hinge.j = 0, hinge.axis = {1, 0, 0};
+  Constraint& height = scene.constraints.emplace_back();
+  height.name = "height", height.j = 0, height.a_i = {0, 0, 1}, height.a_j = {0, 1, 0};
+  height.f = Expression::parse("0.5*t");
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (refusal_of(integrator, GetParam())) continue;
+    SCOPED_TRACE(integrator.name);
+    Settings settings;
+    settings.integrator = integrator.name, settings.formulation = GetParam(), settings.analysis = integrator.analysis;
+    settings.step = 0.01, settings.end = 3;
+    expect_stopped(run(scene, settings), Failure::singular_position,
+                   "asks for a cosine beyond 1 from t = 2 s on", "; end before it");
+    settings.end = 1.95;
+    expect_helped(scene, settings);
+  }
+}
+
 }  // namespace
 }  // namespace poinsot::test

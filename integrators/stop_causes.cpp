@@ -1,0 +1,61 @@
+#include "integrators/stop_causes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/model_faults.h"
+#include "core/scene_doubts.h"
+#include "integrators/settings_table.h"
+#include "integrators/stepping/singular_position.h"
+#include "integrators/stepping/sticking.h"
+#include "integrators/stepping/vectors.h"
+
+namespace poinsot {
+
+bool explain_by_functions(Status& status, const Problem& problem, const Settings& settings) {
+  if (status.ok() || status.failure == Failure::interrupted) return false;
+  constexpr double kNear = 1e-3;  // of the time: methods stop before
+  const double t = status.time, near = std::max(chooses_steps(settings) ? 0 : settings.step, kNear * t);
+  std::string fault = problem.fault();
+  if (fault.empty()) fault = fault_of_functions(problem.model(), t);  // it may have gone back a step
+  if (!fault.empty()) {
+    status = no_value(t, fault);
+  } else if (const std::string why = overflowing(problem.model(), t); !why.empty()) {
+    status = with_remedy(Failure::not_finite, t, fmt::format("at t = {:.9g} s a number overflows: {}", t, why),
+                         "give it in units in which it is smaller");
+  } else if (const std::string asked = beyond_any_position(problem.model(), std::max(t - near, 0.0), t + near);
+             !asked.empty()) {
+    status = with_remedy(Failure::singular_position, t,
+                         fmt::format("at t = {:.9g} s the mechanism cannot go on: {}, which no position has", t, asked),
+                         "end before it, or change the function");
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void explain_by_position(Status& status, Problem& problem, const Settings& settings, int rows,
+                         const Eigen::VectorXd& q_start, const State& state) {
+  const Failure failure = status.failure;
+  const bool unexplained = failure == Failure::step_size_too_small || failure == Failure::not_converged ||
+                           failure == Failure::singular_matrix ||
+                           (failure == Failure::rotation_too_large && status.time > 0);
+  if (!unexplained && failure != Failure::singular_position) return;
+  const double instant = chooses_steps(settings) ? instant_of(settings.end) : settings.step;
+  std::string why = sticking_law(problem, settings.linear(), state, instant);
+  if (why.empty()) why = resting_law(problem, settings.linear(), state, instant);
+  if (why.empty()) why = vanished_gradient(problem, state);
+  if (!why.empty()) status.withdraw_remedy();  // nothing helps but to change what these say
+  if (why.empty()) {
+    const NearSingular near = near_singular_position(problem, rows, span(q_start), status.time, span(state.q));
+    if (unexplained || near.barred) why = near.sentence;
+    if (near.barred) status.withdraw_remedy();
+  }
+  if (why.empty() && failure == Failure::step_size_too_small && status.remedy == 0)
+    why = growing_motion(problem, state);
+  if (!why.empty()) status.message += "; " + why;
+}
+
+}  // namespace poinsot

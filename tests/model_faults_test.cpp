@@ -1,0 +1,44 @@
+// Functions of a scene that ask for what no position has are found, with the time from which on they do.
+#include "core/model_faults.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::IsEmpty;
+using ::testing::StrEq;
+
+Model asking(ConstraintType type, const char* f) {
+  Scene scene = scene_of("free_body");
+  Constraint& row = scene.constraints.emplace_back();
+  row.name = "row", row.type = type, row.j = 0, row.a_i = {0, 0, 2}, row.a_j = {0, 3, 0}, row.s_j = {1, 0, 0},
+  row.c = {1, 0, 0};
+  row.f = Expression::parse(f);
+  return compile(scene);
+}
+
+TEST(BeyondAnyPosition, IsACosineBeyondOneOrASquaredDistanceBelowZero) {
+  const auto found = [](ConstraintType type, const char* f, double from, double to) {
+    return beyond_any_position(asking(type, f), from, to);
+  };
+  EXPECT_THAT(found(ConstraintType::DP1, "3*t", 1.9, 2.1),  // of directions of lengths 2 and 3
+              StrEq("constraint 'row' asks for a cosine beyond 1 from t = 2 s on"));
+  EXPECT_THAT(found(ConstraintType::DP1, "3 - 3*t", 2.9999, 3.0001),
+              StrEq("constraint 'row' asks for a cosine beyond -1 from t = 3 s on"));
+  EXPECT_THAT(found(ConstraintType::D, "1 - t", 0.5, 1.5),
+              StrEq("constraint 'row' asks for a squared distance below 0 from t = 1 s on"));
+}
+
+TEST(BeyondAnyPosition, IsNothingWithinReach) {
+  EXPECT_THAT(beyond_any_position(asking(ConstraintType::DP1, "6*cos(t)"), 0, 7), IsEmpty());
+  EXPECT_THAT(beyond_any_position(asking(ConstraintType::DP1, "3*t"), 1, 1.99), IsEmpty());
+  EXPECT_THAT(beyond_any_position(asking(ConstraintType::D, "t^2"), 0, 7), IsEmpty());
+  EXPECT_THAT(beyond_any_position(asking(ConstraintType::CD, "100*t"), 0, 7), IsEmpty());
+}
+
+}  // namespace
+}  // namespace poinsot::test
