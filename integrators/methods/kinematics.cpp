@@ -69,7 +69,7 @@ class Kinematics final : public FixedSteps {
     const double h = t - x_.t;
     if (!(std::abs(h - extrapolates_for_) <= kSameLength * h)) extrapolate_anew(h);
     const Status status = advance(x_.t, t, settings_.tolerance);
-    if (status.ok() && certain(h, t)) {
+    if (status.ok() && certain(h, t) && solver_.sharpen(t, settings_.tolerance, x_, beyond_)) {
       extrapolation_.lead(beyond_);
       return status;
     }
@@ -180,8 +180,9 @@ class Kinematics final : public FixedSteps {
       }
       const double to = at + 1.01 * h >= t ? t : at + h;
       h = to - at;
-      status = advance(at, to, std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), kSharp)));
-      if (status.ok() && certain(h, to)) {
+      const double tolerance = std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), kSharp));
+      status = advance(at, to, tolerance);
+      if (status.ok() && certain(h, to) && solver_.sharpen(to, tolerance, x_, beyond_)) {
         at = x_.t = to;
         h *= 2;
         examined = false;

@@ -36,14 +36,20 @@ PrescribedState::PrescribedState(const Run& run, PhaseClock& clock)
 
 Status PrescribedState::find(double t, double tolerance, bool carefully, State& x, Vector& beyond) {
   if (Status status = find_position(t, tolerance, carefully, x, beyond); !status.ok()) return status;
-  Status status = find_rates(t, x);
-  for (int k = 0; status.ok() && k < kMostSharpenings && says_little(x, tolerance); ++k) {
+  return find_rates(t, x);
+}
+
+bool PrescribedState::sharpen(double t, double tolerance, State& x, Vector& beyond) {
+  std::uint64_t orientation = 0;
+  for (int k = 0; k < kMostSharpenings && says_little(x, tolerance); ++k) {
+    if (k == 0) orientation = system_.orientation();
     problem_.position_residual(span(delta_));
-    if (status = correct(t, x, beyond); !status.ok()) break;
+    const double before = last_;
+    if (!correct(t, x, beyond).ok()) return false;
     fresh_ = true, last_ = delta_.squaredNorm();
-    status = find_rates(t, x);
+    if (!(last_ < before) || !find_rates(t, x).ok() || system_.orientation() != orientation) return false;
   }
-  return status;
+  return true;
 }
 
 // Whether what is left of the position's error changes the velocities by more than the tolerance, relatively, as it
