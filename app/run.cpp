@@ -68,7 +68,6 @@ int run(const RunOptions& options) {
   Settings settings = options.settings.resolve(notices);
   settings.reactions = !options.reactions.empty();
   settings.signals = !options.signals.empty();
-  check_numbers(settings);
   Scene scene = read_scene(options.scene, values_set(options.set));
   // Beside the trajectory, or beside the first of the others that is asked for.
   fs::path named = options.out;

@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
+#include "core/json_document.h"
+#include "core/places.h"
+
 namespace poinsot::app {
 namespace {
 
@@ -37,13 +42,31 @@ std::string SettingsOptions::first_given() const {
   return given_.empty() ? "" : option_name(*given_.front().first);
 }
 
+// Names the place in the configuration file that the value is from, if it is from there.
+void SettingsOptions::refuse_in_file(const SettingError& refused) const {
+  const bool overruled = std::ranges::any_of(given_, [&](const auto& one) { return one.first->key == refused.key(); });
+  if (config_file_.empty() || overruled) return;
+  const std::string text = read_text(config_file_);
+  with_lines_of_errors(text, [&] {
+    const JsonDocument document(text, shown_input(config_file_));
+    const JsonValue root = document.root();
+    if (const auto value = root.optional(refused.key())) value->fail(refused.why());
+  });
+}
+
 Settings SettingsOptions::resolve(std::vector<std::string>& notices) const {
   Settings settings;
   if (!config_file_.empty()) read_settings(config_file_, settings);
   for (const auto& [entry, text] : given_) set_setting(*entry, text, settings);
   for (const auto& [entry, text] : given_)
     if (const std::string why = why_ignored(*entry, settings); !why.empty()) notices.push_back(why);
-  fit_time_grid(settings, notices);
+  try {
+    check_numbers(settings);
+    fit_time_grid(settings, notices);
+  } catch (const SettingError& refused) {
+    refuse_in_file(refused);
+    throw;
+  }
   return settings;
 }
 

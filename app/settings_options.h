@@ -18,10 +18,12 @@ class SettingsOptions {
   const std::string& config_file() const { return config_file_; }
   // The option given first, "--step"; empty where there is none.
   std::string first_given() const;
-  // Defaults, then the file, then the command line; the time grid fitted. Throws InputError.
+  // Defaults, then the file, then the command line, all of it checked; the time grid fitted. Throws InputError.
   Settings resolve(std::vector<std::string>& notices) const;
 
  private:
+  void refuse_in_file(const SettingError& refused) const;
+
   std::string config_file_;
   std::vector<std::pair<const SettingEntry*, std::string>> given_;
 };

@@ -85,10 +85,10 @@ void refuse_parameters_of_others(const Settings& settings) {
   for (const auto& [name, value] : settings.parameters) {
     if (is_parameter(name, settings)) continue;
     const std::vector<std::string_view> of = integrators_with(name);
-    if (of.empty()) throw InputError(fmt::format("{}: no integrator has a parameter of this name", name));
+    if (of.empty()) throw SettingError(name, "no integrator has a parameter of this name");
     const std::string subject =
         settings.analysis == Analysis::kinematics ? "kinematics" : fmt::format("integrator '{}'", settings.integrator);
-    throw InputError(fmt::format("{}: no parameter of {}; it is one of {}", name, subject, fmt::join(of, ", ")));
+    throw SettingError(name, fmt::format("no parameter of {}; it is one of {}", subject, fmt::join(of, ", ")));
   }
 }
 
@@ -99,7 +99,7 @@ void check_numbers(const Settings& settings) {
   for (const SettingEntry& entry : setting_entries()) {
     const std::optional<double> value = number_of(entry, settings);
     if (value && !in_range(entry, *value))
-      throw InputError(fmt::format("{}: found {}, expected {}", entry.key, *value, allowed_number(entry)));
+      throw SettingError(entry.key, fmt::format("found {}, expected {}", *value, allowed_number(entry)));
   }
   check_counts(settings);
 }
@@ -108,9 +108,9 @@ void check_counts(const Settings& settings) {
   constexpr double kMost = 1e15;  // what a double counts without a gap, and more than any run comes to
   const auto check = [&](std::string_view key, double length, std::string_view of) {
     if (const double count = settings.end / length; !(count < kMost)) {
-      throw InputError(
-          fmt::format("{}: found {:g} s with end {:g} s, which are {:g} {}, expected at most 1e15; try a larger {}",
-                      key, length, settings.end, count, of, key == "step" ? key : "one"));
+      throw SettingError(
+          key, fmt::format("found {:g} s with end {:g} s, which are {:g} {}, expected at most 1e15; try a larger {}",
+                           length, settings.end, count, of, key == "step" ? key : "one"));
     }
   };
   if (!chooses_steps(settings)) check("step", settings.step, "steps");
@@ -203,8 +203,8 @@ void fit_time_grid(Settings& settings, std::vector<std::string>& notices) {
   const double rows = settings.every / settings.step;
   const double nearest = std::max(1.0, std::round(rows));
   if (std::abs(rows - nearest) > rounding * nearest)
-    throw InputError(fmt::format("every: found {} s, expected a multiple of the step {} s; try {}", settings.every,
-                                 settings.step, nearest * settings.step));
+    throw SettingError("every", fmt::format("found {} s, expected a multiple of the step {} s; try {}", settings.every,
+                                            settings.step, nearest * settings.step));
 }
 
 }  // namespace poinsot

@@ -7,14 +7,26 @@
 #include <string_view>
 #include <vector>
 
+#include "core/input_error.h"
 #include "integrators/settings_table.h"
 
 namespace poinsot {
 
 class JsonValue;
 
-// Throws InputError that begins with the key of the first number that is not allowed, or is a parameter of other
-// integrators.
+// A value that is allowed by itself and not beside the others. It begins with the key.
+class SettingError : public InputError {
+ public:
+  SettingError(std::string_view key, const std::string& why)
+      : InputError(std::string(key) + ": " + why), key_(key), why_(why) {}
+  const std::string& key() const { return key_; }
+  const std::string& why() const { return why_; }
+
+ private:
+  std::string key_, why_;
+};
+
+// Throws SettingError: the first number that is not allowed, or is a parameter of other integrators.
 void check_numbers(const Settings& settings);
 // The part of it that is about step, end and every together: no more steps and output times than can be counted.
 void check_counts(const Settings& settings);
@@ -33,7 +45,7 @@ void read_setting(const SettingEntry& entry, const JsonValue& value, Settings& s
 std::string to_json(const Settings& settings);
 
 // Makes t_n = n step, n = 0..N, land on `end` exactly: where `end` is no multiple of `step`, the step is shortened to
-// end/N with the next larger N, and a sentence that says so is added to `notices`. Throws InputError where `every` is
+// end/N with the next larger N, and a sentence that says so is added to `notices`. Throws SettingError where `every` is
 // no multiple of the step. Integrators that control their error choose their own steps and are left alone.
 void fit_time_grid(Settings& settings, std::vector<std::string>& notices);
 

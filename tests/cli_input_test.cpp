@@ -124,12 +124,14 @@ TEST_F(WrongInput, Configuration) {
                                "poinsot: config.json: /rtol: found 1e-15, expected a number, at least 2.2e-15");
   expect_configuration_refused(R"({"spectral_radius": 3})",
                                "poinsot: config.json: /spectral_radius: found 3, expected a number from 0 to 1");
-  expect_configuration_refused(R"({"integrator": "rattle", "spectral_radius": 0.5})",
-                               "poinsot: spectral_radius: no parameter of integrator 'rattle'; it is one of "
-                               "generalized_alpha, generalized_alpha_i2");
-  expect_configuration_refused(R"({"analysis": "kinematics", "spectral_radius": 0.5})",
-                               "poinsot: spectral_radius: no parameter of kinematics; it is one of generalized_alpha, "
-                               "generalized_alpha_i2");
+  expect_configuration_refused(
+      R"({"integrator": "rattle", "spectral_radius": 0.5})",
+      "poinsot: config.json: /spectral_radius: no parameter of integrator 'rattle'; it is one of "
+      "generalized_alpha, generalized_alpha_i2");
+  expect_configuration_refused(R"({"analysis": "kinematics",
+  "spectral_radius": 0.5})",
+                               "poinsot: config.json: /spectral_radius: no parameter of kinematics; it is one of "
+                               "generalized_alpha, generalized_alpha_i2 (line 2)");
   expect_configuration_refused(R"({"max_iterations": 0})",
                                "poinsot: config.json: /max_iterations: found 0, expected a whole number, at least 1");
   expect_configuration_refused(
@@ -151,6 +153,20 @@ TEST_F(WrongInput, Configuration) {
   EXPECT_EQ(syntax.status, 2);
   EXPECT_TRUE(syntax.err.starts_with("poinsot: config.json: line 2, column 8: ")) << syntax.err;
   EXPECT_EQ(lines(syntax.err).size(), 1u);
+}
+
+// What is wrong only beside the other settings is told with its place, too, unless the command line has overruled it.
+TEST_F(WrongInput, AConfigurationThatDoesNotFitTogetherIsToldWithItsPlace) {
+  expect_configuration_refused(
+      R"({"integrator": "implicit_euler", "step": 0.01, "every": 0.015})",
+      "poinsot: config.json: /every: found 0.015 s, expected a multiple of the step 0.01 s; try 0.02");
+  expect_configuration_refused(
+      R"({"integrator": "rattle", "step": 1e-300})",
+      "poinsot: config.json: /step: found 1e-300 s with end 1 s, which are 1e+300 steps, expected at most 1e15; try a "
+      "larger step");
+  expect_refused({"view", "pendulum.json", "--config", "config.json", "--out", "a.html", "--step", "1e-200"},
+                 "poinsot: step: found 1e-200 s with end 1 s, which are 1e+200 steps, expected at most 1e15; try a "
+                 "larger step");
 }
 
 TEST_F(WrongInput, TimeGrid) {
