@@ -274,6 +274,17 @@ TEST_F(CliStudy, TimesAreMeasuredAloneAndSaidToBe) {
   EXPECT_EQ(record["timing"]["one_at_a_time"], true);
 }
 
+// Of a scene that says no name, too: it is called by its file.
+TEST_F(CliStudy, AnUnknownColumnIsToldWithItsPlaceAndTheScene) {
+  write("bare.json",
+        R"({"scene": 1, "bodies": [{"name": "rod", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]}]})");
+  write("study.json", R"({"study": 1, "scenes": ["bare.json"], "keep": ["violation", {"column": "rod.y"},
+    {"column": "wheel.y"}]})");
+  expect_refused({"--out", "out"},
+                 "poinsot: study.json: /keep/2/column: scene 'bare' has no column 'wheel.y', expected one of the "
+                 "trajectory, the reactions or the signals of a run (line 2)\n");
+}
+
 // As the user of the tests, and where that is root as nobody, too.
 TEST_F(CliStudy, AFullDiskKeepsTheRowsThereWasRoomFor) {
   write_study(kMany, 0.02);

@@ -107,6 +107,7 @@ std::string Kept::text() const {
 Kept read_kept(const JsonValue& study, bool timed) {
   Kept kept;
   const auto list = study.optional("keep");
+  std::size_t number = 0;
   for (const JsonValue& item : list ? items(*list, "an array of what is kept") : std::vector<JsonValue>()) {
     if (item.is_string()) {
       const auto entry = std::ranges::find(kWhole, item.string(), &Whole::name);
@@ -120,7 +121,9 @@ Kept read_kept(const JsonValue& study, bool timed) {
       kept.errors = true;
     } else {
       kept.quantities.push_back(read_quantity(item));
+      kept.quantities.back().item = number;
     }
+    ++number;
   }
   if (kept.seconds && !timed)
     list->fail("\"seconds\" are kept, expected \"repetitions\", how many timed runs a case makes");
@@ -128,15 +131,16 @@ Kept read_kept(const JsonValue& study, bool timed) {
   return kept;
 }
 
-Column require_column(const JsonValue& study, const Quantity& quantity, const Model& model) {
+Column require_column(const JsonValue& study, const Quantity& quantity, const Model& model, std::string_view scene) {
+  const JsonValue list = study.required("keep"), item = list.at(quantity.item), place = item.required("column");
   try {
     if (const std::optional<Column> column = find_column(model, quantity.column)) return *column;
   } catch (const InputError& error) {
-    study.required("keep").fail(error.what());
+    place.fail(error.what());
   }
-  study.required("keep").fail(fmt::format(
+  place.fail(fmt::format(
       "scene '{}' has no column '{}', expected one of the trajectory, the reactions or the signals of a run",
-      printable(model.name), printable(quantity.column)));
+      printable(scene), printable(quantity.column)));
 }
 
 void require_output_times(const JsonValue& study, const Kept& kept, const Settings& settings) {

@@ -26,6 +26,7 @@ struct Quantity {
   std::string name, column;  // name: as the table calls it
   bool final = false, least = false, greatest = false, range = false;
   std::vector<double> at;  // s, ascending
+  std::size_t item = 0;    // of "keep", counted from 0
 };
 
 struct Kept {
@@ -41,8 +42,8 @@ struct Kept {
 
 // "keep" of a study. `timed`: whether runs are repeated.
 Kept read_kept(const JsonValue& study, bool timed);
-// Throws InputError where a scene has no such column.
-Column require_column(const JsonValue& study, const Quantity& quantity, const Model& model);
+// Throws InputError where a scene, called `scene`, has no such column.
+Column require_column(const JsonValue& study, const Quantity& quantity, const Model& model, std::string_view scene);
 // Throws InputError where a time asked for is not an output time of runs with these settings.
 void require_output_times(const JsonValue& study, const Kept& kept, const Settings& settings);
 

@@ -165,7 +165,8 @@ void find_columns(Study& study, const JsonValue& root) {
     } catch (const InputError& error) {
       root.fail(fmt::format("scene '{}': {}", one.name, error.what()));
     }
-    for (const Quantity& quantity : study.kept.quantities) one.columns.push_back(require_column(root, quantity, model));
+    for (const Quantity& quantity : study.kept.quantities)
+      one.columns.push_back(require_column(root, quantity, model, one.name));
   }
 }
 
