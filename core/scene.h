@@ -210,7 +210,7 @@ struct Parameter {
 };
 
 struct Scene {
-  std::string name, about;
+  std::string name, about;            // read from a file that says no name: that of the file
   Vector3 gravity = Vector3::Zero();  // m/s², global
   std::vector<Body> bodies;
   std::vector<Constraint> constraints;

@@ -121,6 +121,7 @@ Scene read_document(const JsonDocument& document, std::string_view file, const P
   if (const auto schema = root.optional("$schema")) (void)schema->string();  // for editors
   Scene scene;
   if (const auto name = root.optional("name")) scene.name = name->string();
+  if (scene.name.empty()) scene.name = std::filesystem::path(file).filename().string();  // messages begin with it
   if (const auto about = root.optional("about")) scene.about = about->string();
   scene.gravity = optional_or(root, "gravity", read_vector, scene.gravity);
 

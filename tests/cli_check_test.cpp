@@ -192,6 +192,17 @@ TEST_F(Check, QuantitiesWithUnitsAndPlaces) {
   EXPECT_EQ(poinsot({"check", "empty.json"}).err, "poinsot: empty.json: the file is empty\n");
 }
 
+TEST_F(Check, ASceneWithoutANameIsCalledByItsFile) {
+  std::string nameless = kPendulum;
+  nameless.erase(nameless.find("\"name\": \"pendulum\","), 19);
+  write("swing.json", nameless);
+  const Result checked = poinsot({"check", "swing.json"}), ran = poinsot({"run", "swing.json", "--end", "0.01"});
+  EXPECT_TRUE(checked.out.starts_with("swing.json: 1 body, ")) << checked.out;
+  EXPECT_TRUE(ran.out.starts_with("swing.json: dynamics, ")) << ran.out;
+  EXPECT_EQ(shell("poinsot check - < swing.json > said"), 0);
+  EXPECT_TRUE(read("said").starts_with("standard input: 1 body, ")) << read("said");
+}
+
 // What comes but once has lines, too.
 TEST_F(Check, LinesOfTheStandardInputAndOfPipes) {
   write("off.json", rod(R"({"type": "D", "name": "tie", "bodies": ["ground", "rod"], "s_i": [-1,0,0], "s_j": [0,0,0],
