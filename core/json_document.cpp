@@ -124,11 +124,21 @@ std::string content_of(const std::string& file) {
   return text;
 }
 
+// As editors and shells write it, with a mark before the text or without: JSON begins with an ASCII character, of whose
+// two bytes one is 0.
+bool is_utf16(std::string_view text) {
+  if (text.size() < 2) return false;
+  const std::string_view begin = text.substr(0, 2);
+  return begin == "\xff\xfe" || begin == "\xfe\xff" || (begin[0] == '\0') != (begin[1] == '\0');
+}
+
 }  // namespace
 
 JsonDocument::JsonDocument(std::string_view text, std::string_view file)
     : file_(file), json_(std::make_unique<Json>()) {
   if (text.find_first_not_of(" \t\r\n") == text.npos) throw InputError(fmt::format("{}: the file is empty", file));
+  if (is_utf16(text))
+    throw InputError(fmt::format("{}: found a text in UTF-16, expected UTF-8; save it as that", file));
   Builder builder(text, file_, *json_);
   constexpr bool kWholeText = true, kComments = true;
   Json::sax_parse(text.begin(), text.end(), &builder, Json::input_format_t::json, kWholeText, kComments);

@@ -84,6 +84,21 @@ TEST(SceneReader, answers_to_text_that_is_not_a_document) {
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text), message);
 }
 
+// As PowerShell and some editors write it; the mark that others put before UTF-8 means nothing.
+TEST(SceneReader, says_that_a_text_is_in_utf16) {
+  const std::string scene = R"({"scene": 1, "bodies": []})", expected =
+                                                                 "case.json: found a text in UTF-16, expected "
+                                                                 "UTF-8; save it as that";
+  std::string little, big;
+  for (const char c : scene) {
+    little += {c, '\0'};
+    big += {'\0', c};
+  }
+  for (const std::string& text : {"\xff\xfe" + little, little, "\xfe\xff" + big, big})
+    EXPECT_EQ(error_of(text), expected);
+  EXPECT_EQ(error_of("\xef\xbb\xbf" + scene), error_of(scene));
+}
+
 TEST(SceneReader, survives_documents_nested_a_million_deep) {
   const auto depth = static_cast<std::size_t>(scaled(1'000'000));
   EXPECT_EQ(error_of(std::string(depth, '[') + std::string(depth, ']')),
