@@ -32,7 +32,8 @@ const std::array kEntries{
                  false},  // as in the enumeration
     SettingEntry{"formulation", "orientation coordinates", &Settings::formulation,
                  [] { return formulations().names(); }, false},
-    SettingEntry{"integrator", "time stepping of dynamics", &Settings::integrator, integrator_names, false},
+    SettingEntry{"integrator", "time stepping of dynamics", &Settings::integrator, integrator_names, false, 0,
+                 kInfinity, For::dynamics},
     SettingEntry{"linear_solver", "solver of the linear systems", &Settings::linear_solver,
                  [] { return linear_solvers().names(); }, false},
     SettingEntry{"linear_system", "matrix that is factored", &Settings::linear_system,
@@ -40,7 +41,7 @@ const std::array kEntries{
     SettingEntry{"jacobian", "matrix of Newton's method", &Settings::jacobian, [] { return jacobians().names(); },
                  false, 0, kInfinity, For::fixed_steps},
     SettingEntry{"stopping", "stopping test of Newton's method in dynamics", &Settings::stopping,
-                 [] { return stopping_tests().names(); }, false, 0, kInfinity, For::fixed_steps},
+                 [] { return stopping_tests().names(); }, false, 0, kInfinity, For::fixed_steps_of_dynamics},
     SettingEntry{"step", "step size h, s, of integrators with fixed steps", &Settings::step, nullptr, false, 0,
                  kInfinity, For::fixed_steps},
     SettingEntry{"end", "end time, s; the last step lands on it", &Settings::end, nullptr, false, kLeastEnd},
@@ -53,7 +54,7 @@ const std::array kEntries{
     SettingEntry{"max_iterations", "Newton: iterations allowed in a step", &Settings::max_iterations, nullptr, false, 0,
                  kInfinity, For::fixed_steps},
     SettingEntry{"retry", "do a step of fixed size that fails in halves of it, and halves of those", &Settings::retry,
-                 nullptr, false, 0, kInfinity, For::fixed_steps, "end the run there"},
+                 nullptr, false, 0, kInfinity, For::fixed_steps_of_dynamics, "end the run there"},
     SettingEntry{"every", "time between output rows, s; 0: every step", &Settings::every, nullptr, true},
     SettingEntry{"assemble", "project an initial state that violates the constraints", &Settings::assembly, nullptr,
                  false, 0, kInfinity, For::all, "refuse such a state"},
@@ -88,16 +89,19 @@ bool chooses_steps(const Settings& settings) {
 }
 
 std::string why_ignored(const SettingEntry& entry, const Settings& settings) {
-  const For used = chooses_steps(settings) ? For::error_control : For::fixed_steps;
-  if (entry.meant_for == For::all || entry.meant_for == used) return "";
-  if (settings.analysis == Analysis::kinematics)
-    return fmt::format("{} means nothing to kinematics, whose accuracy is the tolerance of Newton's method",
-                       option_name(entry));
-  return used == For::error_control
-             ? fmt::format("{} means nothing to integrator {}, which controls its error by rtol and atol",
-                           option_name(entry), settings.integrator)
-             : fmt::format("{} means nothing to integrator {}, whose accuracy follows from its step",
-                           option_name(entry), settings.integrator);
+  if (entry.meant_for == For::all) return "";
+  const bool controls_error = chooses_steps(settings);
+  if (settings.analysis == Analysis::kinematics) {
+    if (entry.meant_for == For::fixed_steps) return "";
+    return fmt::format("{} means nothing to kinematics, {}", option_name(entry),
+                       entry.meant_for == For::error_control ? "whose accuracy is the tolerance of Newton's method"
+                                                             : "which finds positions and integrates nothing");
+  }
+  if (entry.meant_for == For::dynamics || (entry.meant_for == For::error_control) == controls_error) return "";
+  return controls_error ? fmt::format("{} means nothing to integrator {}, which controls its error by rtol and atol",
+                                      option_name(entry), settings.integrator)
+                        : fmt::format("{} means nothing to integrator {}, whose accuracy follows from its step",
+                                      option_name(entry), settings.integrator);
 }
 
 std::span<const SettingEntry> setting_entries() {

@@ -25,7 +25,7 @@ struct SettingEntry {
   bool zero_allowed;                    // numbers: at least 0 instead of greater than 0
   double least = 0;                     // numbers: at least this, where it is not 0
   double most = std::numeric_limits<double>::infinity();
-  enum class For { all, fixed_steps, error_control } meant_for = For::all;
+  enum class For { all, dynamics, fixed_steps, fixed_steps_of_dynamics, error_control } meant_for = For::all;
   std::string_view otherwise = {};  // switches: what is done instead, one line
 };
 

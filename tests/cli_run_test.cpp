@@ -55,6 +55,26 @@ TEST_F(Run, OptionsThatMeanNothingToTheMethodAreTold) {
   }
 }
 
+TEST_F(Run, OptionsOfIntegratorsAreToldToMeanNothingToKinematics) {
+  const auto told = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"run", POINSOT_SOURCE_DIR "/models/single_pendulum_joints.json", "--analysis",
+                                     "kinematics", "--end", "0.01"});
+    const Result result = poinsot(options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.err;
+  };
+  const std::string before = told({});
+  const auto expect_told = [&](std::vector<std::string> options, const char* why) {
+    EXPECT_EQ(told(options),
+              fmt::format("poinsot: note: {} means nothing to kinematics, {}\n{}", options.front(), why, before));
+  };
+  expect_told({"--integrator", "rattle"}, "which finds positions and integrates nothing");
+  expect_told({"--stopping", "relative"}, "which finds positions and integrates nothing");
+  expect_told({"--retry"}, "which finds positions and integrates nothing");
+  expect_told({"--rtol", "1e-6"}, "whose accuracy is the tolerance of Newton's method");
+  EXPECT_EQ(told({"--step", "0.005", "--tolerance", "1e-6", "--jacobian", "kept", "--max-iterations", "30"}), before);
+}
+
 TEST_F(Run, QuietSaysNothing) {
   const Result result = poinsot({"run", "pendulum.json", "--end", "0.1", "--quiet"});
   EXPECT_EQ(result.status, 0);
