@@ -30,6 +30,10 @@ bool explain_by_functions(Status& status, const Problem& problem, const Settings
     status = with_remedy(Failure::singular_position, t,
                          fmt::format("at t = {:.9g} s the mechanism cannot go on: {}, which no position has", t, asked),
                          "end before it, or change the function");
+  } else if (settings.analysis == Analysis::kinematics && status.failure == Failure::not_finite) {
+    status = no_value(t, fmt::format("at t = {:.9g} s the matrix or the solution is not finite: a driver asks for "
+                                     "more, or for it faster, than numbers can hold",
+                                     t));
   } else {
     return false;
   }

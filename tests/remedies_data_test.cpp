@@ -11,6 +11,7 @@ namespace poinsot::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class RemediesOfData : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(All, RemediesOfData, ::testing::ValuesIn(formulation_names()),
@@ -110,6 +111,20 @@ TEST_P(RemediesOfData, OfALengthBelowZeroIsAnotherFunction) {
                    "is -1 m, expected a positive one; end the run before, or change the function");
     expect_helped(driven_slider("1 + t"), settings);
   });
+}
+
+// Kinematics integrates nothing: there it is what a driver asks for that comes to numbers that no matrix is made of.
+TEST_P(RemediesOfData, OfKinematicsThatAsksForTooMuchAreAnEndBeforeOrAnotherFunction) {
+  Settings settings;
+  settings.analysis = Analysis::kinematics, settings.formulation = GetParam();
+  const Recorded r = run(driven_slider("exp(800*t)"), settings);
+  expect_stopped(r, Failure::not_finite, "a driver asks for more, or for it faster, than numbers can hold",
+                 "end the run before, or change the function");
+  EXPECT_THAT(r.outcome.status.message, Not(HasSubstr("moves at")));
+  EXPECT_NEAR(r.outcome.status.time, 0.434, 0.1);
+  expect_helped(driven_slider("exp(8*t)"), settings);
+  settings.end = 0.1;
+  expect_helped(driven_slider("exp(800*t)"), settings);
 }
 
 TEST_P(RemediesOfData, OfAPositionThatJumpsNameWhatJumps) {
