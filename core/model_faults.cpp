@@ -70,7 +70,9 @@ std::string fault_sentence(double t, const std::string& whose, const std::string
 }
 
 Status no_value(double t, const std::string& fault) {
-  return with_remedy(Failure::not_finite, t, fault, "end the run before, or change the function");
+  return with_remedy(Failure::not_finite, t, fault,
+                     t > 0 ? "end the run before, or change the function"
+                           : "the run begins there: change the function, or write (t + T) for t to begin at T");
 }
 
 }  // namespace poinsot

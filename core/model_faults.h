@@ -19,7 +19,7 @@ std::string fault_sentence(double t, const std::string& whose, const std::string
 // is none.
 std::string beyond_any_position(const Model& model, double from, double to);
 
-// The failure that a fault is.
+// The failure that a fault is, and what to try: an end before it, where it is not at the start.
 Status no_value(double t, const std::string& fault);
 
 }  // namespace poinsot

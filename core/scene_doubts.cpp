@@ -156,7 +156,7 @@ std::string overflowing_length(const Model& model) {
 std::string overflowing(const Model& model, double t) {
   std::string found;
   const auto look = [&](const std::string& whose, std::string_view what, double size) {
-    if (found.empty() && size > kSquareOverflows) found = too_large(whose, what, size);
+    if (found.empty() && size > kSquareOverflows && std::isfinite(size)) found = too_large(whose, what, size);
   };
   for (const Body& body : model.bodies) {
     const std::string name = fmt::format("body '{}'", body.name);

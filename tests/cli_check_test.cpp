@@ -70,9 +70,7 @@ TEST_F(Check, ADerivativeThatIsNotFinite) {
   EXPECT_EQ(result.status, 3);
   EXPECT_EQ(result.err,
             "poinsot: root.json: at t = 0 s constraint 'root' (/constraints/0, line 3): the second derivative of "
-            "'t^1.5' is not finite; end the "
-            "run before, "
-            "or change the function\n");
+            "'t^1.5' is not finite; the run begins there: change the function, or write (t + T) for t to begin at T\n");
   expect_says(result, {"  rA: constraint 'root' (/constraints/0, line 3): gamma is off by "});
 }
 

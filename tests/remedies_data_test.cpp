@@ -50,6 +50,21 @@ TEST_P(RemediesOfData, OfAFunctionWithoutAValueAreAnEndBeforeOrAnotherFunction) 
   });
 }
 
+// There is no end before the start.
+TEST_P(RemediesOfData, OfAFunctionWithoutAValueAtTheStartAreALaterBeginningOrAnotherFunction) {
+  by_every_method(GetParam(), 1e-2, 0.1, [&](const Settings& settings) {
+    for (const char* force : {"log(t)", "1/t"}) {
+      const Recorded r = run(bob_pushed_by(force), settings);
+      expect_stopped(r, Failure::not_finite, "force 'push'",
+                     "the run begins there: change the function, or write (t + T) for t to begin at T");
+      EXPECT_THAT(r.outcome.status.message, Not(HasSubstr("end the run before")));
+      EXPECT_THAT(r.outcome.notices, ::testing::IsEmpty());  // that it is infinite is no matter of units
+    }
+    expect_helped(bob_pushed_by("log(t + 0.5)"), settings);
+    expect_helped(bob_pushed_by("1/max(t, 1)"), settings);
+  });
+}
+
 TEST_P(RemediesOfData, OfNumbersThatOverflowAreSmallerUnits) {
   Scene heavy = bob_pushed_by("0");
   heavy.gravity = {0, 0, -9.81};
@@ -108,7 +123,7 @@ Scene driven_crank(const char* angle) {
 TEST_P(RemediesOfData, OfALengthBelowZeroIsAnotherFunction) {
   by_every_method(GetParam(), 1e-2, 0.1, [&](const Settings& settings) {
     expect_stopped(run(driven_slider("-1 - t"), settings), Failure::not_finite, "driver 'length'",
-                   "is -1 m, expected a positive one; end the run before, or change the function");
+                   "is -1 m, expected a positive one; the run begins there: change the function, or write (t + T)");
     expect_helped(driven_slider("1 + t"), settings);
   });
 }

@@ -166,9 +166,8 @@ TEST(SpringLaw, a_start_without_a_value_says_so) {
     "angle": "sqrt(t)"}]})j",
                                   "start.json");
   EXPECT_EQ(run(scene, Settings{}).outcome.status.message,
-            "at t = 0 s driver 'angle1' (/drivers/0): the first derivative of 'sqrt(t)' is not finite; end the run "
-            "before, or change "
-            "the function");
+            "at t = 0 s driver 'angle1' (/drivers/0): the first derivative of 'sqrt(t)' is not finite; the run begins "
+            "there: change the function, or write (t + T) for t to begin at T");
 }
 
 }  // namespace
