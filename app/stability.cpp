@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,12 +25,12 @@ namespace fs = std::filesystem;
 struct StabilityOptions {
   std::string out = "results", formulations = all_names("formulation"), integrators = all_names("integrator");
   std::vector<std::string> families;
-  int threads = 0;
+  std::optional<int> threads;
   bool quick = false, full = false, fresh = false, quiet = false;
 };
 
 int map(const StabilityOptions& options) {
-  if (options.threads < 0) require_positive("--threads", options.threads);
+  if (options.threads) require_positive("--threads", *options.threads);
   if (options.quick && options.full) throw InputError("--quick, --full: expected one of the two");
   const std::vector<const Family*> all = require_families(options.families);
   const Extent extent{options.quick, names_given("formulation", options.formulations),
@@ -39,7 +40,7 @@ int map(const StabilityOptions& options) {
   {
     const Deferred deferred;
     ProgressLine progress("cells", !options.quiet);
-    maps = map_families(all, extent, {options.out, options.fresh, options.threads},
+    maps = map_families(all, extent, {options.out, options.fresh, options.threads.value_or(0)},
                         [&](double there, double cells, const Family& family) {
                           progress.at({there, cells, 0}, fmt::format(", {}", family.name));
                         });

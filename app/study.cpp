@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct StudyOptions {
   std::string file, out = "results", shard, cache = user_cache().string();
   std::vector<std::string> merge;
-  int threads = 0;
+  std::optional<int> threads;
   bool quick = false, fresh = false, quiet = false;
 };
 
@@ -69,8 +69,8 @@ int lead_study(const StudyOptions& options, Ranks* ranks) {
   try {
     if (!options.shard.empty() && !options.merge.empty()) throw InputError("--shard, --merge: expected one of the two");
     c.emplace(read_study(options.file),
-              ComputationOptions{options.out, shard_of(options.shard), options.merge, options.threads, options.quick,
-                                 options.fresh, options.cache},
+              ComputationOptions{options.out, shard_of(options.shard), options.merge, options.threads.value_or(0),
+                                 options.quick, options.fresh, options.cache},
               ranks);
   } catch (...) {
     std::string none;
@@ -101,11 +101,11 @@ int follow_study(const StudyOptions& options, Ranks& ranks) {
   const Study study = parse_content(content);
   References references{Cache(options.cache)};
   const Deferred deferred;
-  return follow(ranks, study, references, std::max(1, options.threads)) ? kDone : signal_status();
+  return follow(ranks, study, references, options.threads.value_or(1)) ? kDone : signal_status();
 }
 
 int study(const StudyOptions& options) {
-  if (options.threads < 0) require_positive("--threads", options.threads);
+  if (options.threads) require_positive("--threads", *options.threads);
   if (!started_by_launcher()) return lead_study(options, nullptr);
   const std::unique_ptr<Ranks> ranks = join_ranks();
   try {

@@ -69,6 +69,11 @@ TEST_F(WrongInput, Usage) {
   expect_refused({"make"}, "poinsot: found no structure, expected poinsot make STRUCTURE; see poinsot make --help");
   expect_refused({"make", "chain", "--bodies", "2.5"},
                  "poinsot: --bodies: found \"2.5\", expected a whole number; see poinsot make --help");
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"study", "study.json"}, {"stability"}}) {
+    std::vector<std::string> without = command;
+    without.insert(without.end(), {"--threads", "0"});
+    expect_refused(without, "poinsot: --threads: found 0, expected a whole number, at least 1");
+  }
 }
 
 TEST_F(WrongInput, Scene) {
