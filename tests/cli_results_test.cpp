@@ -41,6 +41,16 @@ TEST_F(CliResults, ColumnsAndBodiesChooseWhatATrajectoryHolds) {
   const Result nobody = poinsot({"run", "pend.json", "--out", "x.csv", "--bodies", "crank"});
   EXPECT_EQ(nobody.status, 2);
   EXPECT_THAT(nobody.err, HasSubstr("--bodies: found \"crank\", expected one or more of rod"));
+  // Names may hold commas themselves.
+  write("free.json", R"({"scene": 1, "bodies": [
+    {"name": "a", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]},
+    {"name": "rod, left", "mass": 1, "inertia": [1, 1, 1], "position": [1, 0, 0]},
+    {"name": "rod", "mass": 1, "inertia": [1, 1, 1], "position": [2, 0, 0]}]})");
+  for (const char* both : {"rod, left,a", "a,rod, left"}) {
+    const Result chosen = poinsot({"run", "free.json", "--out", "x.csv", "--columns", "position", "--bodies", both});
+    EXPECT_EQ(chosen.status, 0) << chosen.err;
+    EXPECT_EQ(first_line(read("x.csv")), "t,a.x,a.y,a.z,\"rod, left.x\",\"rod, left.y\",\"rod, left.z\"");
+  }
 }
 
 // The array of an .npy file, read by its header.
