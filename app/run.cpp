@@ -35,6 +35,18 @@ struct RunOptions {
   bool verify = false, quiet = false;
 };
 
+// What nobody may have meant to write; empty where it is little, or where the integrator chooses how many rows there
+// are.
+std::string much_to_write(RunFiles& files, const Settings& settings) {
+  constexpr double kMuch = 1e9;  // bytes
+  const double between = settings.every > 0 ? settings.every : chooses_steps(settings) ? settings.end : settings.step;
+  const double rows = settings.end / between, row = files.longest_row();
+  if (!(rows * row > kMuch)) return "";
+  return fmt::format(
+      "{:.3g} rows are to be written, of up to {:g} bytes each: {:.3g} GB; a larger --every writes fewer", rows, row,
+      1e-9 * rows * row);
+}
+
 // What the status says where the run was interrupted, or a file did not take everything.
 void tell_interruption(const RunFiles& files, double end, Status& status) {
   if (status.failure == Failure::interrupted)
@@ -97,6 +109,7 @@ int run(const RunOptions& options) {
   if (record_file.empty()) std::string().swap(scene.source);  // memory of large scenes
   LastState last;
   std::optional<Deferred> deferred;  // from the first sample on there is something to keep
+  if (const std::string much = much_to_write(files, settings); !much.empty()) notices.push_back(much);
   if (!options.quiet) std::ranges::for_each(notices, print_notice);
   {
     ProgressLine progress("s", !options.quiet);

@@ -104,5 +104,29 @@ TEST_F(Trajectory, Reactions) {
   EXPECT_EQ(lines(read("s.csv"))[0], "t,slot.lambda");
 }
 
+// The run ends soon, at a force without a value, but that is not known before.
+TEST_F(Trajectory, OfManyGigabytesIsToldBeforeItIsWritten) {
+  write("short.json", R"({"scene": 1, "bodies": [{"name": "a", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]}],
+    "forces": [{"type": "force", "body": "a", "point": [0, 0, 0], "force": ["0*sqrt(1e-6 - t) ", 0, 0]}]})");
+  const auto told = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"run", "short.json", "--columns", "position"});
+    const Result result = poinsot(options);
+    EXPECT_EQ(result.status, 3) << result.err;
+    return lines(result.err).at(0);
+  };
+  const std::string note = "poinsot: note: ", advice = "; a larger --every writes fewer";
+  EXPECT_EQ(told({"--every", "1e-9", "--out", "a.csv"}),
+            note + "1e+09 rows are to be written, of up to 100 bytes each: 100 GB" + advice);
+  EXPECT_EQ(told({"--every", "1e-9", "--out", "a.npy", "--reactions", "r.csv"}),
+            note + "1e+09 rows are to be written, of up to 57 bytes each: 57 GB" + advice);
+  EXPECT_EQ(told({"--integrator", "rattle", "--step", "1e-8", "--out", "a.csv"}),
+            note + "1e+08 rows are to be written, of up to 100 bytes each: 10 GB" + advice);
+  for (const std::vector<std::string>& little : {std::vector<std::string>{"--every", "1e-6", "--out", "a.csv"},
+                                                 {"--every", "1e-9", "--out", "/dev/null"},
+                                                 {"--every", "1e-9", "--out", "a.csv", "--quiet"},
+                                                 {"--out", "a.csv"}})
+    EXPECT_EQ(told(little).find("are to be written"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace poinsot::test

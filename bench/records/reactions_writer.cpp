@@ -10,6 +10,7 @@ ReactionsWriter::ReactionsWriter(const std::filesystem::path& file, const Model&
       file_.write_field(group.name + ".lambda");
     else
       for (const char* column : {".fx", ".fy", ".fz", ".nx", ".ny", ".nz"}) file_.write_field(group.name + column);
+    columns_ += group.kind == GroupKind::constraint ? 1 : 6;
   }
   file_.write("\n");
 }

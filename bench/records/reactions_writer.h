@@ -14,11 +14,13 @@ class ReactionsWriter {
  public:
   ReactionsWriter(const std::filesystem::path& file, const Model& model);  // throws InputError
 
+  std::size_t columns() const { return columns_; }
   void write(const Sample& sample);
   study::OutputFile& file() { return file_; }
 
  private:
   study::OutputFile file_;
+  std::size_t columns_ = 1;
   std::optional<Reactions> reactions_;  // from the first sample on
 };
 

@@ -35,6 +35,18 @@ ColumnsByOption RunFiles::unnamed_columns() {
   return columns;
 }
 
+double RunFiles::longest_row() {
+  constexpr std::size_t kInText = 25;  // "-1.2345678901234567e-123,"
+  std::size_t bytes = 0;
+  const auto add = [&](study::OutputFile& file, std::size_t columns, bool binary) {
+    if (file.is_file()) bytes += columns * (binary ? sizeof(double) : kInText);
+  };
+  if (trajectory_) add(trajectory_->file(), trajectory_->columns().size(), is_npy(trajectory_->file().target()));
+  if (reactions_) add(reactions_->file(), reactions_->columns(), false);
+  if (signals_) add(signals_->file(), signals_->columns().size(), is_npy(signals_->file().target()));
+  return static_cast<double>(bytes);
+}
+
 void RunFiles::guarded(OutputFile& file, const std::function<void()>& act) {
   try {
     act();

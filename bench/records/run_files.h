@@ -33,6 +33,8 @@ class RunFiles {
 
   bool any() const { return trajectory_ || reactions_ || signals_; }  // that grow with the run
   ColumnsByOption unnamed_columns();
+  // Bytes of a row of all files together, at most; devices and pipes fill no disk.
+  double longest_row();
 
   void write(const Sample& sample);
   void flush();
