@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
   app.footer(
       "Exit status: 0 done; 2 the input is wrong and nothing was written; 3 the numerics failed and what was computed\n"
       "up to there is kept, marked incomplete; 128 + n ended by signal n (Ctrl-C 130), which run,\n"
-      "chart, study, stability and figures do likewise.");
+      "chart, study, stability, figures, tables and scale do likewise.");
   app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   for (const auto add :

@@ -1,11 +1,16 @@
 #include <fmt/format.h>
 
+#include <optional>
+#include <utility>
+
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/progress_line.h"
+#include "app/signals.h"
 #include "app/terminal.h"
 #include "bench/study/measure.h"
 #include "bench/study/scale_series.h"
+#include "core/interruption.h"
 
 namespace poinsot::app {
 using namespace study;
@@ -17,6 +22,17 @@ struct ScaleOptions {
   bool quiet = false;
 };
 
+// Of an interrupted series; what was drawn and written whole before stays.
+int keep(const std::vector<Series>& all, Report report, const std::string& out) {
+  const bool any = !cost_table(all).rows.empty();
+  if (any) {
+    mark_incomplete(report, signal_text());
+    write_report(report, interrupted_folder(out), "scaling");
+  }
+  print_error(signal_text() + (any ? kept_in(interrupted_folder(out)) : ""));
+  return signal_status();
+}
+
 int scale(const ScaleOptions& options) {
   const ScaleRequest request{names_given("formulation", options.formulations),
                              names_given("linear_solver", options.linear_solvers), options.most, options.repetitions};
@@ -25,10 +41,13 @@ int scale(const ScaleOptions& options) {
   make_folder(options.out);
   const int core = pin_to_one_core();
   ProgressLine progress("runs", !options.quiet);
+  std::optional<Deferred> deferred(std::in_place);
   const std::vector<Series> all = measure_scale(request, progress.callback());
   progress.clear();
 
   Report report = scale_report(all, options.repetitions, core);
+  if (interruption_requested) return keep(all, std::move(report), options.out);
+  deferred.reset();
   bool failed = false;
   if (const std::string why = write_plots({scaling_plot(all)}, options.out, report.foot); why.empty()) {
     report.text += "\n\n![Cost over the number of bodies](scaling_plot.svg)";

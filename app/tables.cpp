@@ -1,12 +1,17 @@
 #include <fmt/format.h>
 
+#include <optional>
+#include <utility>
+
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/progress_line.h"
+#include "app/signals.h"
 #include "app/terminal.h"
 #include "bench/paper/measured_tables.h"
 #include "bench/study/measure.h"
 #include "bench/study/output_file.h"
+#include "core/interruption.h"
 #include "integrators/settings_reader.h"
 
 namespace poinsot::app {
@@ -19,6 +24,25 @@ struct TablesOptions {
   bool quiet = false;
 };
 
+std::vector<fs::path> write_tables(const paper::MeasuredTables& measured, const fs::path& folder) {
+  std::vector<fs::path> written = study::write_report(measured.report, folder, "tables");
+  study::OutputFile raw(folder / "raw.csv");
+  raw.write(study::csv(measured.raw, measured.report.foot));
+  raw.commit();
+  return written;
+}
+
+// Of tables that were interrupted; what was written whole before stays.
+int keep(paper::MeasuredTables measured, const fs::path& folder) {
+  const bool any = !measured.raw.rows.empty();
+  if (any) {
+    study::mark_incomplete(measured.report, signal_text());
+    write_tables(measured, folder);
+  }
+  print_error(signal_text() + (any ? study::kept_in(folder) : ""));
+  return signal_status();
+}
+
 int tables(const TablesOptions& options) {
   paper::TablesRequest request = options.request;
   Settings checked;
@@ -29,14 +53,14 @@ int tables(const TablesOptions& options) {
 
   const int core = study::pin_to_one_core();
   ProgressLine progress("runs", !options.quiet);
-  const paper::MeasuredTables measured = paper::measure_tables(request, core, progress.callback());
+  std::optional<Deferred> deferred(std::in_place);
+  paper::MeasuredTables measured = paper::measure_tables(request, core, progress.callback());
   progress.clear();
+  if (interruption_requested) return keep(std::move(measured), study::interrupted_folder(options.out));
+  deferred.reset();
 
   for (const std::string& failure : measured.failures) print_error(failure);
-  const std::vector<fs::path> written = study::write_report(measured.report, options.out, "tables");
-  study::OutputFile raw(fs::path(options.out) / "raw.csv");
-  raw.write(study::csv(measured.raw, measured.report.foot));
-  raw.commit();
+  const std::vector<fs::path> written = write_tables(measured, options.out);
   if (!options.quiet) fmt::print("{} and {} CSV files beside it\n", written.front().string(), written.size());
   return measured.failures.empty() ? kDone : kNumericsFailed;
 }

@@ -8,6 +8,7 @@
 #include "bench/paper/mechanisms.h"
 #include "bench/paper/paper_tables.h"
 #include "bench/paper/phase_tables.h"
+#include "core/interruption.h"
 #include "core/provenance.h"
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
@@ -88,6 +89,11 @@ std::vector<std::string> failures_of(std::span<const Cell> cells) {
   return failures;
 }
 
+// Interrupted before: a table would say nothing.
+bool nothing_of(std::span<const Cell> cells) {
+  return interruption_requested && std::ranges::all_of(cells, [](const Cell& cell) { return cell.runs.empty(); });
+}
+
 }  // namespace
 
 double TablesRequest::end() const {
@@ -115,6 +121,7 @@ MeasuredTables measure_tables(const TablesRequest& request, int core, const Prog
   for (const Analysis analysis : {Analysis::kinematics, Analysis::dynamics}) {
     std::vector<Cell> cells = make_cells(scenes, analysis, request, chosen);
     measure_told(cells, request.runs(), progress);
+    if (nothing_of(cells)) continue;
     for (const auto make : {speed_up_table, iterations_table, phases_table, advantage_table})
       report.tables.push_back(make(cells, analysis));
     report.tables.push_back(against_original_table(cells, analysis, processor()));
@@ -122,7 +129,7 @@ MeasuredTables measure_tables(const TablesRequest& request, int core, const Prog
   }
   std::vector<Cell> cells = make_cells(scenes, Analysis::dynamics, request, choices);
   measure_told(cells, request.runs(), progress);
-  report.tables.push_back(linear_solvers_table(cells));
+  if (!nothing_of(cells)) report.tables.push_back(linear_solvers_table(cells));
   all.insert(all.end(), cells.begin(), cells.end());
 
   result.raw = raw_table(all);

@@ -30,7 +30,7 @@ struct MeasuredTables {
   std::vector<std::string> failures;
 };
 
-// `core`: as pin_to_one_core() returns it.
+// `core`: as pin_to_one_core() returns it. Where it is interrupted (core/interruption.h): of the runs up to there.
 MeasuredTables measure_tables(const TablesRequest& request, int core, const study::ProgressCallback& progress);
 
 }  // namespace poinsot::paper

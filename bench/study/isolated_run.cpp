@@ -1,5 +1,6 @@
 #include "bench/study/isolated_run.h"
 
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -9,6 +10,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "core/interruption.h"
 #include "integrators/simulate.h"
 
 namespace poinsot::study {
@@ -63,6 +65,15 @@ Answer answer(const SceneGenerator& generator, int bodies, const Settings& setti
   return out;
 }
 
+// Reads the answer; false where there is none, or an end is asked for before it comes.
+bool get(int from, Answer& answer) {
+  constexpr int kAsksAgain = 50;  // ms
+  pollfd waited{from, POLLIN, 0};
+  while (poll(&waited, 1, kAsksAgain) <= 0)
+    if (interruption_requested) return false;
+  return read(from, &answer, sizeof answer) == static_cast<ssize_t>(sizeof answer);
+}
+
 }  // namespace
 
 IsolatedRun run_isolated(const SceneGenerator& generator, int bodies, const Settings& settings) {
@@ -78,8 +89,9 @@ IsolatedRun run_isolated(const SceneGenerator& generator, int bodies, const Sett
   }
   close(ends[1]);
   Answer got;
-  const bool complete = read(ends[0], &got, sizeof got) == static_cast<ssize_t>(sizeof got);
+  const bool complete = get(ends[0], got);
   close(ends[0]);
+  if (!complete) kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   if (!complete) return {{}, "the run ended without an answer (out of memory?)"};
   return {got.figures, got.failure};

@@ -26,6 +26,7 @@ struct IsolatedRun : RunFigures {
   std::string failure;  // why there are no figures
 };
 
+// Ends at once where an end is asked for (core/interruption.h), with a failure that says nothing.
 IsolatedRun run_isolated(const SceneGenerator& generator, int bodies, const Settings& settings);
 
 }  // namespace poinsot::study

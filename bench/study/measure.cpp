@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/input_error.h"
+#include "core/interruption.h"
 
 namespace poinsot::study {
 namespace {
@@ -50,6 +51,7 @@ int pin_to_one_core() {
 void in_turn(std::size_t runs, const Rounds& rounds, const std::function<void(std::size_t, int)>& run) {
   for (int round = rounds.warm_up ? -1 : 0; round < rounds.repetitions; ++round) {
     for (std::size_t k = 0; k < runs; ++k) {
+      if (interruption_requested) return;
       run(k, round);
       if (rounds.after) rounds.after(k);
     }
@@ -62,6 +64,7 @@ void measure(std::vector<Cell>& cells, const Rounds& rounds) {
     if (!cell.failure.empty()) return;
     try {
       const Outcome outcome = simulate(*cell.scene, cell.settings, [](const Sample&) {});
+      if (outcome.status.failure == Failure::interrupted) return;  // the runs before it count
       cell.refused = outcome.status.failure == Failure::refused;
       if (!outcome.status.ok())
         cell.failure = outcome.status.message;

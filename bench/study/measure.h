@@ -51,6 +51,7 @@ struct Rounds {
   bool warm_up = true;                                 // a round before them, −1, that does not count
   std::function<void(std::size_t number)> after = {};  // told of each run, and of those that are left out
 };
+// Comes to an end before the next run where that is asked for (core/interruption.h).
 void in_turn(std::size_t runs, const Rounds& rounds, const std::function<void(std::size_t number, int round)>& run);
 
 // Those that have failed are left out.

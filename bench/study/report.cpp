@@ -66,6 +66,19 @@ std::string csv(const Table& table, const std::vector<std::string>& foot) {
   return text;
 }
 
+void mark_incomplete(Report& report, std::string_view why) {
+  report.text += fmt::format("\n\nIncomplete, {}: what was measured up to there.", why);
+  report.foot.push_back(fmt::format("incomplete: {}", why));
+}
+
+fs::path interrupted_folder(const fs::path& directory) {
+  return directory / "interrupted";
+}
+
+std::string kept_in(const fs::path& directory) {
+  return fmt::format("; what was measured up to there is kept in {}", directory.string());
+}
+
 void make_folder(const fs::path& directory) {
   std::error_code error;
   fs::create_directories(directory, error);

@@ -28,6 +28,13 @@ std::vector<std::string> origin_lines(int core);
 std::string markdown(const Report& report);
 std::string csv(const Table& table, const std::vector<std::string>& foot);  // foot lines begin with '#'
 
+// Says in the text and the foot that it holds only what was measured before an interruption: "interrupted by SIGINT".
+void mark_incomplete(Report& report, std::string_view why);
+// Where such a report goes: a whole one may stand in the folder from before.
+std::filesystem::path interrupted_folder(const std::filesystem::path& directory);
+// For the message that says so: "; what was measured up to there is kept in results/interrupted".
+std::string kept_in(const std::filesystem::path& directory);
+
 // Makes the folder and tries whether files can be written there. Throws InputError.
 void make_folder(const std::filesystem::path& directory);
 

@@ -7,6 +7,7 @@
 
 #include "bench/study/fit.h"
 #include "bench/study/measure.h"
+#include "core/interruption.h"
 
 namespace poinsot::study {
 namespace {
@@ -168,7 +169,8 @@ std::vector<Series> measure_scale(const ScaleRequest& request, const ProgressCal
       return;
     }
     series.settings.end = series.settings.every = end_of(all_sizes[n], series.settings.step);
-    of_size.push_back(run_isolated(*series.structure, all_sizes[n], series.settings));
+    const IsolatedRun run = run_isolated(*series.structure, all_sizes[n], series.settings);
+    if (!interruption_requested) of_size.push_back(run);
   });
   return all;
 }
@@ -177,7 +179,7 @@ std::vector<Missing> missing(const std::vector<Series>& all) {
   std::vector<Missing> sentences;
   for (const Series& series : all)
     for (std::size_t n = 0; n < series.sizes.size(); ++n) {
-      if (good(series.runs[n])) continue;
+      if (series.runs[n].empty() || good(series.runs[n])) continue;  // empty: it did not come to that
       const std::string& why = series.runs[n].front().failure;
       sentences.push_back(
           {fmt::format("no figure for {} of {} bodies, {}, {}: {}", series.structure->name, series.sizes[n],

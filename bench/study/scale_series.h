@@ -24,7 +24,8 @@ struct ScaleRequest {
   int most = 100000;  // bodies; sizes are 1, 10, 100, ...
   int repetitions = 3;
 };
-// Every structure; repetitions go through all of them in turn. Sizes that would take too long are left out.
+// Every structure; repetitions go through all of them in turn. Sizes that would take too long are left out. Where it is
+// interrupted (core/interruption.h) the runs up to there are returned.
 std::vector<Series> measure_scale(const ScaleRequest& request, const ProgressCallback& progress);
 
 // Why there are no figures, a sentence for each size of each series that has none. Those left out are no failures.
