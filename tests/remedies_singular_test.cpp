@@ -231,8 +231,8 @@ TEST_P(SingularRemedies, OfACosineBeyondOneIsToEndBefore) {
     Settings settings;
     settings.integrator = integrator.name, settings.formulation = GetParam(), settings.analysis = integrator.analysis;
     settings.step = 0.01, settings.end = 3;
-    expect_stopped(run(scene, settings), Failure::singular_position,
-                   "asks for a cosine beyond 1 from t = 2 s on", "; end before it");
+    expect_stopped(run(scene, settings), Failure::singular_position, "asks for a cosine beyond 1 from t = 2 s on",
+                   "; end before it");
     settings.end = 1.95;
     expect_helped(scene, settings);
   }
