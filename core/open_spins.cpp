@@ -24,18 +24,33 @@ Matrix3 held_by(const Vector3& e) {
 
 }  // namespace
 
+Matrix3 axes_without_moment(const Body& body) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3> principal(body.inertia);
+  const double most = principal.eigenvalues().cwiseAbs().maxCoeff();
+  Matrix3 axes = Matrix3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (principal.eigenvalues()[k] <= kNoMoment * most) axes.col(k) = principal.eigenvectors().col(k);
+  return axes;
+}
+
+Vector3 unheld_axis(const Matrix3& without_moment, const Matrix3& held, double least) {
+  // w = without_moment x for some x that is not zero
+  const Eigen::SelfAdjointEigenSolver<Matrix3> open(Matrix3(without_moment.transpose() * held * without_moment +
+                                                            Matrix3::Identity() -
+                                                            Matrix3(without_moment.transpose() * without_moment)));
+  if (without_moment.isZero(0) || open.eigenvalues()[0] > least) return Vector3::Zero();
+  return (without_moment * open.eigenvectors().col(0)).normalized();
+}
+
+std::string describe_no_moment(const Body& body, const Vector3& axis) {
+  return fmt::format("body '{}' has no moment of inertia about the axis ({:.3g}, {:.3g}, {:.3g}) of its frame",
+                     body.name, axis.x(), axis.y(), axis.z());
+}
+
 std::string open_spin(const Model& model) {
-  std::vector<Matrix3> free(model.bodies.size(), Matrix3::Zero());  // columns: axes without moment
+  std::vector<Matrix3> free;
   bool any = false;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const Eigen::SelfAdjointEigenSolver<Matrix3> principal(model.bodies[b].inertia);
-    const double most = principal.eigenvalues().cwiseAbs().maxCoeff();
-    for (int k = 0; k < 3; ++k) {
-      if (principal.eigenvalues()[k] > kNoMoment * most) continue;
-      free[b].col(k) = principal.eigenvectors().col(k);
-      any = true;
-    }
-  }
+  for (const Body& body : model.bodies) any |= !free.emplace_back(axes_without_moment(body)).isZero(0);
   if (!any) return {};
   std::vector<Matrix3> held(model.bodies.size(), Matrix3::Zero());
   for (const Row& row : model.rows) {
@@ -47,16 +62,10 @@ std::string open_spin(const Model& model) {
     if (row.alternate && row.j != kGround) held[index(row.j)] += held_by(row.alternate->a_j);
   }
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (free[b].isZero(0)) continue;
-    // w = free x for some x that is not zero, and no more than rounding of it held.
-    const Eigen::SelfAdjointEigenSolver<Matrix3> open(Matrix3(
-        free[b].transpose() * held[b] * free[b] + Matrix3::Identity() - Matrix3(free[b].transpose() * free[b])));
-    if (open.eigenvalues()[0] > kAlong * kAlong) continue;
-    const Vector3 w = (free[b] * open.eigenvectors().col(0)).normalized();
-    return fmt::format(
-        "body '{}' has no moment of inertia about the axis ({:.3g}, {:.3g}, {:.3g}) of its frame, and no constraint "
-        "holds it about that: nothing says how it spins; give it a small moment there",
-        model.bodies[b].name, w.x(), w.y(), w.z());
+    const Vector3 w = unheld_axis(free[b], held[b], kAlong * kAlong);
+    if (w.isZero(0)) continue;
+    return describe_no_moment(model.bodies[b], w) +
+           ", and no constraint holds it about that: nothing says how it spins; give it a small moment there";
   }
   return {};
 }

@@ -14,4 +14,11 @@ namespace poinsot {
 // The first such body, in words, with what to do; empty where there is none.
 std::string open_spin(const Model& model);
 
+// Unit axes of a body's frame about which it has no moment, in columns; others are zero.
+Matrix3 axes_without_moment(const Body& body);
+// w where `held` of the rotations about such axes, wᵀ held w, comes to no more than `least`, of unit length; else zero.
+Vector3 unheld_axis(const Matrix3& without_moment, const Matrix3& held, double least);
+// "body 'rod' has no moment of inertia about the axis (1, 0, 0) of its frame".
+std::string describe_no_moment(const Body& body, const Vector3& axis);
+
 }  // namespace poinsot

@@ -16,6 +16,7 @@
 #include "formulations/registry.h"
 #include "integrators/start/closure.h"
 #include "integrators/start/far_bodies.h"
+#include "integrators/start/momentary_spin.h"
 #include "integrators/start/rank.h"
 #include "integrators/start/regular_beside.h"
 #include "integrators/start/rough_pose.h"
@@ -63,6 +64,9 @@ class Assembler {
     if (result_.rank.singular_position() && !result_.rank.moves_on) {
       result_.status = stuck();
       return std::move(result_);
+    }
+    if (settings_.analysis == Analysis::dynamics) {
+      if (result_.status = refuse_momentary_spin(model_, given_); !result_.status.ok()) return std::move(result_);
     }
     result_.status = project();
     if (result_.status.failure == Failure::inconsistent_state) {
