@@ -86,5 +86,14 @@ TEST(LawJumps, AreNotToldWhereNoneIsPassed) {
   EXPECT_THAT(r.outcome.notices, ::testing::Not(Contains(HasSubstr("jumps"))));
 }
 
+// Nor where a sign is passed at which another factor is zero.
+TEST(LawJumps, AreNoneOfContinuousLaws) {
+  in_every_way(1e-2, 2.5, [&](const Settings& settings) {
+    const Recorded r = run(rubbing("3*sign(v)*min(1, abs(v)/0.2) + 20*x"), settings);
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    EXPECT_THAT(r.outcome.notices, ::testing::Not(Contains(HasSubstr("jumps"))));
+  });
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -44,7 +44,7 @@ Status FixedSteps::examine_end(bool& settled) {
 void FixedSteps::look_for_jumps() {
   constexpr int kApart = 8;  // steps
   if (jump_told_ || run_.statistics.steps % kApart != 0) return;
-  sides_.swap(sides_before_);
+  std::swap(sides_, sides_before_);
   jumps_.look(last_seen(), x_, sides_);
   const SpringLaw* const law = jumps_.crossed(sides_before_, sides_);
   if (!law) return;

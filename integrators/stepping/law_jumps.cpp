@@ -26,25 +26,49 @@ LawJumps::LawJumps(const Model& model) : springs_(springs_that_may_turn_round(mo
 void LawJumps::look(const Problem& problem, const State& at, Sides& sides) {
   if (none()) return;
   problem.to_bodies(at.a(), bodies_);
-  auto side = sides.begin();
+  auto side = sides.of.begin();
+  auto arguments = sides.at.begin();
   for (const SpringLaw& law : laws_) {
     const std::span<double> switches(switches_.data(), index(law.F->switch_count()));
-    law.F->switches(law.arguments(law.place(problem.model(), problem, bodies_), at.t), switches);
+    *arguments = law.arguments(law.place(problem.model(), problem, bodies_), at.t);
+    law.F->switches(*arguments++, switches);
     for (int k = 0; k < law.F->switch_count(); ++k)
       if (law.F->switch_jumps(k)) *side++ = switches[index(k)];
   }
 }
 
-const SpringLaw* LawJumps::crossed(const Sides& before, const Sides& after) const {
+const SpringLaw* LawJumps::crossed(const Sides& before, const Sides& after) {
   std::size_t side = 0;
-  for (const SpringLaw& law : laws_) {
-    for (int k = 0; k < law.F->switch_count(); ++k) {
-      if (!law.F->switch_jumps(k)) continue;
-      if (before[side] * after[side] < 0) return &law;
+  for (std::size_t k = 0; k < laws_.size(); ++k) {
+    const Expression& F = *laws_[k].F;
+    for (int j = 0; j < F.switch_count(); ++j) {
+      if (!F.switch_jumps(j)) continue;
+      if (before.of[side] * after.of[side] < 0 && jumps_between(F, j, before.at[k], after.at[k])) return &laws_[k];
       ++side;
     }
   }
   return nullptr;
+}
+
+// F jumps where the switch k changes its sign on the straight way from one to the other.
+bool LawJumps::jumps_between(const Expression& F, int k, Arguments<double> from, Arguments<double> to) {
+  constexpr int kHalvings = 60;
+  constexpr double kJump = 1e-6;  // of F
+  const std::span<double> switches(switches_.data(), index(F.switch_count()));
+  const auto side = [&](const Arguments<double>& at) {
+    F.switches(at, switches);
+    return switches[index(k)] > 0;
+  };
+  const auto between = [](double a, double b) { return a + 0.5 * (b - a); };
+  const bool one = side(from);
+  double most = std::max(std::abs(F.law(from).F), std::abs(F.law(to).F));
+  for (int j = 0; j < kHalvings; ++j) {
+    const Arguments<double> middle{between(from.t, to.t), between(from.x, to.x), between(from.v, to.v)};
+    (side(middle) == one ? from : to) = middle;
+  }
+  const double before = F.law(from).F, after = F.law(to).F;
+  most = std::max({most, std::abs(before), std::abs(after)});
+  return !(std::abs(after - before) <= kJump * most);
 }
 
 std::vector<Vector3> LawJumps::stretches(const Problem& problem, const State& at) const {

@@ -15,22 +15,28 @@ namespace poinsot {
 
 class LawJumps {
  public:
-  using Sides = std::vector<double>;  // by their signs
+  struct Sides {
+    std::vector<double> of;             // by their signs
+    std::vector<Arguments<double>> at;  // of each law
+  };
 
   explicit LawJumps(const Model& model);  // which has to live as long
 
   bool none() const { return laws_.empty(); }
   bool steps_may_fail() const { return !none() || !springs_.empty(); }  // because of them
-  Sides sides() const { return Sides(size_, 0.0); }
+  Sides sides() const { return {std::vector<double>(size_), std::vector<Arguments<double>>(laws_.size())}; }
   // Those of a state, where the problem stands.
   void look(const Problem& problem, const State& at, Sides& sides);
-  // A law whose jump lies between the two; none: null.
-  const SpringLaw* crossed(const Sides& before, const Sides& after) const;
+  // A law that jumps between the two; none: null. One that passes continuously through a switch, as
+  // sign(v)*min(1, abs(v)) does, is none.
+  const SpringLaw* crossed(const Sides& before, const Sides& after);
   // How the springs stretch where the problem stands, and whether one has done nothing but turn round between the two.
   std::vector<Vector3> stretches(const Problem& problem, const State& at) const;
   bool turned_round(const std::vector<Vector3>& before, const std::vector<Vector3>& after, double t) const;
 
  private:
+  bool jumps_between(const Expression& F, int k, Arguments<double> from, Arguments<double> to);
+
   std::vector<SpringLaw> laws_;     // that jump
   std::vector<SpringLaw> springs_;  // whose force turns round
   std::vector<BodyState> bodies_;

@@ -55,12 +55,13 @@ class SeenForce {
   double nothing_;
 };
 
-// Where F comes to more, about: shortly after `from`, where it does not, or before `to`, where it does. In the middle
-// of it a force may have no direction.
-double entry_into(const LawPath& path, const SeenForce& seen, double from, double to) {
+// Where F comes to what is not seen, about: shortly after `from`, where it is, or before `to`, where it is not. In the
+// middle of it a force may have no direction.
+template <class Seen>
+double entry_into(const LawPath& path, Seen&& seen, double from, double to) {
   for (int k = 0; k < kTowardsEntry; ++k) {
-    const double middle = from + 0.5 * (to - from), there = path.force(middle);
-    (seen.holds({there, there}) ? from : to) = middle;
+    const double middle = from + 0.5 * (to - from);
+    (seen(middle, path.force(middle)) ? from : to) = middle;
   }
   return to;
 }
@@ -68,8 +69,9 @@ double entry_into(const LawPath& path, const SeenForce& seen, double from, doubl
 UnseenForce first_in_part(const LawPath& path, const SeenForce& seen, double from, double to, int partings,
                           int& pieces) {
   if (seen.holds(path.force(from, to))) return {};
-  const double middle = from + 0.5 * (to - from), there = path.force(middle);
-  if (!seen.holds({there, there})) return {entry_into(path, seen, from, middle), true};
+  const double middle = from + 0.5 * (to - from);
+  const auto holds = [&](double, double F) { return seen.holds({F, F}); };
+  if (!holds(middle, path.force(middle))) return {entry_into(path, holds, from, middle), true};
   if (partings == 0 || --pieces < 0) return {from, false};
   const UnseenForce sooner = first_in_part(path, seen, from, middle, partings - 1, pieces);
   return sooner.s < 1 ? sooner : first_in_part(path, seen, middle, to, partings - 1, pieces);
@@ -254,19 +256,12 @@ UnseenForce first_between(const LawPath& path, Bounds ends, double nothing) {
   std::ranges::transform(kLookedAt, there.begin(), [&](double s) { return path.force(s); });
   const auto [least, most] = std::ranges::minmax(there);
   const double much = std::max(kOff * (most - least), nothing);
-  const auto off = [&](double s, double F) {  // from Hermite's cubic
+  const auto led_to = [&](double s, double F) {  // by Hermite's cubic
     const double r = 1 - s;
-    return std::abs(F - r * r * ((1 + 2 * s) * from + s * out) - s * s * ((1 + 2 * r) * to - r * in)) > much;
+    return !(std::abs(F - r * r * ((1 + 2 * s) * from + s * out) - s * s * ((1 + 2 * r) * to - r * in)) > much);
   };
-  for (std::size_t k = 1; k < there.size(); ++k) {
-    if (!off(kLookedAt[k], there[k])) continue;
-    double before = kLookedAt[k - 1], after = kLookedAt[k];
-    for (int j = 0; j < kTowardsEntry; ++j) {
-      const double middle = before + 0.5 * (after - before);
-      (off(middle, path.force(middle)) ? after : before) = middle;
-    }
-    return {after, true};
-  }
+  for (std::size_t k = 1; k < there.size(); ++k)
+    if (!led_to(kLookedAt[k], there[k])) return {entry_into(path, led_to, kLookedAt[k - 1], kLookedAt[k]), true};
   return {};
 }
 

@@ -101,7 +101,8 @@ bool NewtonLoop::balanced(double position, const Vector& z, const Vector& q) {
          256 * kEpsilon * (max_norm(momentum_) + gradient_ * max_norm(z.tail(problem_.nc())));
 }
 
-Status NewtonLoop::not_converged(double t, double correction) const {
+// `off`: of Φ in the units of the step, before the last correction.
+Status NewtonLoop::not_converged(double t, double correction, double position, double off) const {
   const std::string try_first = divided_ ? "try an integrator with error control" : "try a smaller step";
   const auto by_size = [](double x) { return std::isfinite(x) ? std::abs(x) : HUGE_VAL; };
   const auto largest = std::ranges::max_element(delta_, {}, by_size) - delta_.begin();
@@ -110,6 +111,17 @@ Status NewtonLoop::not_converged(double t, double correction) const {
                        fmt::format("at t = {:.9g} s Newton's correction of {} is not finite", t,
                                    problem_.describe_unknown(static_cast<int>(largest))),
                        try_first);
+  }
+  if (correction <= settings_.tolerance) {  // beside accelerations that have grown
+    const bool moves = moved_ * position > kFar * arm_;
+    return with_remedy(
+        Failure::not_converged, t,
+        fmt::format("at t = {:.9g} s Newton's method did not converge: after {} it still {} {:.3g}{}, small as that is "
+                    "beside the accelerations it has come to; the largest correction is that of {}",
+                    t, counted(settings_.max_iterations, "iteration"),
+                    moves ? "moves a body by" : "leaves constraints off by up to", (moves ? moved_ : off) * position,
+                    moves ? " m" : "", problem_.describe_unknown(static_cast<int>(largest))),
+        try_first);
   }
   // Corrections that do not come near ask for another step or matrix, whatever they are compared with.
   constexpr int kFew = 10;

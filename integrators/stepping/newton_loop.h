@@ -51,13 +51,13 @@ class NewtonLoop {
                Correct&& correct) {
     if (gradient_ < 0) measure_gradient();
     const double far_off = kFar * std::min(1.0, arm_ * arm_);
-    double correction = 0, before = INFINITY;
+    double correction = 0, before = INFINITY, off = 0;
     bool of_this_step = false;
     stalled_ = false;
     since_stall_ = std::numeric_limits<int>::max() / 2;
     for (int k = 0; k < settings_.max_iterations; ++k) {
       residual(delta_);
-      const double off = delta_.tail(problem_.nc()).template lpNorm<Eigen::Infinity>();
+      off = delta_.tail(problem_.nc()).template lpNorm<Eigen::Infinity>();
       if (stalled_ && balanced(position, z, q)) return {};
       if (due(refresh_, k, slow_ || !system_.ready())) {
         if (Status status = matrix(); !status.ok()) return status;
@@ -81,7 +81,7 @@ class NewtonLoop {
       before = correction;
       if (!std::isfinite(correction)) break;
     }
-    return not_converged(t, correction);
+    return not_converged(t, correction, position, off);
   }
 
   // Whether corrections had stopped to shrink in one of the last iterations of a step.
@@ -102,7 +102,7 @@ class NewtonLoop {
   double steepness(double t, double position);
   void measure_gradient();
   bool balanced(double position, const Vector& z, const Vector& q);
-  Status not_converged(double t, double correction) const;
+  Status not_converged(double t, double correction, double position, double off) const;
 
   Problem& problem_;
   StepSystem& system_;

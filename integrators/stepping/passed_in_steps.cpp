@@ -56,9 +56,8 @@ PassedInSteps::PassedInSteps(const Model& model, double end, Tell tell)
 }
 
 void PassedInSteps::look(const Problem& problem, const State& at, double h) {
-  constexpr double kSame = 1e-6;  // of a step that goes on from the last look
   problem.to_bodies(at.a(), bodies_);
-  const bool goes_on = std::abs(at.t - h - t_) <= kSame * h;
+  const bool goes_on = look_.goes_on(at.t, h);
   double quiet = kMostSteps;
   std::erase_if(laws_, [&](Law& law) {
     const LawPlace to = law.of.place(model_, problem, bodies_);
@@ -69,8 +68,7 @@ void PassedInSteps::look(const Problem& problem, const State& at, double h) {
     quiet = std::min(quiet, steps);
     return false;
   });
-  t_ = at.t, h_ = h;
-  wait_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(quiet));
+  look_.after(at.t, h, quiet);
 }
 
 double PassedInSteps::nothing(const Law& law, double speed, double h) const {

@@ -8,12 +8,12 @@
 // whose force only rises with its length every box is quiet. Where there is none each step is looked at.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "integrators/integrator.h"
 #include "integrators/state.h"
 #include "integrators/stepping/law_path.h"
+#include "integrators/stepping/next_look.h"
 
 namespace poinsot {
 
@@ -23,7 +23,7 @@ class PassedInSteps {
   PassedInSteps(const Model& model, double end, Tell tell);
 
   // Whether the end of the step under way is to be looked at.
-  bool due(double h) { return !laws_.empty() && (--wait_ <= 0 || h != h_); }
+  bool due(double h) { return !laws_.empty() && look_.due(h); }
   // The problem stands at `at`, where a step of h has ended or the run begins.
   void look(const Problem& problem, const State& at, double h);
 
@@ -61,8 +61,7 @@ class PassedInSteps {
   const Tell tell_;
   std::vector<Law> laws_;
   std::vector<BodyState> bodies_;
-  double t_ = 0, h_ = 0;  // of the last look, of the steps from there
-  std::int64_t wait_ = 0;
+  NextLook look_;
 };
 
 }  // namespace poinsot

@@ -174,7 +174,7 @@ Status StickingWatch::look(const Problem& problem, const State& at) {
   constexpr double kShort = 0.1;
   constexpr int kSeldomer = 4;
   if (jumps_.none()) return {};
-  before_.swap(sides_);
+  std::swap(before_, sides_);
   jumps_.look(problem, at, sides_);
   crossings_ = jumps_.crossed(before_, sides_) ? crossings_ + 1 : std::max(0.0, crossings_ - kBetween);
   short_ = at.t - std::exchange(t_, at.t) < kShort * instant_ ? short_ + 1 : 0;

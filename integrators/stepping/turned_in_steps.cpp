@@ -37,9 +37,8 @@ TurnedInSteps::TurnedInSteps(const Model& model, Tell tell) : model_(model), tel
 }
 
 void TurnedInSteps::look(const Problem& problem, const State& at, double h) {
-  constexpr double kSame = 1e-6;  // of a step that goes on from the last look
   problem.to_bodies(at.a(), bodies_);
-  const bool goes_on = std::abs(at.t - h - t_) <= kSame * h;
+  const bool goes_on = look_.goes_on(at.t, h);
   double quiet = HUGE_VAL;
   for (Spring& spring : springs_) {
     const LawPlace to = spring.of.place(model_, problem, bodies_);
@@ -56,8 +55,7 @@ void TurnedInSteps::look(const Problem& problem, const State& at, double h) {
     spring.from = to;
     quiet = std::min(quiet, steps_until_passed(to, h));
   }
-  t_ = at.t, h_ = h;
-  wait_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(quiet));
+  look_.after(at.t, h, quiet);
 }
 
 }  // namespace poinsot

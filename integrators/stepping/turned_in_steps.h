@@ -5,12 +5,12 @@
 // order, whatever the method's. Nothing is looked at while the ends cannot have come near one another.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "integrators/integrator.h"
 #include "integrators/state.h"
 #include "integrators/stepping/law_path.h"
+#include "integrators/stepping/next_look.h"
 
 namespace poinsot {
 
@@ -20,7 +20,7 @@ class TurnedInSteps {
   TurnedInSteps(const Model& model, Tell tell);
 
   // Whether the end of the step under way is to be looked at.
-  bool due(double h) { return !springs_.empty() && (--wait_ <= 0 || h != h_); }
+  bool due(double h) { return !springs_.empty() && look_.due(h); }
   // The problem stands at `at`, where a step of h has ended or the run begins.
   void look(const Problem& problem, const State& at, double h);
 
@@ -34,8 +34,7 @@ class TurnedInSteps {
   const Tell tell_;
   std::vector<Spring> springs_;
   std::vector<BodyState> bodies_;
-  double t_ = 0, h_ = 0;  // of the last look, of the steps from there
-  std::int64_t wait_ = 0;
+  NextLook look_;
 };
 
 }  // namespace poinsot
