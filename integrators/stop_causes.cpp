@@ -54,7 +54,10 @@ void explain_by_position(Status& status, Problem& problem, const Settings& setti
   if (!why.empty()) status.withdraw_remedy();  // nothing helps but to change what these say
   if (why.empty()) {
     const NearSingular near = near_singular_position(problem, rows, span(q_start), status.time, span(state.q));
-    if (unexplained || near.barred) why = near.sentence;
+    if (unexplained || near.barred)
+      why = near.sentence;
+    else if (near.driven)
+      why = kMayBeBarred;
     if (near.barred) status.withdraw_remedy();
   }
   if (why.empty() && failure == Failure::step_size_too_small && status.remedy == 0)

@@ -250,6 +250,23 @@ TEST_P(Branches, drivers_that_ask_for_the_pose_half_a_turn_off_or_a_negative_len
       }
 }
 
+// Which no method passes, however near to it a step has come: another step or method is not all that is offered.
+TEST(DrivenBeyondReach, is_to_be_ended_before) {
+  int stopped = 0;
+  for (const FourBar& of : {FourBar{1, 1.2, 0.6, 2}, FourBar{1, 1.3, 0.7, 2.2}, FourBar{0.5, 0.9, 0.4, 1.4}})
+    for (const char* integrator : {"implicit_euler", "rattle", "generalized_alpha", "half_implicit"})
+      for (const double step : {1e-2, 7e-3, 3e-3}) {
+        Settings settings;
+        settings.integrator = integrator, settings.step = step, settings.end = 3;
+        const Recorded r = run(four_bar(of, pi / 3), settings);
+        ASSERT_FALSE(r.outcome.status.ok());
+        if (r.outcome.status.failure == Failure::rotation_too_large) continue;
+        ++stopped;
+        EXPECT_THAT(r.outcome.status.message, ::testing::HasSubstr("end before it")) << integrator << ' ' << step;
+      }
+  EXPECT_GT(stopped, 20);
+}
+
 // A crank-rocker through the points of its hinges, all but at a change point on its way: there one step ends off the
 // position by the tolerance, with a matrix of before, and shorter ones find their way from it.
 Scene near_change_point(const std::vector<Vector3>& at, const char* angle) {

@@ -102,10 +102,11 @@ NearSingular near_singular_position(Problem& problem, int rows, std::span<const 
       "it stopped beside a singular position of the mechanism, where the gradient of {} is a combination of the other "
       "constraints' but for {:.1g} of its length (at the start for {:.1g})",
       problem.describe_unknown(problem.nv() + static_cast<int>(row)), now[row], before[row]);
-  if (bars(problem, here, row, t, q)) return {where + "; " + kBarred, true};
+  if (bars(problem, here, row, t, q)) return {where + "; " + kBarred, true, true};
   const bool driven = std::ranges::any_of(problem.model().rows, [](const Row& r) { return !r.f.is_constant(); });
   return {where + "; dopri5 and dop853 step over most of such positions at larger tolerances, fixed steps may" +
-          (driven ? "; where a driver asks for more than the mechanism reaches nothing does: end before it" : "")};
+              (driven ? std::string("; ") + kMayBeBarred : ""),
+          false, driven};
 }
 
 Status never_beyond(const Problem& problem, const State& at, double limit) {

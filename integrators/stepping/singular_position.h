@@ -31,6 +31,7 @@ DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<
 struct NearSingular {
   std::string sentence;
   bool barred = false;  // see DependentRow: no method passes
+  bool driven = false;  // which may bar it all the same: the nearer, the surer one is
 };
 NearSingular near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
                                     std::span<const double> q);
@@ -38,6 +39,10 @@ NearSingular near_singular_position(Problem& problem, int rows, std::span<const 
 inline constexpr const char* kBarred =
     "drivers ask there for more than the mechanism reaches: its velocities grow without bound, and no method passes; "
     "end before it, or change the drivers";
+
+// Likewise where it may be.
+inline constexpr const char* kMayBeBarred =
+    "where a driver asks for more than the mechanism reaches nothing does: end before it";
 
 // Of steps that get shorter towards the time `limit`, so that they never come there; at `at`, where the problem stands.
 Status never_beyond(const Problem& problem, const State& at, double limit);
