@@ -267,6 +267,20 @@ TEST(DrivenBeyondReach, is_to_be_ended_before) {
   EXPECT_GT(stopped, 20);
 }
 
+TEST(DrivenBeyondReach, is_found_in_kinematics_to_the_time) {
+  for (const FourBar& of : {FourBar{1, 1.2, 0.6, 2}, FourBar{1, 1.3, 0.7, 2.2}, FourBar{0.5, 0.9, 0.4, 1.4}})
+    for (const char* formulation : {"rA", "rp", "reps"})
+      for (const double step : {0.3, 0.03, 0.003}) {
+        const Recorded r = run(four_bar(of, pi / 3), kinematics(formulation, step, 3));
+        EXPECT_EQ(r.outcome.status.failure, Failure::singular_position);
+        EXPECT_THAT(r.outcome.status.message, ::testing::HasSubstr("no method passes; end before it"));
+        const double stretched = of.coupler + of.rocker;
+        const double last =
+            std::acos((of.crank * of.crank + of.d * of.d - stretched * stretched) / (2 * of.crank * of.d));
+        EXPECT_NEAR(r.outcome.status.time, last - pi / 3, 1e-6) << formulation << ' ' << step;
+      }
+}
+
 // A crank-rocker through the points of its hinges, all but at a change point on its way: there one step ends off the
 // position by the tolerance, with a matrix of before, and shorter ones find their way from it.
 Scene near_change_point(const std::vector<Vector3>& at, const char* angle) {

@@ -36,6 +36,15 @@ TEST_P(SingularRemedies, OfKinematicsAreToEndBeforeOrToStartBeyond) {
     const Recorded stopped = run(with_motor(posts(1, 0.3, 0, redundant), "-t"), settings);
     expect_stopped(stopped, Failure::singular_position, "joint 'joint", "end before it, or start beyond it");
     EXPECT_NEAR(stopped.outcome.status.time, 0.3, 1e-4);
+    EXPECT_THAT(stopped.outcome.status.message, HasSubstr("or let analysis dynamics pass it"));
+    Scene moving = with_motor(posts(1, 0.3, -1, redundant), "-t");
+    moving.bodies = posts(1, 0.3, -1, redundant).bodies;
+    for (const char* integrator : {"dop853", "dopri5"}) {
+      const Recorded r = run(moving, controlled(integrator, GetParam(), 1e-8, 1));
+      EXPECT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+      EXPECT_NEAR(r.samples.back().bodies[1].r.x(), 1 + 0.5 * std::cos(-0.7), 1e-6) << "parallel";
+      EXPECT_NEAR(r.samples.back().bodies[1].r.y(), 0.5 * std::sin(-0.7), 1e-6) << "parallel";
+    }
     Settings before = settings;
     before.end = 0.29, before.step = 0.01;
     expect_helped(with_motor(posts(1, 0.3, 0, redundant), "-t"), before);

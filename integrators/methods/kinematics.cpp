@@ -23,7 +23,7 @@ constexpr double kFullTurn = 1;
 // Where so small a part of a step is not certain the position is examined, and is singular where a row is independent
 // of the others by no more than kSingular of its length: beside a singular position others are known to rounding's
 // root.
-constexpr double kSuspicious = 0x1p-10, kSingular = 1e-6;
+constexpr double kSuspicious = 0x1p-10, kSingular = 1e-6, kBarredShare = 1e-2;
 constexpr double kShortest = 0x1p-24;  // part of a step
 constexpr int kMostParts = 1000;
 constexpr double kSharp = 1e-12;      // tolerance of Newton's corrections in parts, at least
@@ -199,7 +199,9 @@ class Kinematics final : public FixedSteps {
           h = 0.5 * (t - at);
           continue;
         }
-        if (found.share < kSingular || (ends && status.ok())) status = branching(at, found);
+        // Towards a barred position shares go with the root of the time that is left.
+        const bool barred = ends && found.barred && found.share < kBarredShare;
+        if (found.share < kSingular || barred || (ends && status.ok())) status = branching(at, found);
         if (status.failure == Failure::not_converged && !as_one.ok()) status = as_one;
         if (ends || found.share < kSingular) break;
       }
@@ -240,7 +242,8 @@ class Kinematics final : public FixedSteps {
             fmt::format("at t = {:.9g} s the mechanism comes to a singular position{}: {}", t, which,
                         found.barred ? kBarred
                                      : "its motion can go on in more than one way, or not at all; end before it, or "
-                                       "start beyond it on the branch that is meant")};
+                                       "start beyond it on the branch that is meant, or let analysis dynamics pass it "
+                                       "by integrator dop853")};
   }
 
   PrescribedState solver_;
