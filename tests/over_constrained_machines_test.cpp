@@ -335,6 +335,24 @@ TEST_P(Machines, KinematicsOfADrivenFourBarAreThoseWithoutRedundancy) {
   }
 }
 
+// A tolerance leaves kept rows off, and what follows from them by as much.
+TEST_P(Machines, KinematicsToALooseToleranceAreNoContradiction) {
+  for (const char* jacobian : {"exact", "kept", "simplified"}) {
+    for (const double step : {0.02, 0.05, 0.1}) {
+      for (const Frames frames : {Frames::drawn, Frames::random}) {
+        SCOPED_TRACE(fmt::format("{} {} step {}", GetParam(), jacobian, step));
+        const Scene scene = driven_four_bar(frames, true, true);  // in a plane that turns: rows mix what is across it
+        Settings settings = kinematics(GetParam(), step, 3, 0.1);
+        settings.jacobian = jacobian, settings.tolerance = 1e-3;
+        const Course course = move(scene, settings);
+        ASSERT_TRUE(course.outcome.status.ok()) << course.outcome.status.message;
+        settings.tolerance = 1e-12;
+        EXPECT_LT(motions_apart(course, move(scene, settings)), 1e-2);
+      }
+    }
+  }
+}
+
 // The parts of a long step turn bodies by more than serves one choice of rows, or one chart.
 TEST_P(Machines, KinematicsInLongStepsChooseRowsAndChartsWithinThem) {
   for (const bool redundant : {true, false}) {

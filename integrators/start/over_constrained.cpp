@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kLookedAgain = 1;  // rad, at the latest
 constexpr double kLost = 1e-5;      // of a body's size: far above what steps leave, far below what opens to the eye
+// Of what kept rows are off, where a tolerance leaves them off by more: rows that follow from them add them up.
+constexpr double kAsKept = 100;
 
 }  // namespace
 
@@ -89,13 +91,23 @@ Status OverConstrained::measure(double t, std::span<const double> a) {
   double most = 0;
   for (std::size_t k = 0; k < by_allowed_.size(); ++k)
     if (const double part = std::abs(residual[k]) * by_allowed_[k]; part > most) most = part, worst = k;
-  if (most <= 1) return rates_aside_ ? measure_rates(t, a) : Status{};
+  if (most <= 1 || std::abs(residual[worst]) <= kAsKept * kept_off())
+    return rates_aside_ ? measure_rates(t, a) : Status{};
   return {Failure::constraint_lost, t,
           fmt::format("at t = {:.9g} s {} is violated by {:.3g}: it followed from the other constraints where the run "
                       "began and was set aside, and does not hold with them any more; the constraints contradict one "
                       "another from here on, and one of them has to go, or the steps leave them: try smaller steps or "
                       "a smaller tolerance",
                       t, describe_row(model(), aside_->rows()[worst]), std::abs(residual[worst]))};
+}
+
+// By how much the rows that are kept are off at most, where they stand.
+double OverConstrained::kept_off() {
+  kept_positions_.resize(index(kept_->nc()));
+  kept_->position_residual(kept_positions_);
+  double most = 0;
+  for (const double off : kept_positions_) most = std::max(most, std::abs(off));
+  return most;
 }
 
 // The velocity rows among them, beside what the others are off as the method leaves them.

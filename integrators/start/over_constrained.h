@@ -98,6 +98,7 @@ class OverConstrained final : public Problem {
   void keep();
   void watch();
   Status measure(double t, std::span<const double> a);
+  double kept_off();
   Status measure_rates(double t, std::span<const double> a);
   double turned() const;
   void exchange(double t, std::span<const double> q, std::span<const double> v, std::span<double> lambda);
@@ -109,7 +110,7 @@ class OverConstrained final : public Problem {
   mutable std::optional<RowsAside> aside_;
   std::vector<double> by_allowed_;  // 1 over what is allowed of |Φ|, by row set aside
   bool rates_aside_ = false;        // velocity rows are among them
-  std::vector<double> kept_rates_;
+  std::vector<double> kept_rates_, kept_positions_;
   double t_ = 0;                // where the problem stands
   double accepted_at_ = 0;      // the last step's end
   double way_ = 0, ahead_ = 0;  // rad, what the fastest body has turned by since the last look, about; its last part
