@@ -75,11 +75,17 @@ Finding phases(const std::vector<Ratio>& all, Ledger& ledger) {
   ledger.begin(finding.id);
   for (const std::string& other : other_formulations()) {
     std::array<double, kPhases.size()> saved{};
-    for (const Ratio* r : pick(all, Analysis::dynamics, other, paper::kLikeForLike))
+    const std::vector<const Ratio*> own = pick(all, Analysis::dynamics, other, paper::kLikeForLike);
+    for (const Ratio* r : own)
       for (std::size_t k = 0; k < saved.size(); ++k) saved[k] += r->saved[k];
     double sum = 0;
     for (const double x : saved) sum += x;
-    if (!(sum > 0)) continue;
+    if (own.empty()) continue;
+    if (!(sum > 0)) {
+      finding.sentences.push_back(
+          fmt::format("{} saves no time against {} in dynamics like for like, over all mechanisms.", kSubject, other));
+      continue;
+    }
     std::vector<std::string> shares;
     for (std::size_t k = 0; k < saved.size(); ++k)
       shares.push_back(fmt::format(
