@@ -155,6 +155,20 @@ TEST(Page, EveryNumberStandsInATable) {
   for (const std::string& number : shown) EXPECT_TRUE(known.contains(number)) << number << " stands in no table";
 }
 
+TEST(Page, TellsWhatIsIncompleteAndWhatFailed) {
+  Results r = results();
+  EXPECT_THAT(page(r).html, Not(HasSubstr("Incomplete")));
+  r.tables["raw"].notes.push_back("incomplete: interrupted by <SIGINT>");
+  r.studies.push_back({"sweep/", "sweep", "about", false, false, {}, 40, 7});
+  const Page made = page(r);
+  EXPECT_THAT(made.html, HasSubstr("Incomplete:"));
+  EXPECT_THAT(made.html, HasSubstr("raw.csv</a>: interrupted by &lt;SIGINT&gt;"));
+  EXPECT_THAT(made.html, HasSubstr("Of 40 cases 7 failed: numbers and pictures are of the others."));
+  const auto studies = std::ranges::find(made.tables, "report_studies", &study::Table::file);
+  ASSERT_NE(studies, made.tables.end());
+  EXPECT_THAT(studies->rows, ::testing::ElementsAre(::testing::IsSupersetOf({"sweep", "40", "7"})));
+}
+
 TEST(Page, NoNameBecomesMarkup) {
   const std::string html = page(results()).html;
   EXPECT_THAT(html, HasSubstr("&lt;b&gt;&amp;&quot;"));

@@ -14,6 +14,7 @@
 #include "bench/report/figures.h"
 #include "bench/report/findings.h"
 #include "bench/report/html.h"
+#include "core/counted.h"
 
 namespace poinsot::report {
 using namespace study;
@@ -94,9 +95,12 @@ std::string charts_block(const Results& results, std::set<std::string>& used) {
 std::string studies_block(const Results& results, std::set<std::string>& used) {
   std::string html;
   for (const StudyResults& study : results.studies) {
-    html += fmt::format("<h3>{}</h3>\n<p>{}{}{}</p>\n", escape(study.name), escape(study.about),
+    html += fmt::format("<h3>{}</h3>\n<p>{}{}{}{}</p>\n", escape(study.name), escape(study.about),
                         study.quick ? " Here a tenth of its cases (--quick)." : "",
-                        study.incomplete ? " The study is incomplete." : "");
+                        study.incomplete ? " The study is incomplete." : "",
+                        study.failed > 0 ? fmt::format(" Of {} {} failed: numbers and pictures are of the others.",
+                                                       counted(study.cases, "case"), study.failed)
+                                         : "");
     for (const StudyPicture& picture : study.pictures) {
       const std::string file = study.folder + picture.file;
       for (const char* suffix : {"", "_table"}) used.insert(file + suffix);
@@ -157,6 +161,15 @@ std::string origin_block(const Results& results) {
   return html + "</dl>\n";
 }
 
+// What was interrupted and holds a part of its rows: sentences and pictures are made of it like of a whole.
+std::string incomplete_block(const Results& results) {
+  std::string html;
+  for (const auto& [name, table] : results.tables)
+    if (const std::string why = table.note("incomplete"); !why.empty())
+      html += fmt::format("<li>{}: {}</li>\n", link(name + ".csv", name + ".csv"), escape(why));
+  return html.empty() ? "" : fmt::format("<p class=\"missing\">Incomplete:</p>\n<ul>{}</ul>\n", html);
+}
+
 std::string others_block(const Results& results, const std::set<std::string>& used) {
   std::string html;
   for (const auto& [name, table] : results.tables)
@@ -192,7 +205,7 @@ Page page(const Results& results) {
   const Findings found = findings(results);
   std::set<std::string> used{"raw"};
   std::string nav = "<li><a href=\"#s-findings\">Findings</a></li>", body;
-  body += section("findings", "Findings", findings_block(found));
+  body += section("findings", "Findings", incomplete_block(results) + findings_block(found));
   for (const Section& s : contents()) {
     std::string own;
     for (const Item& item : s.items) own += item_block(results, item, used);

@@ -13,6 +13,18 @@ namespace fs = std::filesystem;
 using study::read_csv;
 namespace {
 
+// As study::origin_lines() writes them below tables.
+std::vector<std::string> origin_notes(const nlohmann::json& record) {
+  const nlohmann::json& program = record.at("program");
+  const auto text = [&](const char* key) { return program.at(key).get<std::string>(); };
+  const bool pinned = record.contains("timing") && record["timing"].at("core") >= 0;
+  return {fmt::format("processor: {}, {}", record.at("processor").get<std::string>(),
+                      pinned ? "one thread pinned to one core" : "not pinned to a core"),
+          fmt::format("program: poinsot {}, commit {}{}", text("version"), text("commit"),
+                      program.at("dirty") ? ", with changes that are not in the commit" : ""),
+          fmt::format("compiler: {} {} ({})", text("compiler"), text("flags"), text("build_type"))};
+}
+
 StudyResults read_one(const fs::path& folder, const std::string& record, const std::string& within) {
   using Json = nlohmann::json;
   StudyResults study{within, {}, {}, false, false, {}};
@@ -22,6 +34,9 @@ StudyResults read_one(const fs::path& folder, const std::string& record, const s
     const Json said = Json::parse(json.at("content").at("study").get<std::string>(), nullptr, kThrows, kComments);
     study.incomplete = json.at("incomplete");
     study.quick = json.at("quick");
+    study.cases = json.at("cases").at("computed");
+    study.failed = json.at("cases").at("failed");
+    study.origin.notes = origin_notes(json);
     study.name = said.value("name", "");
     study.about = said.value("about", "");
     for (const Json& picture : said.value("pictures", Json::array())) {
@@ -53,10 +68,15 @@ std::vector<StudyResults> read_studies(const fs::path& folder) {
 }
 
 study::Table studies_table(const std::vector<StudyResults>& studies) {
-  study::Table table{"report_studies", "Studies", "", {"study", "about", "picture", "file"}};
-  for (const StudyResults& study : studies)
-    for (const StudyPicture& picture : study.pictures)
-      table.rows.push_back({study.name, study.about, picture.title, study.folder + picture.file + ".csv"});
+  study::Table table{"report_studies", "Studies", "", {"study", "about", "cases", "failed", "picture", "file"}};
+  for (const StudyResults& study : studies) {
+    const auto add = [&](const std::string& picture, const std::string& file) {
+      table.rows.push_back({study.name, study.about, std::to_string(study.cases), std::to_string(study.failed), picture,
+                            study.folder + file + ".csv"});
+    };
+    for (const StudyPicture& picture : study.pictures) add(picture.title, picture.file);
+    if (study.pictures.empty()) add("", "cases");
+  }
   return table;
 }
 

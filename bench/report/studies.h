@@ -22,6 +22,8 @@ struct StudyResults {
   std::string name, about;
   bool incomplete = false, quick = false;  // quick: a tenth of its cases
   std::vector<StudyPicture> pictures;      // those that are there
+  std::size_t cases = 0, failed = 0;       // computed, and those of them without a result
+  study::CsvTable origin = {};             // nothing but notes, as other tables have them
 };
 
 // Throws InputError where a record or a table cannot be read.
