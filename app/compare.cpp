@@ -53,9 +53,8 @@ void print_list(const std::string& title, const std::vector<std::string>& lines)
 void print_text(const CompareOptions& options, const Comparison& c) {
   for (const auto& o : c.origins) fmt::print("{}\n  A: {}\n  B: {}\n", o.key, printable(o.a), printable(o.b));
   fmt::print("times: {} compared, {} changed beyond the noise", c.times, c.changed_times.size());
-  if (c.by_chance > 0)
-    fmt::print(" (by chance {:.1f} would); all cells together: B takes {:.3f} times as long as A", c.by_chance,
-               c.common);
+  if (c.by_chance > 0) fmt::print(" (by chance {:.1f} would)", c.by_chance);
+  if (c.times > 0) fmt::print("; all cells together: B takes {:.3f} times as long as A", c.common);
   fmt::print("\n");
   std::vector<std::string> lines;
   for (const TimeChange& t : c.changed_times)

@@ -62,5 +62,38 @@ TEST_F(Report, CompareTellsWhatDiffers) {
   EXPECT_EQ(nlohmann::json::parse(poinsot({"compare", "r", "r", "--json"}).out)["same"], true);
 }
 
+// In the folder itself and in folders of it; times of studies are times, and what else differs is told by column.
+TEST_F(Report, CompareLooksAtStudiesToo) {
+  write("study.json", R"({"study": 1, "name": "sweep", "scenes": [{"make": "chain", "bodies": 1}],
+    "settings": {"integrator": "implicit_euler", "step": 0.01, "end": 0.05},
+    "vary": [{"setting": "formulation", "values": ["rA", "rp", "reps"]}], "repetitions": 2,
+    "keep": ["counts", "seconds", {"column": "rod1.z", "name": "z", "take": ["final"]}],
+    "pictures": [{"file": "cost", "points": {"x": "case", "y": "seconds"}}]})");
+  for (const char* out : {"r/sweep", "s/sweep", "t"})
+    ASSERT_EQ(poinsot({"study", "study.json", "--out", out, "--quiet"}).status, 0);
+  const auto compared = [&](const std::string& a, const std::string& b) {
+    return nlohmann::json::parse(poinsot({"compare", a, b, "--json"}).out);
+  };
+  for (const nlohmann::json& alike : {compared("r/sweep", "t"), compared("r", "s")}) {
+    EXPECT_EQ(alike["times_compared"], 3) << alike;
+    EXPECT_EQ(alike["changed"], nlohmann::json::array()) << alike;
+  }
+  std::string cases = read("s/sweep/cases.csv");
+  cases.replace(cases.find(",5,"), 3, ",6,");  // its steps
+  cases.erase(cases.find("\n2,") + 1);
+  write("s/sweep/cases.csv", cases);
+  const nlohmann::json said = compared("r", "s");
+  EXPECT_EQ(said["same"], false);
+  EXPECT_EQ(said["times_compared"], 2);
+  ASSERT_EQ(said["changed"].size(), 1u) << said;
+  EXPECT_EQ(said["changed"][0]["file"], "sweep/cases.csv");
+  EXPECT_EQ(said["changed"][0]["quantity"], "steps");
+  EXPECT_EQ(said["changed"][0]["after"], "differs in 1 of 2 cases, by up to 1");
+  EXPECT_EQ(said["only_a"], nlohmann::json({"constraint_counts.csv", "sweep/cases.csv: 1 case"}));
+  std::filesystem::remove_all(folder() / "s/sweep");
+  write("s/energy_table.csv", "integrator,value\nrattle,2\n");
+  EXPECT_EQ(compared("r", "s")["only_a"], nlohmann::json({"constraint_counts.csv", "sweep/cases.csv"}));
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -223,6 +223,16 @@ TEST(Compare, TellsCountsAndWhatIsMissing) {
               ::testing::ElementsAre("constraint_counts.csv", "raw.csv: dynamics, four_link, reps, simplified, auto"));
 }
 
+TEST(Compare, TellsWhatIsIncomplete) {
+  Results other = results();
+  other.tables["raw"].notes.push_back("incomplete: interrupted by SIGINT");
+  const Comparison c = compare(results(), other);
+  ASSERT_EQ(c.origins.size(), 1u);
+  EXPECT_EQ(c.origins[0].key, "incomplete");
+  EXPECT_EQ(c.origins[0].a, "");
+  EXPECT_EQ(c.origins[0].b, "raw.csv");
+}
+
 TEST(Compare, DividesNoTimesOfTwoProcessorsOrCompilers) {
   for (const auto& [which, said] : {std::pair{std::size_t{0}, "another processor"}, {2, "another compiler or flags"}}) {
     Results other = results(2);

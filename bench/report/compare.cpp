@@ -6,17 +6,19 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 
 #include "bench/report/contents.h"
 #include "bench/report/raw_cells.h"
 #include "bench/study/chart_file.h"
+#include "core/counted.h"
 
 namespace poinsot::report {
 using namespace study;
 namespace {
 
-constexpr const char* kRaw = "raw";
+constexpr const char *kRaw = "raw", *kCases = "cases";
 
 enum class Holds { values, lone_times, what_stands_elsewhere };
 
@@ -33,6 +35,21 @@ Holds holds(const CsvTable& table) {
   return Holds::values;
 }
 
+// The table of cases of a study in the folder itself, and its pictures, which are drawn from it.
+bool of_study(const Results& results, const std::string& name) {
+  for (const StudyResults& study : results.studies) {
+    if (!study.folder.empty()) continue;
+    if (name == kCases) return true;
+    for (const StudyPicture& picture : study.pictures)
+      if (name == picture.file || name == picture.file + "_table") return true;
+  }
+  return false;
+}
+
+bool is_measured(const std::string& column) {
+  return column == "seconds" || column == "spread" || column.starts_with("seconds_");
+}
+
 class Comparer {
  public:
   Comparer(const Results& a, const Results& b) : a_(a), b_(b) {}
@@ -45,6 +62,7 @@ class Comparer {
       if (!a_.find(name)) result_.only_b.push_back(name + ".csv");
     for (const auto& [name, table] : a_.tables)
       if (const CsvTable* other = b_.find(name)) compare_tables(table, *other);
+    compare_studies();
     if (!quotients_.empty()) result_.common = median_interval(quotients_).median;
     return std::move(result_);
   }
@@ -52,14 +70,27 @@ class Comparer {
  private:
   static std::string origin(const Results& results, const std::string& key) {
     std::set<std::string> values;
-    for (const auto& [name, table] : results.tables)
+    const auto add = [&](const CsvTable& table) {
       if (const std::string value = table.note(key); !value.empty()) values.insert(value);
+    };
+    for (const auto& [name, table] : results.tables) add(table);
+    for (const StudyResults& study : results.studies) add(study.origin);
     return fmt::format("{}", fmt::join(values, "; "));
   }
 
   void find_origins() {
     for (const char* key : {"processor", "program", "compiler", "libraries"})
       if (const std::string a = origin(a_, key), b = origin(b_, key); a != b) result_.origins.push_back({key, a, b});
+    if (const std::string a = incomplete(a_), b = incomplete(b_); a != b)
+      result_.origins.push_back({"incomplete", a, b});
+  }
+
+  // "chart.csv", by commas: what was interrupted and lacks rows.
+  static std::string incomplete(const Results& results) {
+    std::vector<std::string> files;
+    for (const auto& [name, table] : results.tables)
+      if (!table.note("incomplete").empty()) files.push_back(name + ".csv");
+    return fmt::format("{}", fmt::join(files, ", "));
   }
 
   // Empty, or why the times of two tables say nothing of one another.
@@ -70,19 +101,21 @@ class Comparer {
     return {};
   }
 
-  void leave_out(const CsvTable& table, const std::string& what, const std::string& why) {
-    result_.not_compared.push_back(fmt::format("{}.csv: {}: {}", table.file, what, why));
+  void leave_out(const std::string& file, const std::string& what, const std::string& why) {
+    result_.not_compared.push_back(fmt::format("{}: {}: {}", file, what, why));
   }
 
   void compare_tables(const CsvTable& a, const CsvTable& b) {
+    const std::string file = a.file + ".csv";
+    if (of_study(a_, a.file) && of_study(b_, a.file)) return;
     for (const char* key : {"settings", "scene"})
       if (a.note(key) != b.note(key))
-        return leave_out(a, "nothing", fmt::format("other {}: \"{}\" and \"{}\"", key, a.note(key), b.note(key)));
-    if (a.header != b.header) return leave_out(a, "nothing", "the columns are others");
+        return leave_out(file, "nothing", fmt::format("other {}: \"{}\" and \"{}\"", key, a.note(key), b.note(key)));
+    if (a.header != b.header) return leave_out(file, "nothing", "the columns are others");
     if (a.file == kRaw) return compare_raw(a, b);
     if (is_chart(a)) return compare_charts(a, b);
     const Holds what = holds(a);
-    if (what == Holds::lone_times) return leave_out(a, "nothing", "times without their repetitions");
+    if (what == Holds::lone_times) return leave_out(file, "nothing", "times without their repetitions");
     if (what == Holds::values) compare_values(a, b);
   }
 
@@ -109,7 +142,7 @@ class Comparer {
 
   void compare_raw(const CsvTable& a, const CsvTable& b) {
     const std::string why = why_no_times(a, b);
-    if (!why.empty()) leave_out(a, "times", why);
+    if (!why.empty()) leave_out("raw.csv", "times", why);
     compare_each("raw.csv", raw_cells(a), raw_cells(b), &RawCell::name, [&](const RawCell& cell, const RawCell& other) {
       for (const auto& [quantity, count] : cell.counts)
         changed("raw.csv", cell.name(), quantity, count, other.counts.at(quantity));
@@ -137,7 +170,7 @@ class Comparer {
 
   void compare_charts(const CsvTable& a, const CsvTable& b) {
     const std::string why = why_no_times(a, b), file = a.file + ".csv";
-    if (!why.empty()) leave_out(a, "times", why);
+    if (!why.empty()) leave_out(file, "times", why);
     const std::vector<ChartRow> before = chart_rows(a), after = chart_rows(b);
     const PerQuantity agreement = chart_agreement(before);
     const auto name = [](const ChartRow& r) {
@@ -154,13 +187,97 @@ class Comparer {
         if (std::abs(m.error[k] - n.error[k]) > kResolved * agreement[k])
           changed(file, name(row), fmt::format("error in {}", kQuantities[k]), fmt::format("{:.3g}", m.error[k]),
                   fmt::format("{:.3g}", n.error[k]));
-      if (!why.empty() || !(m.seconds > 0) || !(n.seconds > 0)) return;
-      const double ratio = n.seconds / m.seconds, noise = 1 + std::hypot(m.spread, n.spread);
-      ++result_.times;
-      if (ratio > noise || ratio * noise < 1)
-        result_.changed_times.push_back(
-            {file, name(row), m.seconds, n.seconds, {ratio, ratio / noise, ratio * noise, 0}});
+      if (why.empty()) compare_by_spreads(file, name(row), {m.seconds, m.spread}, {n.seconds, n.spread});
     });
+  }
+
+  struct Timed {
+    double seconds, spread;
+  };
+
+  void compare_by_spreads(const std::string& file, const std::string& cell, const Timed& a, const Timed& b) {
+    if (!(a.seconds > 0) || !(b.seconds > 0)) return;
+    const double ratio = b.seconds / a.seconds, noise = 1 + std::hypot(a.spread, b.spread);
+    ++result_.times;
+    quotients_.push_back(ratio);
+    if (ratio > noise || ratio * noise < 1)
+      result_.changed_times.push_back({file, cell, a.seconds, b.seconds, {ratio, ratio / noise, ratio * noise, 0}});
+  }
+
+  void compare_studies() {
+    const auto missing = [](const StudyResults& study, const Results& others) {
+      return !study.folder.empty() &&
+             std::ranges::find(others.studies, study.folder, &StudyResults::folder) == others.studies.end();
+    };
+    for (const StudyResults& study : b_.studies)
+      if (missing(study, a_)) result_.only_b.push_back(study.folder + "cases.csv");
+    for (const StudyResults& study : a_.studies) {
+      const std::string file = study.folder + "cases.csv";
+      const auto other = std::ranges::find(b_.studies, study.folder, &StudyResults::folder);
+      if (missing(study, b_)) result_.only_a.push_back(file);
+      if (other == b_.studies.end()) continue;
+      if (study.incomplete || other->incomplete)
+        leave_out(file, "nothing", "the study is incomplete");
+      else
+        compare_cases(file, study, *other);
+    }
+  }
+
+  // Of the fields of a column: in how many cases they differ, and by how much.
+  struct Difference {
+    std::size_t cases = 0;
+    double most = 0;
+
+    void add(const std::string& before, const std::string& after) {
+      if (before == after) return;
+      ++cases;
+      if (const double by = std::abs(csv_number(before) - csv_number(after)); by > most) most = by;
+    }
+  };
+
+  // Case by case, and told column by column: there may be very many.
+  void compare_cases(const std::string& file, const StudyResults& of_a, const StudyResults& of_b) {
+    const CsvTable a = read_csv(a_.folder / file), b = read_csv(b_.folder / file);
+    if (a.header != b.header) return leave_out(file, "nothing", "the columns are others");
+    const int status = a.column("status"), seconds = a.column("seconds"), spread = a.column("spread");
+    if (status < 1) return leave_out(file, "nothing", "it is no table of cases");
+    const std::string why = why_no_times(of_a.origin, of_b.origin);
+    const bool timed = seconds >= 0 && spread >= 0;
+    if (timed && !why.empty()) leave_out(file, "times", why);
+    const auto time = [&](const std::vector<std::string>& row) {
+      return Timed{csv_number(row[static_cast<std::size_t>(seconds)]),
+                   csv_number(row[static_cast<std::size_t>(spread)])};
+    };
+    std::map<std::string, const std::vector<std::string>*> rest;
+    for (const auto& row : b.rows) rest[row[0]] = &row;
+    std::vector<Difference> differences(a.header.size());
+    std::size_t others = 0, both = 0;
+    for (const auto& row : a.rows) {
+      const auto found = rest.find(row[0]);
+      if (found == rest.end()) continue;
+      const std::vector<std::string>& other = *found->second;
+      rest.erase(found);
+      ++both;
+      if (!std::equal(row.begin(), row.begin() + status, other.begin())) {
+        ++others;
+        continue;
+      }
+      for (std::size_t c = static_cast<std::size_t>(status); c < row.size(); ++c)
+        if (!is_measured(a.header[c])) differences[c].add(row[c], other[c]);
+      if (timed && why.empty()) compare_by_spreads(file, "case " + row[0], time(row), time(other));
+    }
+    if (const std::size_t alone = a.rows.size() - both; alone > 0)
+      result_.only_a.push_back(fmt::format("{}: {}", file, counted(alone, "case")));
+    if (!rest.empty()) result_.only_b.push_back(fmt::format("{}: {}", file, counted(rest.size(), "case")));
+    const auto told = [&](const std::string& what, const std::string& how) {
+      result_.changed.push_back({file, "", what, "", how});
+    };
+    if (others > 0)
+      told("scene or values", fmt::format("others in {} of {} cases, which are not compared", others, both));
+    for (std::size_t c = 0; c < differences.size(); ++c)
+      if (const auto& [cases, most] = differences[c]; cases > 0)
+        told(a.header[c], fmt::format("differs in {} of {} cases{}", cases, both,
+                                      most > 0 ? fmt::format(", by up to {:.2g}", most) : ""));
   }
 
   // Cell by cell: of the numbers that differ, how many and by how much.

@@ -3,8 +3,9 @@
 // Times are compared of one processor, compiler and flags only. Of raw.csv the k-th repetition of a cell in B is
 // divided by the k-th in A, and a time has changed where the interval of the median of the quotients does not hold 1;
 // all cells moving alike is the machine as well as the program, so the median of all quotients is told beside them. Of
-// charts, which keep no repetitions, a time has changed where it did by more than the two spreads allow. Counts and
-// statuses have changed where they differ, errors of a chart where they do by more than its reference resolves.
+// charts and studies, which keep no repetitions, a time has changed where it did by more than the two spreads allow.
+// Counts and statuses have changed where they differ, errors of a chart where they do by more than its reference
+// resolves. Studies are compared case by case, also those in folders of the two.
 #pragma once
 
 #include <string>
@@ -20,8 +21,8 @@ inline constexpr double kOfChange = 0.999;
 
 struct TimeChange {
   std::string file, cell;
-  double before = 0, after = 0;  // µs a step, of charts s
-  study::Interval ratio;         // after / before; of charts what the spreads allow, with no confidence
+  double before = 0, after = 0;  // µs a step, of charts and studies s
+  study::Interval ratio;         // after / before; of those what the spreads allow, with no confidence
 };
 
 struct OtherChange {
