@@ -83,7 +83,14 @@ view::Motion read(const ViewOptions& options, const std::string& file, const Sce
   view::FrameRecorder recorder(model, true);
   view::read_trajectory(file, scene, [&](double t, std::span<const BodyState> bodies) { recorder.add(t, bodies); });
   note_stride(recorder.stride(), options.quiet);
-  return {fs::path(file).filename().string(), "", recorder.take()};
+  const view::RecordedRun run = view::recorded_run(file, scene);
+  std::string label = fs::path(file).filename().string();
+  if (!run.otherwise.empty()) label += ", " + run.otherwise;
+  if (!options.quiet && !run.incomplete.empty()) print_notice(fmt::format("{}: incomplete: {}", file, run.incomplete));
+  if (!options.quiet && !run.otherwise.empty())
+    print_notice(
+        fmt::format("{}: {}: it is drawn with the dimensions of {}", file, run.otherwise, shown_input(options.scene)));
+  return {label, run.incomplete, recorder.take()};
 }
 
 int write_view(const ViewOptions& options) {

@@ -70,6 +70,46 @@ TEST_F(View, TwoMotionsAreCompared) {
   EXPECT_EQ(page["apart"], std::string(3 * 6 * 4 * 4 / 3, 'A'));  // six frames in common, the same in both
 }
 
+// Its record tells that it is a part, or of other dimensions: a page that shows it says so.
+TEST_F(View, ATrajectoryIsHeldAgainstItsRecord) {
+  write("rod.json", R"({"scene": 1, "name": "rod", "gravity": [0, 0, -9.81], "parameters": {"l": 1},
+    "bodies": [{"name": "rod", "mass": 3, "inertia": [1, 0.01, 1], "position": [0, "l", 0]}],
+    "joints": [{"type": "revolute", "bodies": ["ground", "rod"], "point": [0, 0, 0], "axis": [1, 0, 0]}]})");
+  ASSERT_EQ(poinsot({"run", "rod.json", "--set", "l=2", "--end", "0.1", "--out", "a.csv", "--quiet"}).status, 0);
+  const auto viewed = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"view", "rod.json", "--trajectory", "a.csv", "--out", "a.html"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Result result = poinsot(arguments);
+    EXPECT_EQ(result.status, 0);
+    return result.err;
+  };
+  EXPECT_EQ(viewed({}),
+            "poinsot: note: a.csv: computed with l = 2, not 1: it is drawn with the dimensions of rod.json\n");
+  EXPECT_EQ(data("a.html")["motions"][0]["label"], "a.csv, computed with l = 2, not 1");
+  EXPECT_EQ(viewed({"--set", "l=4/2"}), "");
+  ASSERT_EQ(poinsot({"reference", "rod.json", "--set", "l=2", "--end", "0.1", "--digits", "4", "--out", "r.csv",
+                     "--cache", "cache", "--quiet"})
+                .status,
+            0);
+  EXPECT_EQ(poinsot({"view", "rod.json", "--trajectory", "r.csv", "--out", "a.html"}).err,
+            "poinsot: note: r.csv: computed of a scene of other parameters: it is drawn with the dimensions of "
+            "rod.json\n");
+  std::string scene = read("rod.json");
+  write("rod.json", scene.replace(scene.find("\"mass\": 3"), 9, "\"mass\": 4"));
+  EXPECT_EQ(viewed({"--set", "l=2"}),
+            "poinsot: note: a.csv: computed of a scene of other bodies: it is drawn with the dimensions of rod.json\n");
+
+  write("over.json", kOverstretched);
+  ASSERT_EQ(poinsot({"run", "over.json", "--integrator", "implicit_euler", "--end", "2", "--step", "0.01", "--out",
+                     "over.csv", "--quiet"})
+                .status,
+            3);
+  const Result part = poinsot({"view", "over.json", "--trajectory", "over.csv", "--out", "over.html"});
+  EXPECT_EQ(part.status, 0);
+  EXPECT_TRUE(part.err.starts_with("poinsot: note: over.csv: incomplete: ")) << part.err;
+  EXPECT_EQ(data("over.html")["motions"][0]["message"], read_json("over.run.json")["message"]);
+}
+
 TEST_F(View, TenBodiesAndAThousandFramesAreBelowOneAndAHalfMegabytes) {
   ASSERT_EQ(poinsot({"make", "chain", "--bodies", "10", "--out", "chain.json"}).status, 0);
   ASSERT_EQ(poinsot({"view", "chain.json", "--integrator", "implicit_euler", "--end", "1", "--step", "0.001", "--out",
@@ -113,6 +153,7 @@ TEST_F(View, WrongInputWritesNothing) {
                 .status,
             0);
   write("none.csv", "t\n");
+  write("a.npy", "\x93NUMPY\x01");
   write("number.csv", lines(read("a.csv"))[0] + "\n0,x\n");
   write("other.json", R"({"scene": 1, "name": "other", "bodies": [
     {"name": "ball", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]}]})");
@@ -124,6 +165,8 @@ TEST_F(View, WrongInputWritesNothing) {
     EXPECT_EQ(result.err, "poinsot: " + said + "\n");
     EXPECT_EQ(files(), before);
   };
+  refused({"view", "scene.json", "--trajectory", "a.npy", "--out", "a.html"},
+          "a.npy: found an array of NumPy, expected the CSV that `poinsot run --out FILE.csv` writes");
   refused({"view", "scene.json", "--trajectory", "none.csv", "--out", "a.html"},
           "none.csv: found 1 columns, expected \"rod.x\" next: not a trajectory of scene \"pendulum\"");
   refused({"view", "other.json", "--trajectory", "a.csv", "--out", "a.html"},

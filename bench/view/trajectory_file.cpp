@@ -1,11 +1,13 @@
 #include "bench/view/trajectory_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -74,6 +76,9 @@ void read_trajectory(const std::filesystem::path& file, const Scene& scene,
   std::string line;
   if (!in || std::filesystem::is_directory(file) || !std::getline(in, line))
     throw InputError(fmt::format("{}: cannot be read, or is empty", name));
+  if (line.starts_with("\x93NUMPY"))
+    throw InputError(
+        fmt::format("{}: found an array of NumPy, expected the CSV that `poinsot run --out FILE.csv` writes", name));
   check_header(name, line, scene);
 
   constexpr std::size_t kColumns = kTrajectoryColumns.size();
@@ -92,6 +97,33 @@ void read_trajectory(const std::filesystem::path& file, const Scene& scene,
     row(before, bodies);
   }
   if (!std::isfinite(before)) throw InputError(fmt::format("{}: found no rows, expected one or more", name));
+}
+
+RecordedRun recorded_run(const std::filesystem::path& file, const Scene& scene) try {
+  using Record = nlohmann::json;  // whose keys have no order
+  constexpr bool kThrows = true, kComments = true;
+  RecordedRun run;
+  std::ifstream in(std::filesystem::path(file).replace_extension(".run.json"), std::ios::binary);
+  const Record record = Record::parse(in);
+  if (record.value("incomplete", false)) run.incomplete = record.value("message", "the run did not come to its end");
+  // Parameters by their values, however they are written.
+  std::vector<std::string> values, sections;
+  const Record then = record.value("/parameters/values"_json_pointer, Record::object());
+  for (const Parameter& now : scene.parameters)
+    if (const double before = then.value(now.name, now.value); before != now.value)
+      values.push_back(fmt::format("{} = {}, not {}", now.name, before, now.value));
+  const Record own = Record::parse(scene.source, nullptr, kThrows, kComments), other = record.value("scene", own);
+  std::vector<const char*> told{"gravity", "bodies", "constraints", "joints", "drivers", "forces", "tables"};
+  if (then.empty()) told.push_back("parameters");  // in the records of references, which hold no values
+  for (const char* key : told)
+    if (other.value(key, Record()) != own.value(key, Record())) sections.push_back(key);
+  if (!values.empty())
+    run.otherwise = fmt::format("computed with {}", fmt::join(values, ", "));
+  else if (!sections.empty())
+    run.otherwise = fmt::format("computed of a scene of other {}", fmt::join(sections, ", "));
+  return run;
+} catch (const nlohmann::json::exception&) {  // none, or no record of a run
+  return {};
 }
 
 }  // namespace poinsot::view
