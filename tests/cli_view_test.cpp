@@ -4,8 +4,10 @@
 
 #include <cmath>
 
+#include "bench/view/comparison.h"
 #include "bench/view/page.h"
 #include "bench/view/symbols.h"
+#include "bench/view/trajectory_file.h"
 #include "command_line.h"
 #include "core/scene_reader.h"
 
@@ -68,6 +70,34 @@ TEST_F(View, TwoMotionsAreCompared) {
   const nlohmann::json page = data("c.html");
   EXPECT_EQ(page["motions"].size(), 2u);
   EXPECT_EQ(page["apart"], std::string(3 * 6 * 4 * 4 / 3, 'A'));  // six frames in common, the same in both
+}
+
+// Steps that error control chose are long, and what lies between is not said by the files.
+TEST_F(View, MotionsOfOtherTimesAreAsFarApartEitherWay) {
+  ASSERT_EQ(poinsot({"run", "scene.json", "--end", "0.5", "--out", "a.csv", "--quiet"}).status, 0);
+  ASSERT_EQ(
+      poinsot({"run", "scene.json", "--integrator", "rattle", "--end", "0.5", "--out", "b.csv", "--quiet"}).status, 0);
+  const Scene scene = read_scene((folder() / "scene.json").string());
+  const auto motion = [&](const char* file) {
+    view::FrameRecorder recorder(std::make_shared<const Model>(compile(scene)), false);
+    view::read_trajectory(folder() / file, scene,
+                          [&](double t, std::span<const BodyState> bodies) { recorder.add(t, bodies); });
+    return view::Motion{file, "", recorder.take()};
+  };
+  const auto largest = [](const std::vector<view::Apart>& all) {
+    view::Apart most;
+    for (const view::Apart& at : all) {
+      most.position = std::max(most.position, at.position);
+      most.angle = std::max(most.angle, at.angle);
+    }
+    return most;
+  };
+  const view::Motion a = motion("a.csv"), b = motion("b.csv");
+  ASSERT_GT(b.frames.size(), 10 * a.frames.size());
+  const view::Apart coarse = largest(view::apart(a, b)), fine = largest(view::apart(b, a));
+  EXPECT_GT(coarse.position, 1e-8);
+  EXPECT_NEAR(fine.position, coarse.position, 0.2 * coarse.position);
+  EXPECT_NEAR(fine.angle, coarse.angle, 0.2 * coarse.angle);
 }
 
 // Its record tells that it is a part, or of other dimensions: a page that shows it says so.
