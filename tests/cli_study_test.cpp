@@ -242,6 +242,16 @@ TEST_F(CliStudy, AFailingCaseIsARow) {
   const std::vector<std::string> bad = lines(read("bad/cases.csv"));
   EXPECT_NE(bad[2].find(",input_error,,"), std::string::npos) << bad[2];
   EXPECT_TRUE(bad[2].ends_with("expected a positive number (body 'b', line 2)\"")) << bad[2];
+  // Of those asked for, whatever the folder holds of others.
+  EXPECT_TRUE(poinsot({"study", "bad.json", "--quick", "--out", "bad"}).out.starts_with("1 case, 0 failed\n"));
+  EXPECT_EQ(read_json("bad/cases.run.json")["cases"]["failed"], 0);
+  const std::string picture = R"(, "pictures": [{"file": "p", "points": {"x": "m", "y": "b.z.final"}}]})";
+  const std::string text = read("bad.json");
+  write("bad.json", text.substr(0, text.rfind('}')) + picture);
+  poinsot({"study", "bad.json", "--quiet", "--out", "bad"});
+  EXPECT_NE(read("bad/study.md").find("\nOf 3 cases 2 failed: numbers and pictures are of the others.\n"),
+            std::string::npos)
+      << read("bad/study.md");
   EXPECT_NE(bad[3].find("force 'pull' (/forces/0, line 3), component x"), std::string::npos) << bad[3];
   // And what is wrong in the study itself.
   write("bad.json", "{\"study\": 1, \"scenes\": [\"m.json\"],\n \"keep\": [{\"column\": \"c.z\"}]}");

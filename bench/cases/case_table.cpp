@@ -118,8 +118,16 @@ void CaseTable::place(std::int64_t number, std::size_t part, std::uint64_t offse
     throw InputError(fmt::format("case {} stands in {} and in {}; expected each shard once", number,
                                  parts_[place >> kPartShift].file.string(), parts_[part].file.string()));
   if (place != kNone) return;
-  place = part << kPartShift | offset;
-  failures_ += failed;
+  place = place_of(part, offset, failed);
+}
+
+std::int64_t CaseTable::failures(const Selection& selection) const {
+  std::int64_t count = 0;
+  for (std::int64_t k = 0; k < selection.size(); ++k) {
+    const std::int64_t number = selection.at(k);
+    count += has(number) && (places_[static_cast<std::size_t>(number)] >> kFailedShift & 1) != 0;
+  }
+  return count;
 }
 
 std::int64_t CaseTable::read(const fs::path& file, bool once) {
@@ -203,15 +211,14 @@ void CaseTable::add(const CaseRow& row) {
         fmt::format("{}: cannot be written: {}; what was computed is kept, the same command goes on with it",
                     part.file.string(), why));
   }
-  places_[static_cast<std::size_t>(row.number)] = std::uint64_t{open_} << kPartShift | end_;
+  places_[static_cast<std::size_t>(row.number)] = place_of(open_, end_, row.failed);
   end_ += row.line.size();
-  failures_ += row.failed;
 }
 
 std::string CaseTable::fields(std::int64_t number) const {
   const std::uint64_t place = places_[static_cast<std::size_t>(number)];
   const Part& part = parts_[place >> kPartShift];
-  auto offset = static_cast<off_t>((place & ((std::uint64_t{1} << kPartShift) - 1)) + kHead);
+  auto offset = static_cast<off_t>((place & ((std::uint64_t{1} << kFailedShift) - 1)) + kHead);
   std::string text;
   char piece[512];
   for (ssize_t n = 0; (n = pread(part.descriptor, piece, sizeof piece, offset)) > 0; offset += n) {

@@ -61,7 +61,8 @@ class CaseTable {
   bool has(std::int64_t number) const { return places_[static_cast<std::size_t>(number)] != kNone; }
   std::int64_t unused() const { return unused_; }    // rows read of cases that the study does not have
   std::int64_t damaged() const { return damaged_; }  // lines read that are no rows
-  std::int64_t failures() const { return failures_; }
+  // Of the rows of a selection that are there.
+  std::int64_t failures(const Selection& selection) const;
   // For several threads. Throws study::OutputError; the rows before stay.
   void add(const CaseRow& row);
 
@@ -71,7 +72,11 @@ class CaseTable {
 
  private:
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
-  static constexpr int kPartShift = 48;  // of a place: the part's number above its offset
+  // Of a place: the part's number above whether the case failed, above its offset.
+  static constexpr int kPartShift = 48, kFailedShift = 47;
+  static constexpr std::uint64_t place_of(std::size_t part, std::uint64_t offset, bool failed) {
+    return std::uint64_t{part} << kPartShift | std::uint64_t{failed} << kFailedShift | offset;
+  }
 
   struct Part {
     std::filesystem::path file;
@@ -82,7 +87,7 @@ class CaseTable {
   const Study& study_;
   std::vector<Part> parts_;
   std::vector<std::uint64_t> places_;
-  std::int64_t unused_ = 0, damaged_ = 0, failures_ = 0;
+  std::int64_t unused_ = 0, damaged_ = 0;
   std::mutex writing_;
   std::size_t open_ = 0;  // the part appended to
   std::uint64_t end_ = 0;

@@ -81,17 +81,18 @@ void Computation::compute_rest(const std::function<void(const ComputationProgres
   References references{study::Cache(options_.cache)};
   Undone undone(selection_, table_);
   const auto before = static_cast<double>(there()), all = static_cast<double>(selection_.size());
-  std::atomic<std::int64_t> done = 0;
+  std::atomic<std::int64_t> done = 0, failed = failures();
   const Clock::time_point began = Clock::now();
   const auto put = [&](CaseRow&& row) {
     table_.add(row);
     ++done;
+    failed += row.failed;
   };
   const auto tell = [&] {
     if (!told) return;
     const double passed = std::chrono::duration<double>(Clock::now() - began).count();
     const auto now = static_cast<double>(done);
-    told({before + now, all, before, now / passed, table_.failures()});
+    told({before + now, all, before, now / passed, failed});
   };
   // Those of one scene together: it is read once for all of them.
   const std::size_t together = std::clamp<std::size_t>(study_.settings.size(), 1, 16);
@@ -113,8 +114,7 @@ void Computation::write_record(State state, const std::string& why) const {
   json["status"] = complete() ? "ok" : state == State::running ? "running" : "interrupted";
   json["incomplete"] = !complete();
   if (!why.empty()) json["message"] = why;
-  json["cases"] = {
-      {"study", study_.size()}, {"selected", selected()}, {"computed", rows}, {"failed", table_.failures()}};
+  json["cases"] = {{"study", study_.size()}, {"selected", selected()}, {"computed", rows}, {"failed", failures()}};
   json["quick"] = options_.quick;
   if (options_.shard.places > 1) json["shard"] = fmt::format("{}/{}", options_.shard.place, options_.shard.places);
   if (!options_.merge.empty()) json["merged"] = options_.merge;

@@ -58,7 +58,7 @@ class Computation {
   bool complete() const { return there() == selected(); }
   const Study& study() const { return study_; }
   const CaseTable& table() const { return table_; }
-  std::int64_t failures() const { return table_.failures(); }
+  std::int64_t failures() const { return table_.failures(selection_); }
 
   // The record of what is there, whether complete or not, and then what it was `ended_by`; and where it is, the table
   // and the pictures. `written`: the files for the user. Returns why pictures are missing.

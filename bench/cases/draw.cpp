@@ -11,6 +11,7 @@
 #include "bench/study/csv.h"
 #include "bench/study/panels.h"
 #include "bench/study/range.h"
+#include "core/counted.h"
 
 namespace poinsot::cases {
 using study::csv_number;
@@ -238,6 +239,9 @@ std::string draw_pictures(const Study& study, const Selection& selection, const 
   if (study.pictures.empty()) return "";
   const Rows rows(study, selection, table);
   study::Report report{study.name.empty() ? "Study" : study.name, study.about, {}, foot};
+  if (const std::int64_t failed = table.failures(selection); failed > 0)
+    report.text += fmt::format("{}Of {} {} failed: numbers and pictures are of the others.",
+                               report.text.empty() ? "" : "\n\n", counted(selection.size(), "case"), failed);
   std::vector<PanelPlot> plots;
   for (const Picture& picture : study.pictures) {
     Drawn one = drawn(picture, rows, study, selection);
