@@ -104,7 +104,17 @@ TEST_F(CliStudy, MissingAndRepeatedShardsAreTold) {
                  " stands in parts/shard-1-of-3.part and in again.part; expected each shard once");
   expect_refused({"--merge", "none", "--out", "m"}, "there is no such file");
   expect_refused({"--shard", "4/3", "--out", "m"}, "--shard: found \"4/3\", expected I/N");
+  write_study(40, 0.03);
+  expect_refused({"--merge", "parts/shard-1-of-3.part", "--out", "m"},
+                 "80 of 80 cases have no row, the first is case 0; 27 rows are of cases that the study does not have: "
+                 "it or a scene was changed since");
   EXPECT_FALSE(fs::exists(folder() / "m"));
+}
+
+TEST_F(CliStudy, ASceneThatIsThereTwiceIsToldOnce) {
+  write("study.json", R"({"study": 1, "scenes": ["pendulum.json", "pendulum.json"], "keep": ["counts"]})");
+  EXPECT_EQ(study({"--out", "out"}).err,
+            "poinsot: study.json: /scenes/1: there is a scene 'pendulum' already, expected another name\n");
 }
 
 TEST_F(CliStudy, RanksGiveTheSameBytes) {

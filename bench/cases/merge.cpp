@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "core/counted.h"
 #include "core/input_error.h"
 
 namespace poinsot::cases {
@@ -68,8 +69,11 @@ void merge(const std::vector<fs::path>& parts, const Selection& selection, CaseT
     if (missing++ == 0) first = selection.at(k);
   }
   if (missing > 0)
-    throw InputError(fmt::format("--merge: {} of {} cases have no row, the first is case {}{}", missing,
-                                 selection.size(), first, absent(parts)));
+    throw InputError(fmt::format(
+        "--merge: {} of {} cases have no row, the first is case {}{}", missing, selection.size(), first,
+        table.unused() == 0 ? absent(parts)
+                            : fmt::format("; {} of cases that the study does not have: it or a scene was changed since",
+                                          counted(table.unused(), "row is", "rows are"))));
 }
 
 }  // namespace poinsot::cases

@@ -63,11 +63,14 @@ void read_scenes(Study& study, const JsonValue& root, std::uint64_t seed, const 
   for (const JsonValue& item : items(list, "an array of scenes, at least one", 1)) {
     if (item.is_string()) {
       const std::string& file = item.string();
-      try {
-        add_scene(study, item, fs::path(file).stem().string(), scene_of(file));
-      } catch (const InputError& error) {
-        item.fail(error.what());
-      }
+      const auto scene = [&] {
+        try {
+          return scene_of(file);
+        } catch (const InputError& error) {
+          item.fail(error.what());
+        }
+      };
+      add_scene(study, item, fs::path(file).stem().string(), scene());
     } else if (item.optional("random_mechanisms")) {
       add_random_mechanisms(study, item, seed);
     } else if (item.optional("make")) {
