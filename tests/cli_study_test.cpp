@@ -328,6 +328,36 @@ TEST_F(CliStudy, AFullDiskKeepsTheRowsThereWasRoomFor) {
   } while (program() == POINSOT_PROGRAM && become_nobody());
 }
 
+// Samples are a cloud, and so are several values in one place; counts stand on zero.
+TEST_F(CliStudy, WhatDoesNotFollowAlongXIsNotJoined) {
+  write("study.json", R"({"study": 1, "seed": 7, "scenes": ["pendulum.json"],
+    "settings": {"integrator": "implicit_euler", "step": 1e-3, "end": 0.01},
+    "vary": [{"parameter": "l", "values": [1, 2]}, {"setting": "formulation", "values": ["rA", "rp"]}],
+    "keep": [{"column": "rod.y"}],
+    "pictures": [{"file": "sweep", "points": {"x": "l", "y": "rod.y.final", "series": "formulation"}},
+                 {"file": "both", "points": {"x": "l", "y": "rod.y.final"}},
+                 {"file": "results", "points": {"x": "rod.y.final", "y": "l", "series": "formulation"}},
+                 {"file": "counts", "histogram": "rod.y.final", "bins": 2}]})");
+  study({"--out", "out"});
+  const auto joined = [&](const std::string& file) {
+    const std::string text = read(file), key = "\n# joined: ";
+    const std::size_t at = text.find(key);
+    return at == text.npos ? "" : text.substr(at + key.size(), text.find('\n', at + 1) - at - key.size());
+  };
+  EXPECT_EQ(joined("out/sweep.csv"), "yes");
+  EXPECT_EQ(joined("out/both.csv"), "no");
+  EXPECT_EQ(joined("out/results.csv"), "no");
+  const std::vector<std::string> counts = lines(read("out/counts.csv"));
+  ASSERT_GT(counts.size(), 6u);
+  EXPECT_EQ(fields(counts[1])[4], "0");
+  EXPECT_EQ(fields(counts[2])[4], "2");
+  EXPECT_EQ(fields(counts[6])[4], "0");
+  write_study(3, 0.01, R"(, "pictures": [{"file": "drawn", "points": {"x": "l", "y": "rod.y.min",
+    "series": "formulation"}}])");
+  study({"--out", "samples"});
+  EXPECT_EQ(joined("samples/drawn.csv"), "no");
+}
+
 TEST_F(CliStudy, APictureThatIsNotDrawnIsNoSuccess) {
   write_study(4, 0.02, R"(, "pictures": [{"file": "lengths", "title": "l", "histogram": "rod.y.min"}])");
   fs::create_directories(folder() / "out" / "lengths.svg");  // in its place

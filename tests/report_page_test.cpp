@@ -9,6 +9,7 @@
 #include <set>
 
 #include "bench/report/compare.h"
+#include "bench/report/figures.h"
 #include "bench/report/findings.h"
 #include "bench/report/html.h"
 #include "bench/report/page.h"
@@ -189,6 +190,17 @@ TEST(SvgPanel, DrawsNothingWhereALogarithmHasNoPlace) {
   EXPECT_EQ(svg(panel), "");
   panel.curves[0].points.push_back({1, 1, "<tip>", false});
   EXPECT_THAT(svg(panel), HasSubstr("<title>&lt;tip&gt;</title>"));
+}
+
+TEST(SvgPanel, ACloudOfPointsIsNotJoined) {
+  study::CsvTable points{"p",
+                         {"panel", "series", "variant", "x", "y", "low", "high"},
+                         {{"", "rA", "", "1", "1.4", "", ""}, {"", "rA", "", "1", "1.7", "", ""}},
+                         {"joined: yes"}};
+  EXPECT_THAT(panels_html(points, "p"), HasSubstr("<path class=\"l\""));
+  points.notes = {"joined: no"};
+  EXPECT_THAT(panels_html(points, "p"), Not(HasSubstr("<path class=\"l\"")));
+  EXPECT_THAT(panels_html(points, "p"), HasSubstr("<path class=\"m\""));
 }
 
 TEST(Compare, FindsATimeThatChangedAndOnlyThat) {

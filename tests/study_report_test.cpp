@@ -172,7 +172,8 @@ TEST(Panels, hold_every_point_and_how_to_draw_it) {
   const study::Table points = study::points_table(plot);
   EXPECT_THAT(points.rows, ElementsAre(ElementsAre("left", "rA", "", "1", "2", "", "", "1"),
                                        ElementsAre("left", "rA", "", "3", "4", "", "", "0")));
-  EXPECT_THAT(study::layout_notes(plot), testing::IsSupersetOf({"title: Title", "x scale: log", "y scale: linear"}));
+  EXPECT_THAT(study::layout_notes(plot),
+              testing::IsSupersetOf({"title: Title", "x scale: log", "y scale: linear", "joined: yes"}));
 }
 
 // One structure whose step costs N^1.25 beyond what a body costs, with a size that failed and one left out.

@@ -60,6 +60,18 @@ std::string text(double x) {
   return fmt::format("{:.6g}", x);
 }
 
+// Whether points follow one another along x: places of a dimension of the study, each of them once in a curve. What is
+// drawn at random, or a result itself, makes a cloud.
+bool follow_x(const Study& study, const std::string& x, const std::vector<Curve>& curves) {
+  const std::vector<std::string> results = study.kept.columns();
+  if (std::ranges::find(results, x) != results.end()) return false;
+  for (const ParameterAxis& axis : study.axes)
+    if (axis.values.empty() && std::ranges::find(axis.names, x) != axis.names.end()) return false;
+  return std::ranges::all_of(curves, [](const Curve& curve) {
+    return std::ranges::adjacent_find(curve.points, std::ranges::equal_to(), &study::Point::x) == curve.points.end();
+  });
+}
+
 Drawn histogram(const Picture& picture, const Rows& rows) {
   Drawn drawn = begin(picture, picture.x, "cases");
   const std::size_t column = rows.column(picture.x);
@@ -88,11 +100,15 @@ Drawn histogram(const Picture& picture, const Rows& rows) {
   for (std::size_t k = 0; k < counts.size(); ++k)
     for (const std::size_t edge : {k, k + 1})
       curve.points.push_back({low + width * static_cast<double>(edge), static_cast<double>(counts[k])});
+  if (!picture.log_y) {  // counts stand on zero
+    curve.points.insert(curve.points.begin(), {low, 0});
+    curve.points.push_back({values.back(), 0});
+  }
   drawn.plot.curves = {curve};
   return drawn;
 }
 
-Drawn points(const Picture& picture, const Rows& rows) {
+Drawn points(const Picture& picture, const Rows& rows, const Study& study) {
   Drawn drawn = begin(picture, picture.x, picture.y);
   const std::size_t x = rows.column(picture.x), y = rows.column(picture.y), series = rows.column(picture.series);
   std::map<std::string, Curve> curves;
@@ -110,6 +126,7 @@ Drawn points(const Picture& picture, const Rows& rows) {
     drawn.table.rows.push_back({name, fmt::format("{}", curve.points.size()), text(range.low), text(range.high)});
     drawn.plot.curves.push_back(std::move(curve));
   }
+  drawn.plot.joined = follow_x(study, picture.x, drawn.plot.curves);
   return drawn;
 }
 
@@ -188,6 +205,7 @@ Drawn ratio(const Picture& picture, const Rows& rows, const Study& study) {
                                 fmt::format("{:.3f}", least), fmt::format("{:.3f}", greatest)});
     drawn.plot.curves.push_back(std::move(curve));
   }
+  drawn.plot.joined = follow_x(study, picture.x, drawn.plot.curves);
   return drawn;
 }
 
@@ -196,7 +214,7 @@ Drawn drawn(const Picture& picture, const Rows& rows, const Study& study, const 
     case Picture::histogram:
       return histogram(picture, rows);
     case Picture::points:
-      return points(picture, rows);
+      return points(picture, rows, study);
     case Picture::curves:
       return curves(picture, rows, study.kept, selection);
     case Picture::ratio:

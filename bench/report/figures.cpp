@@ -111,7 +111,10 @@ std::string panels_html(const CsvTable& points, const std::string& title) {
   for (const std::string& name : order) {
     SvgPanel& own = panels[name];
     for (SvgCurve& curve : own.curves)
-      if (curve.points.size() > kCourse) curve.marker = kLine;
+      if (points.note("joined") == "no")
+        curve.joined = false;
+      else if (curve.points.size() > kCourse)
+        curve.marker = kLine;
     own.title = name;
     own.x = points.note("x"), own.y = points.note("y");
     own.log_x = points.note("x scale") == "log", own.log_y = points.note("y scale") == "log";

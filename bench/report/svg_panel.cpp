@@ -136,8 +136,9 @@ std::string curve_svg(const SvgPanel& panel, const SvgCurve& curve, const Axis& 
     back = fmt::format("L{:.1f} {:.1f}", x.at(p.x), y.at(curve.high[k])) + back;
   }
   if (!band.empty()) band = fmt::format("<path class=\"band\" d=\"{}{}z\"/>", band, back);
-  return fmt::format("<g class=\"{}\">{}<path class=\"l{}\" d=\"{}\"/>{}</g>\n", colour_class(curve), band,
-                     curve.dashed ? " dashed" : "", line, curve.marker == kLine ? "" : marks_svg(panel, curve, x, y));
+  if (curve.joined) line = fmt::format("<path class=\"l{}\" d=\"{}\"/>", curve.dashed ? " dashed" : "", line);
+  return fmt::format("<g class=\"{}\">{}{}{}</g>\n", colour_class(curve), band, curve.joined ? line : "",
+                     curve.marker == kLine ? "" : marks_svg(panel, curve, x, y));
 }
 
 // Names beside the last points, one below another where they would cover one another.

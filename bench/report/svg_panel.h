@@ -20,6 +20,7 @@ struct SvgCurve {
   std::vector<double> low = {}, high = {};  // of a band, as long as the points
   bool dashed = false;
   bool labelled = false;  // its name at its end
+  bool joined = true;     // by a line
 };
 inline constexpr int kColours = 10, kGrey = -1, kLine = -1;
 

@@ -27,7 +27,8 @@ std::vector<std::string> layout_notes(const PanelPlot& plot) {
           fmt::format("x scale: {}", scale(plot.log_x)),
           fmt::format("y scale: {}", scale(plot.log_y)),
           fmt::format("columns: {}", plot.columns),
-          fmt::format("shared: {}", plot.shared ? "yes" : "no")};
+          fmt::format("shared: {}", plot.shared ? "yes" : "no"),
+          fmt::format("joined: {}", plot.joined ? "yes" : "no")};
 }
 
 std::string write_plots(const std::vector<PanelPlot>& plots, const fs::path& directory,

@@ -31,6 +31,7 @@ struct PanelPlot {
   bool bands = false;  // from low to high, y their middle
   int columns = 2;     // panels side by side
   bool shared = true;  // panels side by side have one vertical scale
+  bool joined = true;  // by lines; a cloud of points is not
   std::vector<Curve> curves = {};
 };
 

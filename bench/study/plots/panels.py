@@ -16,7 +16,7 @@ def names(rows, column):
     return list(dict.fromkeys(row[column] for row in rows))
 
 
-def draw_panel(axes, rows, colours, markers):
+def draw_panel(axes, rows, colours, markers, joined):
     for series, variant in dict.fromkeys((row["series"], row["variant"]) for row in rows):
         points = [row for row in rows if row["series"] == series and row["variant"] == variant]
         x = [number(row["x"]) for row in points]
@@ -30,6 +30,9 @@ def draw_panel(axes, rows, colours, markers):
         if points[0]["low"]:
             axes.fill_between(x, [number(row["low"]) for row in points], [number(row["high"]) for row in points],
                               color=colour, alpha=0.3, linewidth=0)
+        if not joined:
+            axes.scatter(x, y, s=9, color=colour, alpha=0.7, linewidths=0)
+            continue
         if len(points) > 50:  # a course, not measurements at places of their own
             axes.plot(x, y, color=colour, linewidth=1.1)
             continue
@@ -72,7 +75,8 @@ def draw(rows, notes):
         axis.set_xscale(note(notes, "x scale"))
         axis.set_yscale(note(notes, "y scale"))
         axis.set_title(panels[k], fontsize=10)
-        draw_panel(axis, [row for row in rows if row["panel"] == panels[k]], colours, markers)
+        draw_panel(axis, [row for row in rows if row["panel"] == panels[k]], colours, markers,
+                   note(notes, "joined") != "no")
         if k >= len(panels) - columns:
             axis.set_xlabel(note(notes, "x"))
         if k % columns == 0:
