@@ -258,7 +258,9 @@ TEST(Compare, DividesNoTimesOfTwoProcessorsOrCompilers) {
   }
   Results settings = results(2);
   settings.tables["raw"].notes[4] += "2";
-  EXPECT_THAT(compare(results(), settings).not_compared[0], HasSubstr("other settings"));
+  const Comparison c = compare(results(), settings);
+  EXPECT_THAT(c.not_compared[0], HasSubstr("other settings"));
+  EXPECT_FALSE(c.same()) << "what was not compared is not the same";
 }
 
 }  // namespace

@@ -105,13 +105,19 @@ class Comparer {
     result_.not_compared.push_back(fmt::format("{}: {}: {}", file, what, why));
   }
 
+  // Not what never says anything of another folder, but what would if it had been computed alike.
+  void leave_out_all(const std::string& file, const std::string& why) {
+    leave_out(file, "nothing", why);
+    result_.incomparable = true;
+  }
+
   void compare_tables(const CsvTable& a, const CsvTable& b) {
     const std::string file = a.file + ".csv";
     if (of_study(a_, a.file) && of_study(b_, a.file)) return;
     for (const char* key : {"settings", "scene"})
       if (a.note(key) != b.note(key))
-        return leave_out(file, "nothing", fmt::format("other {}: \"{}\" and \"{}\"", key, a.note(key), b.note(key)));
-    if (a.header != b.header) return leave_out(file, "nothing", "the columns are others");
+        return leave_out_all(file, fmt::format("other {}: \"{}\" and \"{}\"", key, a.note(key), b.note(key)));
+    if (a.header != b.header) return leave_out_all(file, "the columns are others");
     if (a.file == kRaw) return compare_raw(a, b);
     if (is_chart(a)) return compare_charts(a, b);
     const Holds what = holds(a);
@@ -217,7 +223,7 @@ class Comparer {
       if (missing(study, b_)) result_.only_a.push_back(file);
       if (other == b_.studies.end()) continue;
       if (study.incomplete || other->incomplete)
-        leave_out(file, "nothing", "the study is incomplete");
+        leave_out_all(file, "the study is incomplete");
       else
         compare_cases(file, study, *other);
     }
@@ -238,9 +244,9 @@ class Comparer {
   // Case by case, and told column by column: there may be very many.
   void compare_cases(const std::string& file, const StudyResults& of_a, const StudyResults& of_b) {
     const CsvTable a = read_csv(a_.folder / file), b = read_csv(b_.folder / file);
-    if (a.header != b.header) return leave_out(file, "nothing", "the columns are others");
+    if (a.header != b.header) return leave_out_all(file, "the columns are others");
     const int status = a.column("status"), seconds = a.column("seconds"), spread = a.column("spread");
-    if (status < 1) return leave_out(file, "nothing", "it is no table of cases");
+    if (status < 1) return leave_out_all(file, "it is no table of cases");
     const std::string why = why_no_times(of_a.origin, of_b.origin);
     const bool timed = seconds >= 0 && spread >= 0;
     if (timed && !why.empty()) leave_out(file, "times", why);

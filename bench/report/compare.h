@@ -42,7 +42,11 @@ struct Comparison {
   std::vector<TimeChange> changed_times;
   std::vector<OtherChange> changed;
 
-  bool same() const { return changed_times.empty() && changed.empty() && only_a.empty() && only_b.empty(); }
+  bool incomparable = false;  // something was computed otherwise, so that nothing of it could be compared
+
+  bool same() const {
+    return !incomparable && changed_times.empty() && changed.empty() && only_a.empty() && only_b.empty();
+  }
 };
 
 Comparison compare(const Results& a, const Results& b);
