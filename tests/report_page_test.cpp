@@ -75,6 +75,22 @@ TEST(Findings, AreMadeOfTheNumbers) {
   EXPECT_THAT(found.missing, ::testing::Contains(HasSubstr("poinsot chart --all")));
 }
 
+// One run, or two, do not know how much runs scatter.
+TEST(Findings, OfFewRepetitionsDecideNothing) {
+  for (const auto& [repetitions, slower, verdict] :
+       {std::tuple{"1", "0", "leave it open"}, {"2", "0", "leave it open"}, {"5", "1", "It holds"}}) {
+    Results r = results();
+    std::erase_if(r.tables["raw"].rows, [&](const auto& row) {
+      return row[2] == "reps" || study::csv_number(row[6]) > study::csv_number(repetitions);
+    });
+    const Findings found = findings(r);
+    EXPECT_THAT(found.all[0].sentences[0], HasSubstr(fmt::format("slower beyond the noise in {} of them", slower)));
+    const auto claims = std::ranges::find(found.all, "claims", &Finding::id);
+    ASSERT_NE(claims, found.all.end());
+    EXPECT_THAT(claims->sentences[0], HasSubstr(verdict)) << repetitions;
+  }
+}
+
 // What is there is not called missing, whatever it says.
 TEST(Findings, TellThatNoTimeIsSaved) {
   Results r = results();

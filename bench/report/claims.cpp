@@ -119,8 +119,8 @@ std::optional<std::string> claim_of_reps(const std::vector<Ratio>& all, Ledger& 
         continue;
       const double x = one.over.median / two.over.median;
       quotient.add(x);
-      faster += one.over.low > two.over.high;
-      slower += one.over.high < two.over.low;
+      faster += two.over.decides() && one.over.above(two.over.high);
+      slower += two.over.decides() && one.over.below(two.over.low);
       ++count;
     }
   }
@@ -137,7 +137,7 @@ std::optional<std::string> claim_of_reps(const std::vector<Ratio>& all, Ledger& 
 std::optional<std::string> claim_of_subject(const std::vector<Ratio>& all, Ledger& ledger) {
   std::size_t faster = 0, slower = 0, count = 0;
   for (const Ratio& r : all)
-    if (r.jacobian == paper::kLikeForLike) ++count, faster += r.over.low > 1, slower += r.over.high < 1;
+    if (r.jacobian == paper::kLikeForLike) ++count, faster += r.over.above(1), slower += r.over.below(1);
   if (count == 0) return {};
   return claim(fmt::format("{} is the fastest", kSubject), of_counts(faster, slower, count),
                fmt::format("of {} comparisons like for like it is faster beyond the noise in {} and slower in {}",

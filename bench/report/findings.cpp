@@ -37,7 +37,7 @@ std::string ratio_sentence(const std::vector<const Ratio*>& own, const std::stri
     medians.add(r->over.median);
     within.add(r->over.low), within.add(r->over.high);
     confidence = std::min(confidence, r->over.confidence);
-    apart += r->over.low > 1;
+    apart += r->over.above(1);
     for (const double x : {r->paper_c1, r->paper_c2})
       if (x > 0) paper.add(x);
   }

@@ -11,12 +11,17 @@
 namespace poinsot::study {
 
 inline constexpr double kConfidence = 0.95;
+inline constexpr double kDecisive = 0.9;  // below it, of fewer than five values, an interval decides nothing
 
 struct Interval {
   double median = 0, low = 0, high = 0;
   double confidence = 0;  // 0 of a single value
 
   bool contains(double x) const { return low <= x && x <= high; }
+  bool decides() const { return confidence >= kDecisive; }
+  // The median, beyond the noise.
+  bool above(double x) const { return decides() && low > x; }
+  bool below(double x) const { return decides() && high < x; }
 };
 
 // At least one value.
