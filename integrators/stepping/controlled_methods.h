@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "integrators/stepping/explicit_stepper.h"
 #include "integrators/stepping/radau_stepper.h"
@@ -43,22 +44,40 @@ class ControlledPair : public ExplicitStepper {
   }
   Status attempt(double to, int rejections, double& error) {
     const Stages stages = rejections < kDifficult && !singular_ ? Stages::as_they_come : Stages::projected;
+    probes_ = rejections == kDifficult && !singular_ && to - state().t > asked_;
     return ExplicitStepper::attempt(to, stages, error);
+  }
+  // A step longer than the error asks for is to pass a singular position. Where there is none, what its stages do not
+  // see, as a stop that they were thrown back from, is not in its error either.
+  Status complete(double& error, double most = 1) {
+    constexpr double kTooLarge = 2;
+    const Status status = ExplicitStepper::complete(error, most);
+    if (!probes_ || !status.ok() || !(error <= most)) return status;
+    passed_ = beside_singular();
+    if (!passed_) {
+      take_back();
+      error = kTooLarge * most;
+    }
+    return status;
   }
   double retry(double h, int rejections, double usual) {
     singular_ = beside_singular() || at_start_;
+    if (rejections == kDifficult) asked_ = h;
+    if (rejections > kDifficult && !singular_) return std::min(h, asked_);
     return length_after(rejections, h, usual, singular_);
   }
   bool by_singular() const { return singular_; }  // the last completed step came by a singular position
   double adopt(double, double wanted) {
-    singular_ = beside_singular();
+    singular_ = beside_singular() || std::exchange(passed_, false);
     at_start_ = false;
     return wanted;
   }
 
  private:
-  bool singular_ = false;  // the last attempt came by a singular position
-  bool at_start_ = false;  // in one
+  bool singular_ = false;                 // the last attempt came by a singular position
+  bool at_start_ = false;                 // in one
+  bool probes_ = false, passed_ = false;  // the last attempt looked for one, and came by it
+  double asked_ = 0;                      // s, what the error asked for where it did
 };
 
 // Of a run of radau5 that goes by the pair's steps there.
