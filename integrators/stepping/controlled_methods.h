@@ -45,13 +45,16 @@ class ControlledPair : public ExplicitStepper {
   Status attempt(double to, int rejections, double& error) {
     const Stages stages = rejections < kDifficult && !singular_ ? Stages::as_they_come : Stages::projected;
     probes_ = rejections == kDifficult && !singular_ && to - state().t > asked_;
-    return ExplicitStepper::attempt(to, stages, error);
+    const Status status = ExplicitStepper::attempt(to, stages, error);
+    failed_ = !status.ok();
+    return status;
   }
   // A step longer than the error asks for is to pass a singular position. Where there is none, what its stages do not
   // see, as a stop that they were thrown back from, is not in its error either.
   Status complete(double& error, double most = 1) {
     constexpr double kTooLarge = 2;
     const Status status = ExplicitStepper::complete(error, most);
+    failed_ = !status.ok();
     if (!probes_ || !status.ok() || !(error <= most)) return status;
     passed_ = beside_singular();
     if (!passed_) {
@@ -62,7 +65,7 @@ class ControlledPair : public ExplicitStepper {
   }
   double retry(double h, int rejections, double usual) {
     singular_ = beside_singular() || at_start_;
-    if (rejections == kDifficult) asked_ = h;
+    if (rejections == kDifficult) asked_ = failed_ ? HUGE_VAL : h;
     if (rejections > kDifficult && !singular_) return std::min(h, asked_);
     return length_after(rejections, h, usual, singular_);
   }
@@ -77,7 +80,8 @@ class ControlledPair : public ExplicitStepper {
   bool singular_ = false;                 // the last attempt came by a singular position
   bool at_start_ = false;                 // in one
   bool probes_ = false, passed_ = false;  // the last attempt looked for one, and came by it
-  double asked_ = 0;                      // s, what the error asked for where it did
+  bool failed_ = false;                   // it had no error
+  double asked_ = 0;                      // s, what the error asked for before it; infinite where there was none
 };
 
 // Of a run of radau5 that goes by the pair's steps there.
