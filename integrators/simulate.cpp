@@ -47,6 +47,11 @@ const IntegratorEntry& integrator_of(const Settings& settings) {
   return entry;
 }
 
+Steps steps_of(const Settings& settings) {
+  if (settings.analysis == Analysis::kinematics) return Steps::of_kinematics;
+  return chooses_steps(settings) ? Steps::error_controlled : Steps::fixed;
+}
+
 void refuse_free_motion(const Problem& problem) {
   for (const Row& row : problem.model().rows)
     if (row.type == RowType::pfaffian)
@@ -109,8 +114,8 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
 
   std::unique_ptr<Problem> problem = formulation.make(model, start.rank.aside);
   if (!start.rank.aside.empty())
-    problem = std::make_unique<OverConstrained>(std::move(problem), model, start.rank, start.bodies,
-                                                chooses_steps(settings) ? Steps::error_controlled : Steps::fixed);
+    problem =
+        std::make_unique<OverConstrained>(std::move(problem), model, start.rank, start.bodies, steps_of(settings));
   if (settings.analysis == Analysis::kinematics) refuse_free_motion(*problem);
   State state(*problem);
   outcome.status = find_first_state(start, settings, *problem, state, notice);

@@ -33,8 +33,8 @@
 
 namespace poinsot {
 
-// Who goes along the motion: error control sees more of a worn choice.
-enum class Steps { fixed, error_controlled };
+// Who goes along the motion: error control sees more of a worn choice, and kinematics leaves rows off by a tolerance.
+enum class Steps { fixed, error_controlled, of_kinematics };
 
 class BlockChoice {
  public:

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLookedAgain = 1;  // rad, at the latest
 constexpr double kLost = 1e-5;      // of a body's size: far above what steps leave, far below what opens to the eye
-// Of what kept rows are off, where a tolerance leaves them off by more: rows that follow from them add them up.
+// In kinematics of what kept rows are off, which a tolerance leaves off: rows that follow from them add them up.
 constexpr double kAsKept = 100;
 
 }  // namespace
@@ -23,6 +23,7 @@ OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::share
     : choice_(std::make_shared<Choice>(
           Choice{RowChoice(model, rank.loops, rank.aside, steps), 0, {states.begin(), states.end()}})),
       kept_(std::move(kept)),
+      to_tolerance_(steps == Steps::of_kinematics),
       now_(states.begin(), states.end()) {
   choice_->rows.look(0, states);
   // Where very many rows are redundant the analysis of rank leaves the others independent, but not as much as can be.
@@ -38,6 +39,7 @@ OverConstrained::OverConstrained(const OverConstrained& other)
       choice_(other.choice_),
       kept_revision_(other.kept_revision_),
       kept_(other.kept_->clone()),
+      to_tolerance_(other.to_tolerance_),
       t_(other.t_),
       accepted_at_(other.accepted_at_),
       way_(other.way_),
@@ -91,7 +93,7 @@ Status OverConstrained::measure(double t, std::span<const double> a) {
   double most = 0;
   for (std::size_t k = 0; k < by_allowed_.size(); ++k)
     if (const double part = std::abs(residual[k]) * by_allowed_[k]; part > most) most = part, worst = k;
-  if (most <= 1 || std::abs(residual[worst]) <= kAsKept * kept_off())
+  if (most <= 1 || (to_tolerance_ && std::abs(residual[worst]) <= kAsKept * kept_off()))
     return rates_aside_ ? measure_rates(t, a) : Status{};
   return {Failure::constraint_lost, t,
           fmt::format("at t = {:.9g} s {} is violated by {:.3g}: it followed from the other constraints where the run "

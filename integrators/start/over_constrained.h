@@ -107,6 +107,7 @@ class OverConstrained final : public Problem {
   std::shared_ptr<Choice> choice_;
   int kept_revision_ = 0;
   std::unique_ptr<Problem> kept_;
+  const bool to_tolerance_;  // kept rows hold
   mutable std::optional<RowsAside> aside_;
   std::vector<double> by_allowed_;  // 1 over what is allowed of |Φ|, by row set aside
   bool rates_aside_ = false;        // velocity rows are among them
