@@ -95,12 +95,12 @@ TEST_P(LawSwitchesTest, AStopIsNotSteppedThrough) {
     "forces": [{"type": "spring", "bodies": ["ground", "m"], "s_i": [0, 0, -1], "s_j": [0, 0, 0], "length": 1.5,
                 "law": "k*min(x, 0)"}]})json",
                                  "fall.json");
-  for (const double k : {1e5, 1e6}) {
-    for (const double rtol : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
+  for (const double k : {1e5, 1e6, 1e7}) {
+    for (const double rtol : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
       const Recorded r = run(with_parameters(fall, {{"k", k}}), settings(rtol, 1, 0.01));
       ASSERT_TRUE(r.outcome.status.ok()) << k << ": " << r.outcome.status.message;
       for (const Snapshot& s : r.samples) {
-        EXPECT_LT(s.bodies[0].r.z(), 1.02) << k << ' ' << rtol << " at " << s.t;
+        EXPECT_LT(s.bodies[0].r.z(), 1 + std::max(0.02, 5 * rtol)) << k << ' ' << rtol << " at " << s.t;
         EXPECT_GT(s.bodies[0].r.z(), 0.48) << k << ' ' << rtol << " at " << s.t;
       }
     }

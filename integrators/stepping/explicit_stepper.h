@@ -79,6 +79,7 @@ class ExplicitStepper {
   bool end_is_evaluated() const { return error_needs_last_ || project_stages_; }
   Status evaluate(State& at, const Vector& y, Eigen::Index k);
   Status run_through_stages(double to, State& at);
+  bool ends_agree();
   void test_stiffness();
   Status prepare_dense();
   void stand_at_end();
