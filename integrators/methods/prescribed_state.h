@@ -22,8 +22,9 @@ class PrescribedState {
   // x at t from the position x.q; the problem stands there. What corrections come to is added to `beyond`.
   // `carefully`: with matrices of its own, and up to what rounding allows where that is less than the tolerance.
   Status find(double t, double tolerance, bool carefully, State& x, Eigen::VectorXd& beyond);
-  // Corrects what find() found until velocities are right to the tolerance as well. False where that leads elsewhere:
-  // it was found to be certain on too little.
+  // Corrects what find() found until what the last corrections tell is left of its error changes velocities by no more
+  // than the tolerance, relatively. With a matrix of a position before (`simplified`) they may tell too little. False
+  // where that leads elsewhere: it was found to be certain on too little.
   bool sharpen(double t, double tolerance, State& x, Eigen::VectorXd& beyond);
   // The second correction over the first; infinite where the first is so large that nothing is to be said.
   double contraction() const { return contraction_; }
