@@ -28,6 +28,7 @@ constexpr double kShortest = 0x1p-24;  // part of a step
 constexpr int kMostParts = 1000;
 constexpr double kSharp = 1e-12;      // tolerance of Newton's corrections in parts, at least
 constexpr double kFarTurn = 0.1;      // rad, of a body in a part
+constexpr double kBent = 1e-4;        // of velocities
 constexpr double kSameLength = 1e-6;  // relative: what rounding of times makes of the lengths of steps
 
 // Numbers are those of the paper's equations.
@@ -69,7 +70,7 @@ class Kinematics final : public FixedSteps {
     const double h = t - x_.t;
     if (!(std::abs(h - extrapolates_for_) <= kSameLength * h)) extrapolate_anew(h);
     const Status status = advance(x_.t, t, settings_.tolerance);
-    if (status.ok() && certain(h, t) && solver_.sharpen(t, settings_.tolerance, x_, beyond_)) {
+    if (status.ok() && certain(h, t) && sharpen(h, t, settings_.tolerance)) {
       extrapolation_.lead(beyond_);
       return status;
     }
@@ -139,6 +140,13 @@ class Kinematics final : public FixedSteps {
     return true;
   }
 
+  // Where velocities change over h by more than the accelerations at both ends tell they bend sharply, as beside a
+  // singular position: there those of positions beside x_, too, are others.
+  bool sharpen(double h, double t, double tolerance) {
+    const double bent = (x_.v - v_from_ - (0.5 * h) * (a_from_ + x_.z.head(nv_))).squaredNorm();
+    return !(bent > kBent * kBent * x_.v.squaredNorm()) || solver_.sharpen(t, tolerance, x_, beyond_);
+  }
+
   // At a singular position itself rates are rounding over rounding, and the determinant has no sign to compare: there
   // accelerations are out of all proportion to velocities, and those jump.
   bool comes_to_singular_position(double h, double t) {
@@ -182,12 +190,12 @@ class Kinematics final : public FixedSteps {
       h = to - at;
       const double tolerance = std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), kSharp));
       status = advance(at, to, tolerance);
-      if (status.ok() && certain(h, to) && solver_.sharpen(to, tolerance, x_, beyond_)) {
+      if (status.ok() && certain(h, to) && sharpen(h, to, tolerance)) {
         at = x_.t = to;
         h *= 2;
         examined = false;
         if (status = bring_up_to_date(); !status.ok()) break;
-        q_from_ = x_.q, v_from_ = x_.v;
+        q_from_ = x_.q, v_from_ = x_.v, a_from_ = x_.z.head(nv_);
         continue;
       }
       h *= 0.5;
@@ -250,9 +258,8 @@ class Kinematics final : public FixedSteps {
   const bool rows_change_;
   std::unique_ptr<Consistent> inverse_dynamics_;
   Vector dq_;
-  Vector q_from_, v_from_;  // where a step, or a part of it, begins
-  Vector a_from_;           // of a step
-  Vector beyond_;           // what lies beyond h v + h²/2 a: as steps before have it, then as this one finds it
+  Vector q_from_, v_from_, a_from_;  // where a step, or a part of it, begins
+  Vector beyond_;  // what lies beyond h v + h²/2 a: as steps before have it, then as this one finds it
   Extrapolation extrapolation_;
   double extrapolates_for_ = 0;  // length of these steps
   double chose_at_ = -1;         // time of the part for which other rows were asked for

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/counted.h"
 #include "integrators/stepping/vectors.h"
@@ -16,8 +17,8 @@ constexpr double kSlow = 0.1;
 // So far from its prediction a body may as well be turned over: a hinge holds with its axis reversed, too, and no sign
 // of a determinant tells. In coordinates of orientation.
 constexpr double kFarOff = 0.25;
-// Careful iterations end where corrections as small as this shrink no more: near a singular position, at worst, it is
-// what rounding leaves.
+// Corrections as small as this need not shrink any more: near a singular position, at worst, it is what rounding
+// leaves.
 constexpr double kRoundingAtWorst = 1e-7, kShrinksNoMore = 0.9;
 constexpr double kStandsStill = 1e-10;  // by a first correction: no motion to be uncertain of
 constexpr int kMostSharpenings = 3;
@@ -32,7 +33,8 @@ PrescribedState::PrescribedState(const Run& run, PhaseClock& clock)
       refresh_(jacobians().require(settings_.jacobian).refresh),
       system_(problem_, run.systems.add(Workload::transposed), MatrixKind::kinematic, run.statistics, clock),
       delta_(problem_.nc()),
-      q_next_(problem_.nq()) {}
+      q_next_(problem_.nq()),
+      v_before_(problem_.nv()) {}
 
 Status PrescribedState::find(double t, double tolerance, bool carefully, State& x, Vector& beyond) {
   if (Status status = find_position(t, tolerance, carefully, x, beyond); !status.ok()) return status;
@@ -40,55 +42,53 @@ Status PrescribedState::find(double t, double tolerance, bool carefully, State& 
 }
 
 bool PrescribedState::sharpen(double t, double tolerance, State& x, Vector& beyond) {
-  std::uint64_t orientation = 0;
-  for (int k = 0; k < kMostSharpenings && says_little(x, tolerance); ++k) {
-    if (k == 0) orientation = system_.orientation();
-    problem_.position_residual(span(delta_));
+  const std::uint64_t orientation = system_.orientation();
+  for (int k = 0; k < kMostSharpenings; ++k) {
     const double before = last_;
-    if (!correct(t, x, beyond).ok()) return false;
-    fresh_ = true, last_ = delta_.squaredNorm();
-    if (!(last_ < before) || !find_rates(t, x).ok() || system_.orientation() != orientation) return false;
+    v_before_ = x.v;
+    problem_.position_residual(span(delta_));
+    if (!solve(t).ok()) return false;
+    correct(x, beyond);
+    if (!(last_ < std::max(before, kRoundingAtWorst)) || !find_rates(t, x).ok()) return false;
+    if (system_.orientation() != orientation) return false;
+    // Newton's method leaves half the square of what a correction came to.
+    const double change = (x.v - v_before_).norm() / x.v.norm();
+    if (!(0.5 * change * change > tolerance)) return true;
   }
   return true;
 }
 
-// Whether what is left of the position's error changes the velocities by more than the tolerance, relatively, as it
-// does beside singular positions, where they bend sharply: per length by ‖a‖/‖v‖² where drivers' rates are constant,
-// and half as much, times the last correction, is what Newton's method leaves of that.
-bool PrescribedState::says_little(const State& x, double tolerance) const {
-  const double v = x.v.squaredNorm(), bend = x.z.head(x.v.size()).squaredNorm() * last_;
-  if (fresh_) return 0.5 * bend > tolerance * v * v;
-  return std::sqrt(bend) * std::min(shrinks_by_, 1.0) > tolerance * v;
-}
-
-// By Φ in delta_ and the matrix that there is.
-Status PrescribedState::correct(double t, State& x, Vector& beyond) {
+// The correction of Φ in delta_, by the matrix that there is.
+Status PrescribedState::solve(double t) {
   delta_ = -delta_;
   if (Status status = system_.solve(t, span(delta_)); !status.ok()) return status;  // (14d)
-  problem_.retract(span(x.q), span(delta_), span(q_next_));                         // (14a), (12)
-  beyond += delta_;
-  x.q.swap(q_next_);
-  ++run_.statistics.newton_iterations;
+  last_ = delta_.norm();
   return {};
 }
 
+void PrescribedState::correct(State& x, Vector& beyond) {
+  problem_.retract(span(x.q), span(delta_), span(q_next_));  // (14a), (12)
+  beyond += delta_;
+  x.q.swap(q_next_);
+  ++run_.statistics.newton_iterations;
+}
+
 Status PrescribedState::find_position(double t, double tolerance, bool carefully, State& x, Vector& beyond) {
-  double correction = 0, first = 0;
+  double first = 0;
   contraction_ = 0;
   slow_ = false;
   for (int k = 0; k < settings_.max_iterations; ++k) {
     problem_.set_position(t, span(x.q));
     problem_.position_residual(span(delta_));
     // Where a matrix of a position before serves too little to be certain of a step, its parts have their own.
-    fresh_ = (carefully && slow_) || due(refresh_, k, carefully || slow_ || !system_.ready());
-    if (fresh_) {
+    const bool fresh = (carefully && slow_) || due(refresh_, k, carefully || slow_ || !system_.ready());
+    if (fresh) {
       if (Status status = refresh(t); !status.ok()) return status;
     }
-    if (Status status = correct(t, x, beyond); !status.ok()) return status;
-    const double before = correction;
-    correction = delta_.norm();
-    last_ = correction * correction;
-    shrinks_by_ = k > 0 ? correction / before : 1;
+    const double before = last_;
+    if (Status status = solve(t); !status.ok()) return status;
+    correct(x, beyond);
+    const double correction = last_;
     slow_ = k > 0 && !(correction < kSlow * before);
     if (k == 0) {
       // Beside a singular position corrections are as large as can be, and what they shrink by says nothing.
@@ -106,7 +106,7 @@ Status PrescribedState::find_position(double t, double tolerance, bool carefully
           fmt::format("at t = {:.9g} s the position did not converge: after {} the correction is {:.3g}, the tolerance "
                       "{:.3g}; {} moves most; the mechanism may be locked here or the driver ask for more than it can "
                       "reach; else try more iterations or a larger tolerance",
-                      t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
+                      t, counted(settings_.max_iterations, "iteration"), last_, settings_.tolerance,
                       problem_.describe_unknown(static_cast<int>(largest)))};
 }
 

@@ -22,9 +22,9 @@ class PrescribedState {
   // x at t from the position x.q; the problem stands there. What corrections come to is added to `beyond`.
   // `carefully`: with matrices of its own, and up to what rounding allows where that is less than the tolerance.
   Status find(double t, double tolerance, bool carefully, State& x, Eigen::VectorXd& beyond);
-  // Corrects what find() found until what the last corrections tell is left of its error changes velocities by no more
-  // than the tolerance, relatively. With a matrix of a position before (`simplified`) they may tell too little. False
-  // where that leads elsewhere: it was found to be certain on too little.
+  // Corrects what find() found, with the matrices of where it came to, until what is left of its error changes
+  // velocities by no more than the tolerance, relatively. False where that leads elsewhere: it was found to be certain
+  // on too little.
   bool sharpen(double t, double tolerance, State& x, Eigen::VectorXd& beyond);
   // The second correction over the first; infinite where the first is so large that nothing is to be said.
   double contraction() const { return contraction_; }
@@ -38,9 +38,9 @@ class PrescribedState {
   using Vector = Eigen::VectorXd;
 
   Status find_position(double t, double tolerance, bool carefully, State& x, Vector& beyond);
-  Status correct(double t, State& x, Vector& beyond);
+  Status solve(double t);
+  void correct(State& x, Vector& beyond);
   Status find_rates(double t, State& x);
-  bool says_little(const State& x, double tolerance) const;
   double largest_turn() const;
 
   const Run& run_;
@@ -48,11 +48,9 @@ class PrescribedState {
   const Settings& settings_;
   const Refresh refresh_;
   StepSystem system_;
-  Vector delta_, q_next_;
-  bool slow_ = false;      // corrections did not shrink as they should
-  bool fresh_ = false;     // the last correction was found with the matrix of where it began
-  double last_ = 0;        // squared
-  double shrinks_by_ = 1;  // the last two
+  Vector delta_, q_next_, v_before_;
+  bool slow_ = false;  // corrections did not shrink as they should
+  double last_ = 0;    // of corrections
   double contraction_ = 0;
 };
 

@@ -1,0 +1,106 @@
+// Kinematics of crank-rockers that all but come to a change point on their way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "core/index.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+// A crank-rocker through the points of its hinges.
+Scene near_change_point(const std::vector<Vector3>& at, const char* angle) {
+  Scene scene;
+  for (const int k : {0, 1, 2}) {
+    Body bar;
+    bar.name = "abc"[k], bar.mass = 1, bar.inertia = Vector3(0.01, 0.1, 0.1).asDiagonal();
+    bar.position = 0.5 * (at[index(k)] + at[index(k + 1)]);
+    scene.bodies.push_back(bar);
+  }
+  for (const int k : {0, 1, 2, 3}) {
+    Joint hinge;
+    hinge.type = JointType::revolute, hinge.i = k - 1, hinge.j = k == 3 ? kGround : k;
+    hinge.point = at[index(k)], hinge.axis = {0, 0, 1};
+    scene.joints.push_back(hinge);
+  }
+  Driver motor;
+  motor.type = DriverType::angle, motor.i = kGround, motor.j = 0;
+  motor.axis = {0, 0, 1}, motor.value = Expression::parse(angle);
+  scene.drivers.push_back(motor);
+  return scene;
+}
+
+const std::vector<Vector3> kNearChange = {{0, 0, 0},
+                                          {-0.18902561544751362, 0.8826384859096528, 0},
+                                          {0.704368013401201, 1.0125595731767851, 0},
+                                          {1.0800894449633351, 0, 0}};
+
+// A position that is right to the tolerance may say nothing of velocities.
+TEST(KinematicSteps, beside_a_change_point_have_velocities_to_the_tolerance_as_well) {
+  const Scene cranks[] = {near_change_point(kNearChange, "1.9553182296794809*t"),
+                          near_change_point({{0, 0, 0},
+                                             {0.51980852398688615, -0.36221694812411981, 0},
+                                             {1.2637043339039145, 0.86513025505308216, 0},
+                                             {1.2014096358670501, 0, 0}},
+                                            "1.2143760376282524*t"),
+                          near_change_point({{0, 0, 0},
+                                             {0.5026491727439274, 0.41616739717557211, 0},
+                                             {1.1296787145649794, 1.1518718689315914, 0},
+                                             {1.5352807510039281, 0, 0}},
+                                            "-2.2682178680297307*t")};
+  for (const Scene& scene : cranks)
+    for (const char* formulation : {"rA", "rp", "reps"})
+      for (const double step : {0.02, 0.05, 0.1}) {
+        Settings settings = kinematics(formulation, step, 3);
+        settings.tolerance = 1e-12;
+        const Recorded sharp = run(scene, settings);
+        for (const char* jacobian : {"exact", "kept", "simplified"}) {
+          settings.jacobian = jacobian, settings.tolerance = 1e-3;
+          const Recorded r = run(scene, settings);
+          ASSERT_TRUE(r.outcome.status.ok()) << jacobian << ": " << r.outcome.status.message;
+          ASSERT_EQ(r.samples.size(), sharp.samples.size());
+          double most = 0;
+          for (std::size_t k = 0; k < r.samples.size(); ++k) {
+            double off = 0, fastest = 0;
+            for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+              const Vector3& rd = sharp.samples[k].bodies[b].rd;
+              off = std::max(off, (r.samples[k].bodies[b].rd - rd).norm());
+              fastest = std::max(fastest, rd.norm());
+            }
+            most = std::max(most, off / fastest);
+          }
+          EXPECT_LT(most, 4e-3) << formulation << ' ' << jacobian << ' ' << step;
+        }
+      }
+}
+
+// One step ends off the position by the tolerance, with a matrix of before, and shorter ones find their way from it.
+TEST(KinematicSteps, that_end_off_the_position_beside_a_change_point_go_on) {
+  const struct {
+    Scene scene;
+    const char *formulation, *jacobian;
+    double step, end;
+  } cases[] = {
+      {near_change_point(kNearChange, "1.9553182296794809*t"), "rA", "simplified", 0.05, 3.53472},
+      {near_change_point({{0, 0, 0},
+                          {0.2124122152739908, -0.25339265814863454, 0},
+                          {1.6790627714610782, 0.4505727691068426, 0},
+                          {1.7526929388731944, 0, 0}},
+                         "-1.975788381447585*t"),
+       "rp", "kept", 0.05, 3.4981},
+  };
+  for (const auto& of : cases) {
+    Settings settings = kinematics(of.formulation, of.step, of.end);
+    settings.jacobian = of.jacobian, settings.tolerance = 1e-3;
+    const Recorded r = run(of.scene, settings);
+    ASSERT_TRUE(r.outcome.status.ok()) << of.jacobian << ": " << r.outcome.status.message;
+    settings.jacobian = "exact", settings.step = of.step / 50, settings.tolerance = 1e-10;
+    const Recorded exact = run(of.scene, settings);
+    EXPECT_LT((r.samples.back().bodies[1].r - exact.samples.back().bodies[1].r).norm(), 1e-3) << of.jacobian;
+  }
+}
+
+}  // namespace
+}  // namespace poinsot::test
