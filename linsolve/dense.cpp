@@ -63,12 +63,14 @@ class Dense final : public ScaledLu {
 
   LinearStatus do_fresh() override {
     std::iota(place_.begin(), place_.end(), 0);
+    find_places();
     write();
     kernels_->factor(lu_.data(), n_, order_.data(), inverse_.data());
     for (std::size_t k = 0; k < order_.size(); ++k) {
       place_[static_cast<std::size_t>(order_[k])] = static_cast<int>(k);
       chosen_[k] = std::abs(inverse_[k]);
     }
+    find_places();
     odd_order_ = odd(0, n_, [this](int k) { return order_[static_cast<std::size_t>(k)]; });
     return {};
   }
@@ -86,10 +88,16 @@ class Dense final : public ScaledLu {
   // The scaled matrix with its rows at their places.
   void write() {
     std::ranges::fill(lu_, 0.0);
+    const std::span<const double> value = scaled();
+    for (std::size_t k = 0; k < value.size(); ++k) lu_[to_[k]] = value[k];
+  }
+
+  void find_places() {
     const int *start = layout().start.data(), *row = layout().row.data(), *place = place_.data();
-    const double* value = scaled().data();
+    to_.resize(scaled().size());
     for (int j = 0; j < n_; ++j)
-      for (int k = start[j]; k < start[j + 1]; ++k) column(j)[place[row[k]]] = value[k];
+      for (int k = start[j]; k < start[j + 1]; ++k)
+        to_[static_cast<std::size_t>(k)] = static_cast<std::size_t>(j * dense::stride(n_) + place[row[k]]);
   }
 
   void do_substitute(std::span<double> b) override {
@@ -112,6 +120,7 @@ class Dense final : public ScaledLu {
   std::vector<double> lu_, inverse_, x_;
   std::vector<double> chosen_;      // 1/|pivot| when the order was chosen
   std::vector<int> order_, place_;  // row by position, position by row
+  std::vector<std::size_t> to_;     // in lu_, by entry of the matrix
   bool odd_order_ = false;
 };
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "linsolve/lanes.h"
+
 namespace poinsot {
 namespace {
 
@@ -27,11 +29,13 @@ double factor(double m) {
 void Equilibration::resize(int n) {
   for (auto* v : {&row_, &col_, &row_max_, &col_max_, &row_min_, &col_min_})
     v->assign(static_cast<std::size_t>(n), 1.0);
+  by_entry_.clear();
 }
 
 bool Equilibration::find(const CscLayout& layout, std::span<const double> values) {
   std::ranges::fill(row_, 1.0);
   std::ranges::fill(col_, 1.0);
+  by_entry_.clear();
   for (int k = 0; k < kSweeps; ++k)
     if (!sweep<false>(layout, values)) return false;
   return true;
@@ -40,6 +44,7 @@ bool Equilibration::find(const CscLayout& layout, std::span<const double> values
 void Equilibration::find_by_means(const CscLayout& layout, std::span<const double> values) {
   std::ranges::fill(row_, 1.0);
   std::ranges::fill(col_, 1.0);
+  by_entry_.clear();
   for (int k = 0; k < kSweeps; ++k) (void)sweep<true>(layout, values);
   for (int k = 0; k < kSweeps; ++k) (void)sweep<false>(layout, values);
 }
@@ -72,15 +77,32 @@ bool Equilibration::sweep(const CscLayout& layout, std::span<const double> value
   return finite;
 }
 
-double Equilibration::scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled) const {
-  double largest = 0, poison = 0;  // poison stays 0 as long as everything is finite
-  for (std::size_t j = 0; j < col_.size(); ++j)
-    for (auto k = static_cast<std::size_t>(layout.start[j]); k < static_cast<std::size_t>(layout.start[j + 1]); ++k) {
-      scaled[k] = values[k] * row_[static_cast<std::size_t>(layout.row[k])] * col_[j];
-      largest = std::max(largest, std::abs(scaled[k]));
-      poison += scaled[k] * 0;
-    }
+double Equilibration::scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled) {
+  if (by_entry_.empty()) multiply(layout);
+  // poison stays 0 as long as everything is finite
+  double largest = 0, poison = 0;
+  Vec most = {}, poisons = {};
+  std::size_t k = 0;
+  for (; k + kLanes <= values.size(); k += kLanes) {
+    const Vec entries = load(&values[k]) * load(&by_entry_[k]), sizes = magnitude(entries);
+    store(&scaled[k], entries);
+    most = sizes > most ? sizes : most;
+    poisons += entries * 0;
+  }
+  for (; k < values.size(); ++k) {
+    scaled[k] = values[k] * by_entry_[k];
+    largest = std::max(largest, std::abs(scaled[k]));
+    poison += scaled[k] * 0;
+  }
+  for (int lane = 0; lane < kLanes; ++lane) largest = std::max(largest, most[lane]), poison += poisons[lane];
   return largest + poison;
+}
+
+void Equilibration::multiply(const CscLayout& layout) {
+  by_entry_.reserve(layout.row.size());
+  for (std::size_t j = 0; j < col_.size(); ++j)
+    for (int k = layout.start[j]; k < layout.start[j + 1]; ++k)
+      by_entry_.push_back(row_[static_cast<std::size_t>(layout.row[static_cast<std::size_t>(k)])] * col_[j]);
 }
 
 void Equilibration::improve(std::span<const double> rows, std::span<const double> columns) {
@@ -93,6 +115,7 @@ void Equilibration::improve(std::span<const double> rows, std::span<const double
     if (rows[i] > 0) row_[i] /= power_of_two(rows[i]);
     if (columns[i] > 0) col_[i] *= power_of_two(columns[i]);
   }
+  by_entry_.clear();
 }
 
 void Equilibration::scale_right_hand_side(std::span<double> b) const {

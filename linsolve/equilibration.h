@@ -25,7 +25,7 @@ class Equilibration {
   void find_by_means(const CscLayout& layout, std::span<const double> values);
   // scaled ← D_r A D_c in the same layout, with factors that may come from other values. The magnitude of its largest
   // entry; NaN where an entry is not finite.
-  double scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled) const;
+  double scale(const CscLayout& layout, std::span<const double> values, std::span<double> scaled);
   // D_r ← D_r / rows, D_c ← D_c · columns.
   void improve(std::span<const double> rows, std::span<const double> columns);
 
@@ -38,8 +38,10 @@ class Equilibration {
  private:
   template <bool means>
   bool sweep(const CscLayout& layout, std::span<const double> values);
+  void multiply(const CscLayout& layout);
 
   std::vector<double> row_, col_, row_max_, col_max_, row_min_, col_min_;
+  std::vector<double> by_entry_;  // row · col, once something has been scaled by them
 };
 
 }  // namespace poinsot
