@@ -81,7 +81,7 @@ constexpr double kFars[] = {1e3, 1e6, 1e8};
 Scene four_bar() {
   return loop({4, Frames::random, false, false});
 }
-constexpr double kFarEnd = 0.2, kRate = 3, kMass = 3.3;
+constexpr double kFarEnd = 0.2, kRate = 3, kFarMass = 3.3;
 
 Transform moved_by(double far) {
   Transform moved;
@@ -118,7 +118,7 @@ TEST(FarReactions, AreThoseAtTheOriginUpToTheRoundingOfPositions) {
         const Off seen = off(run, exact, moved.R);
         // Where index 1 takes the place of index 3 the method's own error is another one, and not larger.
         EXPECT_LT(seen.acceleration, 1.5 * of_method.acceleration + allowed);
-        EXPECT_LT(seen.reaction, 1.5 * of_method.reaction + kMass * allowed);
+        EXPECT_LT(seen.reaction, 1.5 * of_method.reaction + kFarMass * allowed);
       }
     });
     EXPECT_GE(ways, 25);

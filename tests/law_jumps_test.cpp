@@ -16,7 +16,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-constexpr double kStart = 1, kSpeed = 1, kSpring = 20, kFriction = 3, kMass = 2;
+constexpr double kStart = 1, kSpeed = 1, kSpring = 20, kFriction = 3, kSlideMass = 2;
 
 // A slide and a wheel, each with a spring and dry friction.
 Scene rubbing(const char* law) {
@@ -34,7 +34,7 @@ Scene rubbing(const char* law) {
 
 // x of either at a time, by arcs of cosines about ∓ kFriction / kSpring.
 double exact(double t) {
-  const double w = std::sqrt(kSpring / kMass);
+  const double w = std::sqrt(kSpring / kSlideMass);
   double side = 1, middle = -kFriction / kSpring;
   double amplitude = std::hypot(kStart - middle, kSpeed / w), turns = std::atan2(kSpeed / w, kStart - middle) / w;
   for (double since = turns; t > turns; side = -side, since = turns) {

@@ -8,7 +8,7 @@ import re
 import sys
 
 FOLDERS = ["core", "linsolve", "formulations", "integrators", "app", "bench/study", "bench/records", "bench/view",
-           "bench/cases", "bench/stability", "bench/paper", "bench/report"]
+           "bench/cases", "bench/stability", "bench/paper", "bench/report", "tests"]
 FUNCTION = re.compile(r"^(?!return|using|template)[\w:<>,*& ]+?[ *&](\w+)\(([^()]*(?:\([^()]*\)[^()]*)*)\)[^;]*\{")
 CONSTANT = re.compile(r"^(?:inline |static )*(?:constexpr|const) [\w:<>,*& ]+?[ *&](\w+)(?:\[\w*\])? ?[={]")
 NEXT_CONSTANT = re.compile(r", (k\w+) = ")

@@ -173,12 +173,12 @@ double allowed(const IntegratorEntry& integrator, int exchanges) {
   return exchanges == 0 ? 1e-6 : integrator.name == "generalized_alpha" ? 1e-4 : 2e-3;
 }
 
-struct Pair {
+struct Compared {
   Course with, without;
 };
 
-Pair compare(const IntegratorEntry& integrator, const Settings& settings, const Scene& with, const Scene& without) {
-  Pair pair{move(with, settings), move(without, settings)};
+Compared compare(const IntegratorEntry& integrator, const Settings& settings, const Scene& with, const Scene& without) {
+  Compared pair{move(with, settings), move(without, settings)};
   const Statistics &a = pair.with.outcome.statistics, &b = pair.without.outcome.statistics;
   EXPECT_TRUE(pair.with.outcome.status.ok()) << pair.with.outcome.status.message;
   EXPECT_TRUE(pair.without.outcome.status.ok()) << pair.without.outcome.status.message;
@@ -201,7 +201,7 @@ TEST_P(Machines, GrippersMoveAsWithoutRedundancy) {
   each_integrator(GetParam(), 1, [&](const IntegratorEntry& integrator, const Settings& settings) {
     for (const auto& [base, frames] : {std::pair(Base::hinged, Frames::quarter_turns), {Base::free, Frames::random}}) {
       SCOPED_TRACE(fmt::format("{} {} {}", integrator.name, GetParam(), base == Base::free ? "free" : "hinged"));
-      const Pair pair = compare(integrator, settings, gripper(base, frames, true), gripper(base, frames, false));
+      const Compared pair = compare(integrator, settings, gripper(base, frames, true), gripper(base, frames, false));
       EXPECT_GT(moved(pair.with, kUpperJaw, kLowerJaw), 0.02);
       EXPECT_GT(pair.with.exchanges, 0);
       ++compared;
@@ -218,7 +218,7 @@ TEST_P(Machines, LegsMoveAsWithoutRedundancy) {
         const Frames frames = tendon ? Frames::random : Frames::quarter_turns;
         SCOPED_TRACE(fmt::format("{} {} {}{}", integrator.name, GetParam(), base == Base::free ? "free" : "hinged",
                                  tendon ? ", with a tendon" : ""));
-        const Pair pair =
+        const Compared pair =
             compare(integrator, settings, leg(base, frames, tendon, true), leg(base, frames, tendon, false));
         EXPECT_GT(moved(pair.with, kHip, kFoot), 0.02);
         EXPECT_GT(pair.with.exchanges, 0);
@@ -242,8 +242,8 @@ TEST_P(Machines, LoopsOfFiveToEightLinksMoveAsWithoutRedundancy) {
       for (const bool carried : {false, true}) {
         const Frames frames = (links % 2 == 0) == carried ? Frames::quarter_turns : Frames::random;
         SCOPED_TRACE(fmt::format("{} {} {} links{}", integrator.name, GetParam(), links, carried ? ", carried" : ""));
-        const Pair pair = compare(integrator, settings, faster(loop({links, frames, carried, true})),
-                                  faster(loop({links, frames, carried, false})));
+        const Compared pair = compare(integrator, settings, faster(loop({links, frames, carried, true})),
+                                      faster(loop({links, frames, carried, false})));
         EXPECT_EQ(pair.with.exchanges > 0, carried);
         ++compared;
       }
@@ -256,7 +256,7 @@ TEST_P(Machines, SeveralLoopsOnOneBodyMoveAsWithoutRedundancy) {
   int compared = 0;
   each_integrator(GetParam(), 1, [&](const IntegratorEntry& integrator, const Settings& settings) {
     SCOPED_TRACE(fmt::format("{} {}", integrator.name, GetParam()));
-    const Pair pair = compare(integrator, settings, Carried::four_bars(3, true), Carried::four_bars(3, false));
+    const Compared pair = compare(integrator, settings, Carried::four_bars(3, true), Carried::four_bars(3, false));
     EXPECT_GT(pair.with.exchanges, 0);
     ++compared;
   });
@@ -291,7 +291,7 @@ TEST_P(Machines, EveryLinearSolverMovesACarriedFourBarAlike) {
 }
 
 const Vector3 kSkew(0.4, 1, 0.5);
-constexpr const char* kTurns = "1.5*t";
+constexpr const char* kDrivenTurn = "1.5*t";
 
 // A four-bar of revolutes whose crank swings, alone or on a body that turns about an axis skew to the hinges.
 Scene driven_four_bar(Frames frames, bool carried, bool redundant) {
@@ -306,7 +306,7 @@ Scene driven_four_bar(Frames frames, bool carried, bool redundant) {
   };
   if (carried) {
     scene.joints[0].axis = kSkew;
-    drive(scene.joints[0], kTurns);
+    drive(scene.joints[0], kDrivenTurn);
   }
   drive(scene.joints[carried ? 1 : 0], "0.5*sin(2.5*t)");
   return scene;

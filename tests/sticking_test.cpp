@@ -53,20 +53,20 @@ void by_each(const std::string& formulation, Visit&& visit) {
   }
 }
 
-struct Case {
+struct StickingCase {
   const char *wheel, *slide;              // laws that stick
   const char *steep_wheel, *steep_slide;  // in their place
   const char* of;
   double from;  // before which it does not stick
 };
-const Case kCases[] = {
+const StickingCase kCases[] = {
     {"2*sign(v) + 0.1*v", "0", "2*min(max(v/0.01, -1), 1) + 0.1*v", "0", "force 'brake'", 1.35},
     {"0", "8*sign(v) + x", "0", "8*min(max(v/0.01, -1), 1) + x", "force 'rail'", 0.14},
     {"2*(step(v) - step(-v)) + 0.1*v", "v", "2*min(max(v/0.01, -1), 1) + 0.1*v", "v", "force 'brake'", 1.35},
 };
 
 TEST_P(Sticking, EndsTheRunAndSaysWhichLaw) {
-  for (const Case& c : kCases)
+  for (const StickingCase& c : kCases)
     by_each(GetParam(), [&](const Settings& settings) {
       SCOPED_TRACE(c.of);
       const Recorded r = run(sliding(c.wheel, c.slide), settings);
