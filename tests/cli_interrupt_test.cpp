@@ -155,59 +155,6 @@ TEST_P(Interrupted, StabilityAndStudyGoOnWithWhatIsThere) {
   }
 }
 
-// Processes that work in the folder.
-std::size_t processes(const fs::path& folder) {
-  std::size_t count = 0;
-  for (const auto& entry : fs::directory_iterator("/proc")) {
-    std::error_code other;
-    count += fs::read_symlink(entry.path() / "cwd", other) == folder;
-  }
-  return count;
-}
-
-TEST_P(Interrupted, TablesFiguresAndScaleLeaveNothingHalf) {
-  for (const char* command : {"tables", "figures", "scale"}) {
-    SCOPED_TRACE(command);
-    fs::remove_all(folder() / "out");
-    const pid_t child = start({command, "--out", "out"});
-    ASSERT_TRUE(wait_for([&] { return exists("out"); }));
-    usleep(200000);
-    kill(child, SIGTERM);
-    const Result result = finish(child);
-    EXPECT_EQ(result.status, 143);
-    EXPECT_TRUE(result.err.starts_with("poinsot: interrupted by SIGTERM")) << result.err;
-    EXPECT_EQ(leftovers(), std::vector<std::string>{});
-    EXPECT_TRUE(wait_for([&] { return processes(folder()) == 0; })) << "something goes on by itself";
-  }
-}
-
-TEST_P(Interrupted, TablesAndScaleKeepWhatWasMeasuredBesideWhatStandsThere) {
-  const std::tuple<const char*, std::string, std::string> commands[] = {
-      {"tables", "tables.md", "kinematics_phases.csv"}, {"scale", "scaling.md", "scaling.csv"}};
-  for (const auto& [command, page, table] : commands) {
-    SCOPED_TRACE(command);
-    fs::remove_all(folder() / "out");
-    ASSERT_EQ(shell("mkdir out; echo whole > out/" + page), 0);
-    Result result;
-    for (int seconds = 1; !exists("out/interrupted") && seconds < 60; seconds *= 3) {  // on a machine that is busy
-      const pid_t child = start({command, "--out", "out"});
-      sleep(static_cast<unsigned>(seconds));
-      kill(child, SIGINT);
-      result = finish(child);
-      EXPECT_EQ(result.status, 130);
-    }
-    ASSERT_TRUE(exists("out/interrupted"));
-    EXPECT_EQ(result.err, "poinsot: interrupted by SIGINT; what was measured up to there is kept in out/interrupted\n");
-    EXPECT_NE(read("out/interrupted/" + page).find("Incomplete, interrupted by SIGINT"), std::string::npos);
-    const std::vector<std::string> rows = lines(read("out/interrupted/" + table));
-    EXPECT_GT(rows.size(), 7u);
-    EXPECT_EQ(std::ranges::count(rows, "# incomplete: interrupted by SIGINT"), 1);
-    EXPECT_EQ(read("out/" + page), "whole\n");
-    EXPECT_EQ(leftovers(), std::vector<std::string>{});
-    EXPECT_TRUE(wait_for([&] { return processes(folder()) == 0; })) << "something goes on by itself";
-  }
-}
-
 TEST_P(Interrupted, AnExistingFileKeepsItsModeAndIsReplacedAtOnce) {
   write("a.csv", "before");
   fs::permissions(folder() / "a.csv", fs::perms::owner_read | fs::perms::owner_write);

@@ -6,17 +6,12 @@
 #include <csignal>
 
 #include "command_line.h"
-#include "core/provenance.h"
 #include "formulations/registry.h"
-#include "integrators/settings_reader.h"
 
 namespace poinsot::test {
 namespace {
 
-class Run : public CommandLine {
- protected:
-  Run() { write("pendulum.json", kPendulum); }
-};
+class Run : public CommandLineWithPendulum {};
 
 TEST_F(Run, PrintsASummaryWithoutAnOutputFile) {
   const Result result = poinsot({"run", "pendulum.json", "--end", "0.1"});
@@ -34,154 +29,10 @@ TEST_F(Run, PrintsASummaryWithoutAnOutputFile) {
   EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
 }
 
-TEST_F(Run, OptionsThatMeanNothingToTheMethodAreTold) {
-  const auto told = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), {"run", "pendulum.json", "--end", "0.01"});
-    return poinsot(options).err;
-  };
-  for (const char* option : {"--step", "--tolerance", "--max-iterations"}) {
-    EXPECT_EQ(told({option, "1"}), fmt::format("poinsot: note: {} means nothing to integrator auto, which controls its "
-                                               "error by rtol and atol\n",
-                                               option));
-    EXPECT_EQ(told({option, "1", "--integrator", "rattle", "--step", "0.01"}).find("means nothing"), std::string::npos)
-        << option;
-  }
-  for (const char* option : {"--rtol", "--atol"}) {
-    EXPECT_EQ(
-        told({"--integrator", "rattle", option, "1e-6"}),
-        fmt::format("poinsot: note: {} means nothing to integrator rattle, whose accuracy follows from its step\n",
-                    option));
-    EXPECT_EQ(told({option, "1e-6"}), "");
-  }
-}
-
-TEST_F(Run, OptionsOfIntegratorsAreToldToMeanNothingToKinematics) {
-  const auto told = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), {"run", POINSOT_SOURCE_DIR "/models/single_pendulum_joints.json", "--analysis",
-                                     "kinematics", "--end", "0.01"});
-    const Result result = poinsot(options);
-    EXPECT_EQ(result.status, 0) << result.err;
-    return result.err;
-  };
-  const std::string before = told({});
-  const auto expect_told = [&](std::vector<std::string> options, const char* why) {
-    EXPECT_EQ(told(options),
-              fmt::format("poinsot: note: {} means nothing to kinematics, {}\n{}", options.front(), why, before));
-  };
-  expect_told({"--integrator", "rattle"}, "which finds positions and integrates nothing");
-  expect_told({"--stopping", "relative"}, "which finds positions and integrates nothing");
-  expect_told({"--retry"}, "which finds positions and integrates nothing");
-  expect_told({"--rtol", "1e-6"}, "whose accuracy is the tolerance of Newton's method");
-  EXPECT_EQ(told({"--step", "0.005", "--tolerance", "1e-6", "--jacobian", "kept", "--max-iterations", "30"}), before);
-}
-
 TEST_F(Run, QuietSaysNothing) {
   const Result result = poinsot({"run", "pendulum.json", "--end", "0.1", "--quiet"});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.out + result.err, "");
-}
-
-TEST_F(Run, TheCommandLineWinsOverTheConfiguration) {
-  write("config.json", R"({
-    // how to solve
-    "formulation": "rp", "jacobian": "simplified", "step": "1/200", "end": 0.1, "max_iterations": 30
-  })");
-  const Result result = poinsot(
-      {"run", "pendulum.json", "--config", "config.json", "--formulation", "reps", "--end", "0.2", "--out", "a.csv"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const nlohmann::json used = read_json("a.run.json")["configuration"];
-  EXPECT_EQ(used["formulation"], "reps");
-  EXPECT_EQ(used["jacobian"], "simplified");
-  EXPECT_EQ(used["step"], 0.005);
-  EXPECT_EQ(used["end"], 0.2);
-  EXPECT_EQ(used["max_iterations"], 30);
-  EXPECT_EQ(used["linear_solver"], Settings{}.linear_solver);
-}
-
-// A door on three hinges that hold it too often.
-TEST_F(Run, TheRecordSaysWhichReactionsAreNotDetermined) {
-  const std::string door = fmt::format("{}/models/door.json", POINSOT_SOURCE_DIR);
-  const Result result = poinsot({"run", door, "--end", "0.01", "--out", "door.csv", "--reactions", "r.csv"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const nlohmann::json record = read_json("door.run.json");
-  EXPECT_EQ(record["reactions_undetermined"], true);
-  EXPECT_EQ(record["undetermined_reactions"], (std::vector<std::string>{"lower", "middle", "upper"}));
-}
-
-TEST_F(Run, TheRecordSaysWhereTheNumbersComeFrom) {
-  const Result result = poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "0.1", "--out",
-                                 "a.csv", "--reactions", "r.csv"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(files(), (std::vector<std::string>{"a.csv", "a.run.json", "pendulum.json", "r.csv"}));
-  const nlohmann::json record = read_json("a.run.json");
-  EXPECT_EQ(record["status"], "ok");
-  EXPECT_EQ(record["incomplete"], false);
-  EXPECT_EQ(record["message"], "");
-  EXPECT_EQ(record["accuracy"], "not estimated");
-  EXPECT_EQ(record["reactions_undetermined"], false);
-  EXPECT_EQ(record["undetermined_reactions"], nlohmann::json::array());
-  EXPECT_GT(record["statistics"]["largest_rotation"], 0);
-  EXPECT_EQ(record["statistics"]["acceleration_error"]["index"], 3);  // steps of 1 ms are long enough for that
-  EXPECT_GT(record["statistics"]["acceleration_error"]["acceleration"], 0);
-  EXPECT_GT(record["statistics"]["acceleration_error"]["multiplier"], 0);
-  EXPECT_FALSE(record.contains("verify"));
-  EXPECT_EQ(record["scene"], nlohmann::json::parse(kPendulum, nullptr, true, true));
-  EXPECT_EQ(record["scene_file"], "pendulum.json");
-  const Provenance& origin = provenance();
-  EXPECT_EQ(record["program"]["version"], origin.version);
-  EXPECT_EQ(record["program"]["commit"], origin.commit);
-  EXPECT_EQ(record["program"]["compiler"], origin.compiler);
-  EXPECT_EQ(record["program"]["flags"], origin.flags);
-  EXPECT_EQ(record["program"]["libraries"].size(), origin.libraries.size());
-  EXPECT_EQ(record["processor"], processor());
-  for (const SettingEntry& entry : setting_entries())
-    EXPECT_EQ(record["configuration"].contains(entry.key),
-              entry.key != "assemble" && !std::holds_alternative<const MethodParameter*>(entry.member))
-        << entry.key;
-
-  const nlohmann::json& statistics = record["statistics"];
-  ASSERT_EQ(statistics["linear"].size(), 1);
-  const nlohmann::json& linear = statistics["linear"][0];
-  EXPECT_EQ(linear["solver"], "block");  // auto's pick
-  EXPECT_EQ(linear["system"], "whole");
-  EXPECT_EQ(linear["factorizations"].get<int>() + linear["refactorizations"].get<int>(), statistics["factorizations"]);
-  EXPECT_EQ(linear["solves"], statistics["solves"]);
-  EXPECT_EQ(linear["refinements"], 0);
-  EXPECT_GT(linear["condition"], 1);
-  EXPECT_FALSE(linear.contains("handed_over_by"));
-  EXPECT_EQ(statistics["steps"], 100);
-  for (const char* count : {"newton_iterations", "jacobian_evaluations", "factorizations", "solves"})
-    EXPECT_GE(statistics[count], 100) << count;
-  double sum = 0;
-  for (const char* phase : {"assembly", "factor", "solve", "other"}) {
-    EXPECT_GT(statistics["seconds"][phase], 0) << phase;
-    sum += statistics["seconds"][phase].get<double>();
-  }
-  EXPECT_NEAR(sum, statistics["seconds"]["total"].get<double>(), 1e-9);
-  EXPECT_LT(statistics["violation"]["position"], 1e-7);
-  EXPECT_TRUE(statistics["violation"].contains("velocity"));
-}
-
-TEST_F(Run, AnAbsoluteToleranceThatIsNotGivenFollowsTheRelativeOne) {
-  const auto atol = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), {"run", "pendulum.json", "--integrator", "dop853", "--out", "motion.csv"});
-    EXPECT_EQ(poinsot(options).status, 0);
-    return read_json("motion.run.json")["configuration"]["atol"].get<double>();
-  };
-  EXPECT_DOUBLE_EQ(atol({}), 1e-10);
-  EXPECT_DOUBLE_EQ(atol({"--rtol", "1e-12"}), 1e-14);
-  EXPECT_DOUBLE_EQ(atol({"--rtol", "1e-12", "--atol", "1e-6"}), 1e-6);
-}
-
-TEST_F(Run, TheRecordedConfigurationRepeatsTheRun) {
-  ASSERT_EQ(poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "2/3", "--step", "1/300",
-                     "--formulation", "rp", "--no-assemble", "--out", "a.csv"})
-                .status,
-            0);
-  write("again.json", read_json("a.run.json")["configuration"].dump());
-  const Result again = poinsot({"run", "pendulum.json", "--config", "again.json", "--out", "b.csv"});
-  ASSERT_EQ(again.status, 0) << again.err;
-  EXPECT_TRUE(read("a.csv") == read("b.csv"));
 }
 
 TEST_F(Run, TheSameInputGivesTheSameBytesWhateverRunsBesideIt) {
@@ -200,30 +51,6 @@ TEST_F(Run, TheSameInputGivesTheSameBytesWhateverRunsBesideIt) {
     for (const char* other : {"b.csv", "c.csv"}) EXPECT_TRUE(read("a.csv") == read(other)) << formulation.name;
     for (const char* other : {"rb.csv", "rc.csv"}) EXPECT_TRUE(read("ra.csv") == read(other)) << formulation.name;
   }
-}
-
-TEST_F(Run, AnIntegratorThatControlsItsErrorGivesRowsAtAnyMultiples) {
-  const Result result = poinsot(
-      {"run", "pendulum.json", "--integrator", "dopri5", "--every", "0.0015", "--end", "0.1", "--out", "a.csv"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(result.err, "");
-  const std::string rows = read("a.csv");
-  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 67 + 1);  // header, 0 to 66 times 0.0015 s, the end
-}
-
-TEST_F(Run, AStepThatDoesNotDivideTheEndIsShortenedWithANotice) {
-  const Result result = poinsot(
-      {"run", "pendulum.json", "--integrator", "implicit_euler", "--step", "0.03", "--end", "0.1", "--out", "a.csv"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(result.err,
-            "poinsot: note: end 0.1 s is not a multiple of step 0.03 s: the step is shortened to 0.025 s, so that step "
-            "4 lands "
-            "on the end exactly\n");
-  EXPECT_EQ(read_json("a.run.json")["configuration"]["step"], 0.025);
-  EXPECT_EQ(read_json("a.run.json")["notices"].size(), 1u);
-  const std::vector<std::string> rows = lines(read("a.csv"));
-  ASSERT_EQ(rows.size(), 6u);
-  EXPECT_EQ(std::stod(fields(rows.back())[0]), 0.1);
 }
 
 TEST_F(Run, ReactionsAloneHaveTheirRecordBesideThem) {

@@ -157,6 +157,12 @@ inline const char* const kPendulum = R"({
   "joints": [{"type": "revolute", "bodies": ["ground", "rod"], "point": [0, 0, 0], "axis": [1, 0, 0]}]
 })";
 
+// With it in the folder.
+class CommandLineWithPendulum : public CommandLine {
+ protected:
+  CommandLineWithPendulum() { write("pendulum.json", kPendulum); }
+};
+
 // The same rod pulled about by a telescope from (0, 3, 0), which from t = 1 on is too long for it: at t = 1 rod and
 // telescope are stretched out in line.
 inline const char* const kOverstretched = R"({

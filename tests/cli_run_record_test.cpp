@@ -1,0 +1,89 @@
+// The record beside what `poinsot run` writes: how the numbers came to be, so that they can be made again.
+#include <fmt/format.h>
+
+#include "command_line.h"
+#include "core/provenance.h"
+#include "integrators/settings_reader.h"
+
+namespace poinsot::test {
+namespace {
+
+using RunRecord = CommandLineWithPendulum;
+
+// A door on three hinges that hold it too often.
+TEST_F(RunRecord, TheRecordSaysWhichReactionsAreNotDetermined) {
+  const std::string door = fmt::format("{}/models/door.json", POINSOT_SOURCE_DIR);
+  const Result result = poinsot({"run", door, "--end", "0.01", "--out", "door.csv", "--reactions", "r.csv"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json record = read_json("door.run.json");
+  EXPECT_EQ(record["reactions_undetermined"], true);
+  EXPECT_EQ(record["undetermined_reactions"], (std::vector<std::string>{"lower", "middle", "upper"}));
+}
+
+TEST_F(RunRecord, TheRecordSaysWhereTheNumbersComeFrom) {
+  const Result result = poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "0.1", "--out",
+                                 "a.csv", "--reactions", "r.csv"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.csv", "a.run.json", "pendulum.json", "r.csv"}));
+  const nlohmann::json record = read_json("a.run.json");
+  EXPECT_EQ(record["status"], "ok");
+  EXPECT_EQ(record["incomplete"], false);
+  EXPECT_EQ(record["message"], "");
+  EXPECT_EQ(record["accuracy"], "not estimated");
+  EXPECT_EQ(record["reactions_undetermined"], false);
+  EXPECT_EQ(record["undetermined_reactions"], nlohmann::json::array());
+  EXPECT_GT(record["statistics"]["largest_rotation"], 0);
+  EXPECT_EQ(record["statistics"]["acceleration_error"]["index"], 3);  // steps of 1 ms are long enough for that
+  EXPECT_GT(record["statistics"]["acceleration_error"]["acceleration"], 0);
+  EXPECT_GT(record["statistics"]["acceleration_error"]["multiplier"], 0);
+  EXPECT_FALSE(record.contains("verify"));
+  EXPECT_EQ(record["scene"], nlohmann::json::parse(kPendulum, nullptr, true, true));
+  EXPECT_EQ(record["scene_file"], "pendulum.json");
+  const Provenance& origin = provenance();
+  EXPECT_EQ(record["program"]["version"], origin.version);
+  EXPECT_EQ(record["program"]["commit"], origin.commit);
+  EXPECT_EQ(record["program"]["compiler"], origin.compiler);
+  EXPECT_EQ(record["program"]["flags"], origin.flags);
+  EXPECT_EQ(record["program"]["libraries"].size(), origin.libraries.size());
+  EXPECT_EQ(record["processor"], processor());
+  for (const SettingEntry& entry : setting_entries())
+    EXPECT_EQ(record["configuration"].contains(entry.key),
+              entry.key != "assemble" && !std::holds_alternative<const MethodParameter*>(entry.member))
+        << entry.key;
+
+  const nlohmann::json& statistics = record["statistics"];
+  ASSERT_EQ(statistics["linear"].size(), 1);
+  const nlohmann::json& linear = statistics["linear"][0];
+  EXPECT_EQ(linear["solver"], "block");  // auto's pick
+  EXPECT_EQ(linear["system"], "whole");
+  EXPECT_EQ(linear["factorizations"].get<int>() + linear["refactorizations"].get<int>(), statistics["factorizations"]);
+  EXPECT_EQ(linear["solves"], statistics["solves"]);
+  EXPECT_EQ(linear["refinements"], 0);
+  EXPECT_GT(linear["condition"], 1);
+  EXPECT_FALSE(linear.contains("handed_over_by"));
+  EXPECT_EQ(statistics["steps"], 100);
+  for (const char* count : {"newton_iterations", "jacobian_evaluations", "factorizations", "solves"})
+    EXPECT_GE(statistics[count], 100) << count;
+  double sum = 0;
+  for (const char* phase : {"assembly", "factor", "solve", "other"}) {
+    EXPECT_GT(statistics["seconds"][phase], 0) << phase;
+    sum += statistics["seconds"][phase].get<double>();
+  }
+  EXPECT_NEAR(sum, statistics["seconds"]["total"].get<double>(), 1e-9);
+  EXPECT_LT(statistics["violation"]["position"], 1e-7);
+  EXPECT_TRUE(statistics["violation"].contains("velocity"));
+}
+
+TEST_F(RunRecord, TheRecordedConfigurationRepeatsTheRun) {
+  ASSERT_EQ(poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "2/3", "--step", "1/300",
+                     "--formulation", "rp", "--no-assemble", "--out", "a.csv"})
+                .status,
+            0);
+  write("again.json", read_json("a.run.json")["configuration"].dump());
+  const Result again = poinsot({"run", "pendulum.json", "--config", "again.json", "--out", "b.csv"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(read("a.csv") == read("b.csv"));
+}
+
+}  // namespace
+}  // namespace poinsot::test
