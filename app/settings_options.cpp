@@ -42,15 +42,26 @@ std::string SettingsOptions::first_given() const {
   return given_.empty() ? "" : option_name(*given_.front().first);
 }
 
-// Names the place in the configuration file that the value is from, if it is from there.
-void SettingsOptions::refuse_in_file(const SettingError& refused) const {
-  const bool overruled = std::ranges::any_of(given_, [&](const auto& one) { return one.first->key == refused.key(); });
-  if (config_file_.empty() || overruled) return;
+bool SettingsOptions::on_command_line(std::string_view key) const {
+  return std::ranges::any_of(given_, [&](const auto& one) { return one.first->key == key; });
+}
+
+// Names the option or the place in the configuration file that the value is from; of two that do not go together the
+// first that was given.
+void SettingsOptions::refuse_where_given(const SettingError& refused) const {
+  for (const std::string& key : refused.keys()) {
+    if (on_command_line(key)) throw InputError(fmt::format("{}: {}", option_name(*find_setting(key)), refused.why()));
+    if (!config_file_.empty()) refuse_in_file(key, refused.why());
+  }
+}
+
+// Where it stands there.
+void SettingsOptions::refuse_in_file(const std::string& key, const std::string& why) const {
   const std::string text = read_text(config_file_);
   with_lines_of_errors(text, [&] {
     const JsonDocument document(text, shown_input(config_file_));
     const JsonValue root = document.root();
-    if (const auto value = root.optional(refused.key())) value->fail(refused.why());
+    if (const auto value = root.optional(key)) value->fail(why);
   });
 }
 
@@ -62,9 +73,10 @@ Settings SettingsOptions::resolve(std::vector<std::string>& notices) const {
     if (const std::string why = why_ignored(*entry, settings); !why.empty()) notices.push_back(why);
   try {
     check_numbers(settings);
+    check_formulation(settings);
     fit_time_grid(settings, notices);
   } catch (const SettingError& refused) {
-    refuse_in_file(refused);
+    refuse_where_given(refused);
     throw;
   }
   return settings;

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,7 +23,9 @@ class SettingsOptions {
   Settings resolve(std::vector<std::string>& notices) const;
 
  private:
-  void refuse_in_file(const SettingError& refused) const;
+  bool on_command_line(std::string_view key) const;
+  void refuse_where_given(const SettingError& refused) const;
+  void refuse_in_file(const std::string& key, const std::string& why) const;
 
   std::string config_file_;
   std::vector<std::pair<const SettingEntry*, std::string>> given_;

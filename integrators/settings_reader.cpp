@@ -117,6 +117,15 @@ void check_counts(const Settings& settings) {
   if (settings.every > 0) check("every", settings.every, "output times");
 }
 
+void check_formulation(const Settings& settings) {
+  if (settings.analysis == Analysis::kinematics) return;
+  if (const auto refusal = refusal_of(integrators().require(settings.integrator), settings.formulation))
+    throw SettingError("formulation",
+                       fmt::format("integrator '{}' refuses formulation '{}': {}", settings.integrator,
+                                   refusal->formulation, refusal->why),
+                       "integrator");
+}
+
 void set_setting(const SettingEntry& entry, std::string_view text, Settings& settings) {
   const Source source{nullptr, &entry, text};
   if (is_switch(entry)) {

@@ -17,19 +17,25 @@ class JsonValue;
 // A value that is allowed by itself and not beside the others. It begins with the key.
 class SettingError : public InputError {
  public:
-  SettingError(std::string_view key, const std::string& why)
-      : InputError(std::string(key) + ": " + why), key_(key), why_(why) {}
-  const std::string& key() const { return key_; }
+  // `beside`: the other of two that do not go together; where the first was not given, it is the one that was.
+  SettingError(std::string_view key, const std::string& why, std::string_view beside = "")
+      : InputError(std::string(key) + ": " + why), keys_{std::string(key)}, why_(why) {
+    if (!beside.empty()) keys_.emplace_back(beside);
+  }
+  const std::vector<std::string>& keys() const { return keys_; }
   const std::string& why() const { return why_; }
 
  private:
-  std::string key_, why_;
+  std::vector<std::string> keys_;
+  std::string why_;
 };
 
 // Throws SettingError: the first number that is not allowed, or is a parameter of other integrators.
 void check_numbers(const Settings& settings);
 // The part of it that is about step, end and every together: no more steps and output times than can be counted.
 void check_counts(const Settings& settings);
+// Throws SettingError where the integrator takes no such formulation.
+void check_formulation(const Settings& settings);
 
 // Sets one key from text, as after an option on the command line. Throws InputError that begins with the option's name.
 void set_setting(const SettingEntry& entry, std::string_view text, Settings& settings);

@@ -40,10 +40,7 @@ const IntegratorEntry& integrator_of(const Settings& settings) {
   if (entry.analysis != Analysis::dynamics) {
     throw InputError(fmt::format("integrator '{}' is not one of dynamics", entry.name));
   }
-  if (const auto refusal = refusal_of(entry, settings.formulation)) {
-    throw InputError(
-        fmt::format("integrator '{}' refuses formulation '{}': {}", entry.name, refusal->formulation, refusal->why));
-  }
+  check_formulation(settings);
   return entry;
 }
 

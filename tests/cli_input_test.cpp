@@ -99,7 +99,7 @@ TEST_F(WrongInput, CommandLineValues) {
     refused("--spectral-radius", radius,
             fmt::format("--spectral-radius: found \"{}\", expected a number from 0 to 1", radius));
   refused("--spectral-radius", "0.5",
-          "spectral_radius: no parameter of integrator 'auto'; it is one of generalized_alpha, "
+          "--spectral-radius: no parameter of integrator 'auto'; it is one of generalized_alpha, "
           "generalized_alpha_i2");
   refused("--every", "-1", "--every: found \"-1\", expected a number, at least 0");
   refused("--max-iterations", "2.5", "--max-iterations: found \"2.5\", expected a whole number, at least 1");
@@ -170,21 +170,22 @@ TEST_F(WrongInput, AConfigurationThatDoesNotFitTogetherIsToldWithItsPlace) {
       "poinsot: config.json: /step: found 1e-300 s with end 1 s, which are 1e+300 steps, expected at most 1e15; try a "
       "larger step");
   expect_refused({"view", "pendulum.json", "--config", "config.json", "--out", "a.html", "--step", "1e-200"},
-                 "poinsot: step: found 1e-200 s with end 1 s, which are 1e+200 steps, expected at most 1e15; try a "
+                 "poinsot: --step: found 1e-200 s with end 1 s, which are 1e+200 steps, expected at most 1e15; try a "
                  "larger step");
 }
 
 TEST_F(WrongInput, TimeGrid) {
   expect_refused({"run", "pendulum.json", "--integrator", "implicit_euler", "--step", "0.01", "--every", "0.015",
                   "--out", "a.csv"},
-                 "poinsot: every: found 0.015 s, expected a multiple of the step 0.01 s; try 0.02");
+                 "poinsot: --every: found 0.015 s, expected a multiple of the step 0.01 s; try 0.02");
   expect_refused(
       {"run", "pendulum.json", "--integrator", "implicit_euler", "--step", "1e-300", "--out", "a.csv"},
-      "poinsot: step: found 1e-300 s with end 1 s, which are 1e+300 steps, expected at most 1e15; try a larger step");
+      "poinsot: --step: found 1e-300 s with end 1 s, which are 1e+300 steps, expected at most 1e15; try a larger step");
   for (const char* integrator : {"implicit_euler", "dopri5"}) {
-    expect_refused({"run", "pendulum.json", "--integrator", integrator, "--every", "1e-300", "--out", "a.csv"},
-                   "poinsot: every: found 1e-300 s with end 1 s, which are 1e+300 output times, expected at most 1e15; "
-                   "try a larger one");
+    expect_refused(
+        {"run", "pendulum.json", "--integrator", integrator, "--every", "1e-300", "--out", "a.csv"},
+        "poinsot: --every: found 1e-300 s with end 1 s, which are 1e+300 output times, expected at most 1e15; "
+        "try a larger one");
   }
   expect_refused({"run", "pendulum.json", "--integrator", "dopri5", "--end", "1e-320", "--rtol", "1e300"},
                  "poinsot: --end: found \"1e-320\", expected a number, at least 1e-292");

@@ -68,6 +68,33 @@ TEST_F(RunSettings, TheCommandLineWinsOverTheConfiguration) {
   EXPECT_EQ(used["linear_solver"], Settings{}.linear_solver);
 }
 
+// What was given is blamed, not the scene: the formulation, or the integrator where no formulation was.
+TEST_F(RunSettings, AFormulationThatTheIntegratorRefusesIsBlamedWhereItWasGiven) {
+  const std::string why =
+      " integrator 'ida' refuses formulation 'rA': it needs a vector space of coordinates with their rates as "
+      "velocities, which is rp";
+  const auto expect_refused = [&](const char* config, std::vector<std::string> options, const std::string& place,
+                                  const std::string& line) {
+    write("config.json", config);
+    options.insert(options.end(), {"--config", "config.json"});
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"run", "pendulum.json"}, {"view", "pendulum.json", "--out", "a.html"}}) {
+      std::vector<std::string> all = command;
+      all.insert(all.end(), options.begin(), options.end());
+      const Result result = poinsot(all);
+      EXPECT_EQ(result.status, 2);
+      EXPECT_EQ(result.err, "poinsot: " + place + why + line + "\n");
+    }
+    EXPECT_EQ(files(), (std::vector<std::string>{"config.json", "pendulum.json"}));
+  };
+  expect_refused("{}", {"--integrator", "ida", "--formulation", "rA"}, "--formulation:", "");
+  expect_refused("{}", {"--integrator", "ida"}, "--integrator:", "");
+  expect_refused("{\"integrator\": \"ida\",\n \"formulation\": \"rA\"}", {}, "config.json: /formulation:", " (line 2)");
+  expect_refused("{\"integrator\": \"ida\"}", {}, "config.json: /integrator:", "");
+  expect_refused("{\"formulation\": \"rA\"}", {"--integrator", "ida"}, "config.json: /formulation:", "");
+  expect_refused("{\"formulation\": \"rp\", \"integrator\": \"ida\"}", {"--formulation", "rA"}, "--formulation:", "");
+}
+
 TEST_F(RunSettings, AnAbsoluteToleranceThatIsNotGivenFollowsTheRelativeOne) {
   const auto atol = [&](std::vector<std::string> options) {
     options.insert(options.begin(), {"run", "pendulum.json", "--integrator", "dop853", "--out", "motion.csv"});

@@ -109,10 +109,7 @@ void read_variation(Study& study, const JsonValue& root, std::uint64_t seed) {
 std::string why_refused(Settings& settings, std::vector<std::string>& notices) {
   try {
     check_numbers(settings);
-    if (settings.analysis == Analysis::dynamics)
-      if (const auto refusal = refusal_of(integrators().require(settings.integrator), settings.formulation))
-        return fmt::format("integrator '{}' refuses formulation '{}': {}", settings.integrator, refusal->formulation,
-                           refusal->why);
+    check_formulation(settings);
     fit_time_grid(settings, notices);
     return "";
   } catch (const InputError& error) {
