@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/json_document.h"
 #include "core/places.h"
@@ -46,6 +47,20 @@ bool SettingsOptions::on_command_line(std::string_view key) const {
   return std::ranges::any_of(given_, [&](const auto& one) { return one.first->key == key; });
 }
 
+// A file may serve several methods, so one sentence names all its keys that this one does not look at.
+void SettingsOptions::tell_ignored_in_file(const Settings& settings, std::vector<std::string>& notices) const {
+  const JsonDocument document(read_text(config_file_), shown_input(config_file_));
+  const JsonValue root = document.root();
+  std::map<std::string, std::vector<std::string>> keys;  // by who ignores them
+  for (const SettingEntry& entry : setting_entries())
+    if (const std::string by = ignored_by(entry, settings);
+        !by.empty() && root.optional(entry.key) && !on_command_line(entry.key))
+      keys[by].push_back(fmt::format("/{}", entry.key));
+  for (const auto& [by, own] : keys)
+    notices.push_back(fmt::format("{}: {} {} nothing to {}", shown_input(config_file_), fmt::join(own, ", "),
+                                  own.size() == 1 ? "means" : "mean", by));
+}
+
 // Names the option or the place in the configuration file that the value is from; of two that do not go together the
 // first that was given.
 void SettingsOptions::refuse_where_given(const SettingError& refused) const {
@@ -70,7 +85,9 @@ Settings SettingsOptions::resolve(std::vector<std::string>& notices) const {
   if (!config_file_.empty()) read_settings(config_file_, settings);
   for (const auto& [entry, text] : given_) set_setting(*entry, text, settings);
   for (const auto& [entry, text] : given_)
-    if (const std::string why = why_ignored(*entry, settings); !why.empty()) notices.push_back(why);
+    if (const std::string by = ignored_by(*entry, settings); !by.empty())
+      notices.push_back(fmt::format("{} means nothing to {}", option_name(*entry), by));
+  if (!config_file_.empty()) tell_ignored_in_file(settings, notices);
   try {
     check_numbers(settings);
     check_formulation(settings);

@@ -24,6 +24,7 @@ class SettingsOptions {
 
  private:
   bool on_command_line(std::string_view key) const;
+  void tell_ignored_in_file(const Settings& settings, std::vector<std::string>& notices) const;
   void refuse_where_given(const SettingError& refused) const;
   void refuse_in_file(const std::string& key, const std::string& why) const;
 

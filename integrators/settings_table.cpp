@@ -88,20 +88,18 @@ bool chooses_steps(const Settings& settings) {
   return settings.analysis == Analysis::dynamics && integrator && integrator->controls_error;
 }
 
-std::string why_ignored(const SettingEntry& entry, const Settings& settings) {
+std::string ignored_by(const SettingEntry& entry, const Settings& settings) {
   if (entry.meant_for == For::all) return "";
   const bool controls_error = chooses_steps(settings);
   if (settings.analysis == Analysis::kinematics) {
     if (entry.meant_for == For::fixed_steps) return "";
-    return fmt::format("{} means nothing to kinematics, {}", option_name(entry),
-                       entry.meant_for == For::error_control ? "whose accuracy is the tolerance of Newton's method"
-                                                             : "which finds positions and integrates nothing");
+    return entry.meant_for == For::error_control ? "kinematics, whose accuracy is the tolerance of Newton's method"
+                                                 : "kinematics, which finds positions and integrates nothing";
   }
   if (entry.meant_for == For::dynamics || (entry.meant_for == For::error_control) == controls_error) return "";
-  return controls_error ? fmt::format("{} means nothing to integrator {}, which controls its error by rtol and atol",
-                                      option_name(entry), settings.integrator)
-                        : fmt::format("{} means nothing to integrator {}, whose accuracy follows from its step",
-                                      option_name(entry), settings.integrator);
+  return fmt::format(
+      "integrator {}, {}", settings.integrator,
+      controls_error ? "which controls its error by rtol and atol" : "whose accuracy follows from its step");
 }
 
 std::span<const SettingEntry> setting_entries() {

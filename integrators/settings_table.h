@@ -41,8 +41,8 @@ std::string value_text(const SettingEntry& entry, const Settings& settings);
 
 // Whether the method chooses its steps, by its error.
 bool chooses_steps(const Settings& settings);
-// Why the method does not look at a setting, as a sentence; empty where it does.
-std::string why_ignored(const SettingEntry& entry, const Settings& settings);
+// The method that does not look at a setting, and why: "kinematics, which ..."; empty where it does.
+std::string ignored_by(const SettingEntry& entry, const Settings& settings);
 // Names of the integrators that declare a parameter of this name.
 std::vector<std::string_view> integrators_with(std::string_view parameter);
 

@@ -51,6 +51,31 @@ TEST_F(RunSettings, OptionsOfIntegratorsAreToldToMeanNothingToKinematics) {
   EXPECT_EQ(told({"--step", "0.005", "--tolerance", "1e-6", "--jacobian", "kept", "--max-iterations", "30"}), before);
 }
 
+TEST_F(RunSettings, KeysOfTheConfigurationThatMeanNothingToTheMethodAreTold) {
+  const auto told = [&](const char* config, std::vector<std::string> options) {
+    write("config.json", config);
+    options.insert(options.begin(), {"run", "pendulum.json", "--config", "config.json", "--end", "0.01"});
+    const Result result = poinsot(options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.err;
+  };
+  EXPECT_EQ(told(R"({"step": 0.01, "end": 1})", {}),
+            "poinsot: note: config.json: /step means nothing to integrator auto, which controls its error by rtol and "
+            "atol\n");
+  EXPECT_EQ(told(R"({"integrator": "rattle", "step": 0.01, "rtol": 1e-6, "atol": 1e-8})", {}),
+            "poinsot: note: config.json: /rtol, /atol mean nothing to integrator rattle, whose accuracy follows from "
+            "its step\n");
+  // The command line decides what the method is, and speaks for itself.
+  EXPECT_EQ(
+      told(R"({"integrator": "rattle", "step": 0.01, "rtol": 1e-6})", {"--integrator", "dop853"}),
+      "poinsot: note: config.json: /step means nothing to integrator dop853, which controls its error by rtol and "
+      "atol\n");
+  EXPECT_EQ(told(R"({"step": 0.01})", {"--step", "0.02"}),
+            "poinsot: note: --step means nothing to integrator auto, which controls its error by rtol and atol\n");
+  EXPECT_EQ(told(R"({"step": 0.01})", {"--quiet"}), "");
+  EXPECT_EQ(told(R"({"integrator": "rattle", "step": 0.01})", {}), "");
+}
+
 TEST_F(RunSettings, TheCommandLineWinsOverTheConfiguration) {
   write("config.json", R"({
     // how to solve
