@@ -169,7 +169,8 @@ void add_run(CLI::App& app, int& status) {
       ->type_name("NAMES");
   command.add_option("--bodies", options.bodies, "whom the trajectory holds, with commas between (default all)")
       ->type_name("NAMES");
-  command.add_option("--reactions", options.reactions, "multipliers and reaction forces, CSV")->type_name("FILE.csv");
+  command.add_option("--reactions", options.reactions, "multipliers and reaction forces, CSV or .npy")
+      ->type_name("FILE.csv");
   command
       .add_option("--signals", options.signals,
                   "energies, momenta, joint coordinates, drivers' efforts, forces of springs, CSV or .npy")

@@ -72,26 +72,29 @@ std::vector<double> numbers_of(const std::string& npy, std::size_t& rows, std::s
 
 TEST_F(CliResults, AnNpyHoldsTheNumbersOfTheCsv) {
   write("pend.json", kPendulum);
-  for (const char* file : {"x.csv", "x.npy"})
-    ASSERT_EQ(poinsot({"run", "pend.json", "--end", "0.1", "--every", "0.02", "--out", file}).status, 0);
-  std::size_t rows = 0, columns = 0;
-  const std::vector<double> numbers = numbers_of(read("x.npy"), rows, columns);
-  EXPECT_EQ(rows, 6U);
-  EXPECT_EQ(columns, 20U);
-  std::string csv = read("x.csv");
-  const std::string header = first_line(csv);
-  csv.erase(0, header.size() + 1);
-  std::replace(csv.begin(), csv.end(), '\n', ',');
-  std::stringstream fields(csv);
-  std::string field;
-  for (const double x : numbers) {
-    ASSERT_TRUE(std::getline(fields, field, ','));
-    EXPECT_EQ(x, std::stod(field));
+  for (const auto& [option, width] : {std::pair{"--out", 20u}, {"--reactions", 7u}, {"--signals", 12u}}) {
+    SCOPED_TRACE(option);
+    for (const char* file : {"x.csv", "x.npy"})
+      ASSERT_EQ(poinsot({"run", "pend.json", "--end", "0.1", "--every", "0.02", option, file}).status, 0);
+    std::size_t rows = 0, columns = 0;
+    const std::vector<double> numbers = numbers_of(read("x.npy"), rows, columns);
+    EXPECT_EQ(rows, 6U);
+    EXPECT_EQ(columns, width);
+    std::string csv = read("x.csv");
+    const std::string header = first_line(csv);
+    csv.erase(0, header.size() + 1);
+    std::replace(csv.begin(), csv.end(), '\n', ',');
+    std::stringstream fields(csv);
+    std::string field;
+    for (const double x : numbers) {
+      ASSERT_TRUE(std::getline(fields, field, ','));
+      EXPECT_EQ(x, std::stod(field));
+    }
+    std::string names;
+    const nlohmann::json record = read_json("x.run.json");
+    for (const auto& name : record["columns"][option]) names += (names.empty() ? "" : ",") + name.get<std::string>();
+    EXPECT_EQ(names, header);
   }
-  std::string names;
-  const nlohmann::json record = read_json("x.run.json");
-  for (const auto& name : record["columns"]["--out"]) names += (names.empty() ? "" : ",") + name.get<std::string>();
-  EXPECT_EQ(names, header);
 }
 
 TEST_F(CliResults, ASavedStateRunsOn) {

@@ -1,40 +1,39 @@
 #include "bench/records/reactions_writer.h"
 
 namespace poinsot::records {
-using namespace study;
+namespace {
 
-ReactionsWriter::ReactionsWriter(const std::filesystem::path& file, const Model& model) : file_(file) {
-  file_.write("t");
+std::vector<std::string> columns_of(const Model& model) {
+  std::vector<std::string> names{"t"};
   for (const Group& group : model.groups) {
     if (group.kind == GroupKind::constraint)
-      file_.write_field(group.name + ".lambda");
+      names.push_back(group.name + ".lambda");
     else
-      for (const char* column : {".fx", ".fy", ".fz", ".nx", ".ny", ".nz"}) file_.write_field(group.name + column);
-    columns_ += group.kind == GroupKind::constraint ? 1 : 6;
+      for (const char* column : {".fx", ".fy", ".fz", ".nx", ".ny", ".nz"}) names.push_back(group.name + column);
   }
-  file_.write("\n");
+  return names;
 }
+
+}  // namespace
+
+ReactionsWriter::ReactionsWriter(const std::filesystem::path& file, const Model& model)
+    : table_(file, columns_of(model)) {}
 
 void ReactionsWriter::write(const Sample& sample) {
   const std::vector<Group>& groups = sample.problem.model().groups;
   if (!reactions_) reactions_.emplace(sample.problem);
   reactions_->update(sample);
-  file_.write(sample.t);
+  table_.write(sample.t);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     if (groups[g].kind == GroupKind::constraint) {
-      file_.write(",");
-      file_.write(reactions_->lambda(groups[g].first_row));
+      table_.write(reactions_->lambda(groups[g].first_row));
       continue;
     }
     Vector3 force, moment;
     reactions_->of_group(static_cast<int>(g), force, moment);
     for (const Vector3* x : {&force, &moment})
-      for (const double component : *x) {
-        file_.write(",");
-        file_.write(component);
-      }
+      for (const double component : *x) table_.write(component);
   }
-  file_.write("\n");
 }
 
 }  // namespace poinsot::records

@@ -1,10 +1,12 @@
-// The reactions as CSV: t, then for each constraint its multiplier, and for each joint and driver the force and moment
-// on body j at its point, global, N and N m.
+// The reactions as a table: t, then for each constraint its multiplier, and for each joint and driver the force and
+// moment on body j at its point, global, N and N m.
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "bench/study/output_file.h"
+#include "bench/records/number_table.h"
 #include "core/model.h"
 #include "integrators/start/reactions.h"
 
@@ -14,13 +16,12 @@ class ReactionsWriter {
  public:
   ReactionsWriter(const std::filesystem::path& file, const Model& model);  // throws InputError
 
-  std::size_t columns() const { return columns_; }
+  const std::vector<std::string>& columns() const { return table_.columns(); }
   void write(const Sample& sample);
-  study::OutputFile& file() { return file_; }
+  study::OutputFile& file() { return table_.file(); }
 
  private:
-  study::OutputFile file_;
-  std::size_t columns_ = 1;
+  NumberTable table_;
   std::optional<Reactions> reactions_;  // from the first sample on
 };
 

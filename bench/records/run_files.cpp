@@ -31,6 +31,7 @@ RunFiles::RunFiles(const Names& names, const Scene& scene, const TrajectoryConte
 ColumnsByOption RunFiles::unnamed_columns() {
   ColumnsByOption columns;
   if (trajectory_ && is_npy(trajectory_->file().target())) columns.emplace_back("--out", trajectory_->columns());
+  if (reactions_ && is_npy(reactions_->file().target())) columns.emplace_back("--reactions", reactions_->columns());
   if (signals_ && is_npy(signals_->file().target())) columns.emplace_back("--signals", signals_->columns());
   return columns;
 }
@@ -42,7 +43,7 @@ double RunFiles::longest_row() {
     if (file.is_file()) bytes += columns * (binary ? sizeof(double) : kInText);
   };
   if (trajectory_) add(trajectory_->file(), trajectory_->columns().size(), is_npy(trajectory_->file().target()));
-  if (reactions_) add(reactions_->file(), reactions_->columns(), false);
+  if (reactions_) add(reactions_->file(), reactions_->columns().size(), is_npy(reactions_->file().target()));
   if (signals_) add(signals_->file(), signals_->columns().size(), is_npy(signals_->file().target()));
   return static_cast<double>(bytes);
 }
