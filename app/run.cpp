@@ -141,7 +141,7 @@ int run(const RunOptions& options) {
 
   if (summary) {
     fmt::print("{}", run_summary(scene, settings, outcome, last));
-    fmt::print("accuracy: {}{}\n", how_accurate, options.verify ? "" : "; --verify");
+    if (last.t) fmt::print("accuracy: {}{}\n", how_accurate, options.verify ? "" : "; --verify");
   }
   if (verification && !options.quiet)
     print(text_stream({options.out, options.reactions, options.signals, options.save_state}), *verification);

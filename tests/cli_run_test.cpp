@@ -29,6 +29,29 @@ TEST_F(Run, PrintsASummaryWithoutAnOutputFile) {
   EXPECT_EQ(files(), std::vector<std::string>{"pendulum.json"});
 }
 
+// Zeros would be taken for what was computed.
+TEST_F(Run, TheSummaryOfARunThatDoesNotBeginSaysWhatIsKnown) {
+  std::string forced = kPendulum;
+  forced.insert(forced.find("\"joints\""), R"scene("forces": [{"type": "force", "body": "rod", "point": [0, 0, 0],
+    "force": ["sqrt(t - 1)", 0, 0]
+}], )scene");
+  write("forced.json", forced);
+  for (const char* integrator : {"auto", "implicit_euler"}) {
+    const Result result = poinsot({"run", "forced.json", "--integrator", integrator});
+    EXPECT_EQ(result.status, 3);
+    EXPECT_NE(result.err.find("at t = 0 s force 'force1'"), std::string::npos) << result.err;
+    EXPECT_EQ(lines(result.out).size(), 1u) << result.out;
+    EXPECT_TRUE(result.out.starts_with("pendulum: dynamics, rA, ")) << result.out;
+  }
+  // The state is known there, a step is not.
+  const Result result = poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--max-iterations", "1",
+                                 "--tolerance", "1e-14", "--no-retry"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.out.find("t = 0 s\n"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("\nno step came to its end\nblock on the whole matrix: "), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("a step"), std::string::npos) << result.out;
+}
+
 TEST_F(Run, QuietSaysNothing) {
   const Result result = poinsot({"run", "pendulum.json", "--end", "0.1", "--quiet"});
   EXPECT_EQ(result.status, 0);
