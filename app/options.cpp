@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/terminal.h"
+#include "bench/cases/ranks.h"
 #include "bench/paper/mechanisms.h"
 #include "bench/study/name_list.h"
 #include "bench/study/natural_end.h"
@@ -24,6 +26,15 @@ bool holds_models(const fs::path& directory) {
 }
 
 }  // namespace
+
+void note_repetition(const std::string& command) {
+  const cases::Launched here = cases::launched();
+  if (command != "study" && here.processes > 1 && here.rank == 0)
+    print_notice(
+        fmt::format("{} processes were started and each of them does all of `poinsot {}`: `poinsot study` alone "
+                    "divides its work among processes; start one",
+                    here.processes, command));
+}
 
 void add_scene(CLI::App& command, std::string& file, std::vector<std::string>& set) {
   command.add_option("scene", file, "scene file; -: the standard input")->required()->type_name("SCENE");

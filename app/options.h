@@ -13,13 +13,19 @@
 
 namespace poinsot::app {
 
+// Of a command that mpirun or the like started several times, as of all but `study`: says so, by one of the processes.
+void note_repetition(const std::string& command);
+
 // A subcommand that is done by `run`, whose result is the exit status, and what its options are to fill in.
 template <class Options>
 std::pair<CLI::App&, Options&> add_command(CLI::App& app, int& status, const std::string& name,
                                            const std::string& about, int (*run)(const Options& options)) {
   CLI::App* const command = app.add_subcommand(name, about);
   const auto options = std::make_shared<Options>();
-  command->callback([options, run, &status] { status = run(*options); });
+  command->callback([name, options, run, &status] {
+    if (!options->quiet) note_repetition(name);
+    status = run(*options);
+  });
   return {*command, *options};
 }
 

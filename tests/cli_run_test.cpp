@@ -52,6 +52,28 @@ TEST_F(Run, TheSummaryOfARunThatDoesNotBeginSaysWhatIsKnown) {
   EXPECT_EQ(result.out.find("a step"), std::string::npos) << result.out;
 }
 
+// Of all commands but `study`; by one of the processes, and only where there are several.
+TEST_F(Run, ProcessesThatDoTheSameAreTold) {
+  const auto told = [&](const char* rank, const char* processes, std::vector<std::string> command) {
+    setenv("OMPI_COMM_WORLD_RANK", rank, 1);
+    setenv("OMPI_COMM_WORLD_SIZE", processes, 1);
+    const Result result = poinsot(command);
+    unsetenv("OMPI_COMM_WORLD_RANK");
+    unsetenv("OMPI_COMM_WORLD_SIZE");
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.err;
+  };
+  const std::vector<std::string> run{"run", "pendulum.json", "--end", "0.01"}, check{"check", "pendulum.json"};
+  EXPECT_EQ(told("0", "4", run),
+            "poinsot: note: 4 processes were started and each of them does all of `poinsot run`: `poinsot study` alone "
+            "divides its work among processes; start one\n");
+  EXPECT_NE(told("0", "2", check).find("2 processes were started and each of them does all of `poinsot check`"),
+            std::string::npos);
+  EXPECT_EQ(told("1", "4", run), "");
+  EXPECT_EQ(told("0", "1", run), "");
+  EXPECT_EQ(told("0", "4", {"run", "pendulum.json", "--end", "0.01", "--quiet"}), "");
+}
+
 TEST_F(Run, QuietSaysNothing) {
   const Result result = poinsot({"run", "pendulum.json", "--end", "0.1", "--quiet"});
   EXPECT_EQ(result.status, 0);

@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include "core/input_error.h"
 
@@ -15,6 +16,20 @@ bool started_by_launcher() {
   for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
     if (const char* value = std::getenv(variable); value && *value) return true;
   return false;
+}
+
+Launched launched() {
+  // Of Open MPI, of MPICH and its kin, of srun with PMIx.
+  constexpr std::pair<const char*, const char*> kVariables[] = {{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
+                                                                {"PMI_RANK", "PMI_SIZE"},
+                                                                {"PMIX_RANK", "SLURM_STEP_NUM_TASKS"}};
+  const auto number = [](const char* variable) {
+    const char* const value = std::getenv(variable);
+    return value ? std::atoi(value) : 0;
+  };
+  for (const auto& [rank, processes] : kVariables)
+    if (number(processes) > 1) return {number(rank), number(processes)};
+  return {};
 }
 
 std::unique_ptr<Ranks> join_ranks() {

@@ -30,6 +30,11 @@ class Ranks {
 
 // Whether a launcher started this process beside others, or says so.
 bool started_by_launcher();
+// Its place among them, by what the launcher tells; one that tells nothing of others has started it alone.
+struct Launched {
+  int rank = 0, processes = 1;
+};
+Launched launched();
 // Joins the others. Throws InputError where the program was built without MPI or its module cannot be loaded.
 std::unique_ptr<Ranks> join_ranks();
 
