@@ -66,6 +66,22 @@ TEST_P(InterruptedMeasuring, TablesAndScaleKeepWhatWasMeasuredBesideWhatStandsTh
   }
 }
 
+// A signal that is sent to the program alone, as `kill` does, not to all that a terminal runs.
+TEST_P(InterruptedMeasuring, WhatDrawsEndsWithTheProgram) {
+  fs::create_directory(folder() / "bin");
+  write("bin/python3", "#!/bin/sh\n: > drawing\nexec sleep 90\n");
+  fs::permissions(folder() / "bin/python3", fs::perms(0755));
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", fmt::format("{}:{}", (folder() / "bin").string(), path).c_str(), 1);
+  const pid_t child = start({"figures", "solution_deltas", "--quick", "--out", "out"});
+  setenv("PATH", path.c_str(), 1);
+  ASSERT_TRUE(wait_for([&] { return exists("drawing"); }));
+  EXPECT_EQ(processes(folder()), 2u);
+  kill(child, SIGINT);
+  EXPECT_EQ(finish(child).status, 130);
+  EXPECT_TRUE(wait_for([&] { return processes(folder()) == 0; })) << "the drawing goes on by itself";
+}
+
 INSTANTIATE_TEST_SUITE_P(As, InterruptedMeasuring, testing::ValuesIn(kUsers), name_of_user);
 
 }  // namespace

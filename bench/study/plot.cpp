@@ -1,10 +1,12 @@
 #include "bench/study/plot.h"
 
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <vector>
 
 #include "bench/study/program_data.h"
@@ -31,6 +33,7 @@ Ended run_program(const std::vector<std::string>& command) {
   if (pipe(ends) != 0) return {};
   const pid_t child = fork();
   if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // interrupted with the program
     dup2(ends[1], STDOUT_FILENO);
     dup2(ends[1], STDERR_FILENO);
     close(ends[0]);
