@@ -62,6 +62,7 @@ int scale(const ScaleOptions& options) {
     failed = failed || one.failed;
   }
   const auto written = write_report(report, options.out, "scaling");
+  remove_interrupted(options.out, written);
   if (!options.quiet) fmt::print("{}\n", written.front().string());
   return failed ? kNumericsFailed : kDone;
 }

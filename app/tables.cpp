@@ -29,6 +29,7 @@ std::vector<fs::path> write_tables(const paper::MeasuredTables& measured, const 
   study::OutputFile raw(folder / "raw.csv");
   raw.write(study::csv(measured.raw, measured.report.foot));
   raw.commit();
+  written.push_back(raw.target());
   return written;
 }
 
@@ -61,7 +62,8 @@ int tables(const TablesOptions& options) {
 
   for (const std::string& failure : measured.failures) print_error(failure);
   const std::vector<fs::path> written = write_tables(measured, options.out);
-  if (!options.quiet) fmt::print("{} and {} CSV files beside it\n", written.front().string(), written.size());
+  study::remove_interrupted(options.out, written);
+  if (!options.quiet) fmt::print("{} and {} CSV files beside it\n", written.front().string(), written.size() - 1);
   return measured.failures.empty() ? kDone : kNumericsFailed;
 }
 

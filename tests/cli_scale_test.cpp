@@ -88,6 +88,25 @@ TEST_F(Scale, ExponentsFollowFromTheTable) {
   EXPECT_EQ(rows, scene_generators().size());
 }
 
+TEST_F(Scale, WhatAnInterruptionLeftIsGoneWhenAllIsMeasured) {
+  std::filesystem::create_directories(folder() / "results/interrupted");
+  for (const char* file : {"scaling.md", "scaling.csv", "growth.csv", "tables.md"})  // the last is of another command
+    write(fmt::format("results/interrupted/{}", file), "a part\n");
+  const auto measure = [&] {
+    const Result result = poinsot(
+        {"scale", "--bodies", "10", "--formulations", "rA", "--repetitions", "1", "--quiet", "--out", "results"});
+    expect_drawn(result);
+  };
+  measure();
+  EXPECT_FALSE(std::filesystem::exists(folder() / "results/interrupted/scaling.md"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "results/interrupted/scaling.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "results/interrupted/growth.csv"));
+  EXPECT_EQ(read("results/interrupted/tables.md"), "a part\n");
+  std::filesystem::rename(folder() / "results/interrupted/tables.md", folder() / "results/interrupted/scaling.md");
+  measure();
+  EXPECT_FALSE(std::filesystem::exists(folder() / "results/interrupted"));
+}
+
 TEST_F(Scale, SaysWhatItDoesNotKnow) {
   const Result result = poinsot({"scale", "--linear-solvers", "block,magic", "--out", "results"});
   EXPECT_EQ(result.status, 2);

@@ -15,6 +15,9 @@ namespace {
 using Tables = CommandLine;
 
 TEST_F(Tables, WritesThePapersTables) {
+  std::filesystem::create_directories(folder() / "results/interrupted");  // with what an interruption left
+  for (const char* file : {"tables.md", "raw.csv", "kinematics_phases.csv"})
+    write(fmt::format("results/interrupted/{}", file), "a part\n");
   const Result result = poinsot({"tables", "--quick", "--repetitions", "1", "--out", "results"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");

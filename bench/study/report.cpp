@@ -75,6 +75,13 @@ fs::path interrupted_folder(const fs::path& directory) {
   return directory / "interrupted";
 }
 
+void remove_interrupted(const fs::path& directory, const std::vector<fs::path>& whole) {
+  const fs::path folder = interrupted_folder(directory);
+  std::error_code none;  // mostly there is nothing
+  for (const fs::path& file : whole) fs::remove(folder / file.filename(), none);
+  fs::remove(folder, none);  // not where it holds anything else
+}
+
 std::string kept_in(const fs::path& directory) {
   return fmt::format("; what was measured up to there is kept in {}", directory.string());
 }

@@ -32,6 +32,9 @@ std::string csv(const Table& table, const std::vector<std::string>& foot);  // f
 void mark_incomplete(Report& report, std::string_view why);
 // Where such a report goes: a whole one may stand in the folder from before.
 std::filesystem::path interrupted_folder(const std::filesystem::path& directory);
+// Once it is measured whole, what an interruption had left of these files is removed there, and the folder with the
+// last.
+void remove_interrupted(const std::filesystem::path& directory, const std::vector<std::filesystem::path>& whole);
 // For the message that says so: "; what was measured up to there is kept in results/interrupted".
 std::string kept_in(const std::filesystem::path& directory);
 
