@@ -2,12 +2,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/progress_line.h"
 #include "app/terminal.h"
 #include "bench/paper/figure.h"
+#include "bench/study/output_file.h"
 #include "core/input_error.h"
 #include "core/projected.h"
 
@@ -15,6 +17,7 @@ namespace poinsot::app {
 using namespace study;
 using namespace paper;
 namespace {
+namespace fs = std::filesystem;
 
 constexpr const char* kText = "What the pictures show stands as numbers in CSV files beside them.";
 
@@ -57,27 +60,38 @@ bool add_figure(const FigureEntry& entry, FigureResult result, const FiguresOpti
   return failures.empty();
 }
 
+// Of what lies in the folder: of this run and of those before.
+fs::path write_index(const fs::path& folder) {
+  std::string text =
+      "# Figures\n\nEach with a page of its own: its pictures, its numbers and where they come from.\n\n";
+  for (const FigureEntry& entry : paper::figures())
+    if (fs::exists(folder / fmt::format("{}.md", entry.name)))
+      text += fmt::format("- [{0}]({0}.md): {1}\n", entry.name, entry.about);
+  OutputFile file(folder / "figures.md");
+  file.write(text);
+  file.commit();
+  return file.target();
+}
+
 int compute_figures(const FiguresOptions& options) {
   const std::vector<const FigureEntry*> entries = chosen(options.names);
   ProgressLine progress("runs", !options.quiet);
   const FigureRequest request{models_directory(options.models), options.quick, progress.callback()};
   make_folder(options.out);
 
-  Report report{"Figures", "", {}, origin_lines(-1)};
-  if (options.quick) report.foot.push_back("settings: --quick, fewer and longer steps and shorter motions");
+  std::vector<std::string> foot = origin_lines(-1);
+  if (options.quick) foot.push_back("settings: --quick, fewer and longer steps and shorter motions");
   bool failed = false;
-  std::vector<std::filesystem::path> written;
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    FigureResult result = entries[k]->compute(request);
+  fs::path index;
+  for (const FigureEntry* entry : entries) {
+    FigureResult result = entry->compute(request);
     progress.clear();
-    failed = !add_figure(*entries[k], std::move(result), options, report) || failed;
-    // After each, so that those of a run that is interrupted stand there.
-    report.text = kText;
-    if (k + 1 < entries.size())
-      report.text += fmt::format("\n\nIncomplete: {} of {} figures so far.", k + 1, entries.size());
-    written = write_report(report, options.out, "figures");
+    Report page{fmt::format("{}: {}", entry->name, entry->about), kText, {}, foot};
+    failed = !add_figure(*entry, std::move(result), options, page) || failed;
+    write_report(page, options.out, entry->name);
+    index = write_index(options.out);  // after each, so that those of a run that is interrupted stand there
   }
-  if (!options.quiet) fmt::print("{}\n", written.front().string());
+  if (!options.quiet) fmt::print("{}\n", index.string());
   return failed ? kNumericsFailed : kDone;
 }
 
@@ -93,7 +107,7 @@ void add_figures(CLI::App& app, int& status) {
   const auto [command, options] = add_command(
       app, status, "figures", "compute and draw the paper's figures, and more of their kind", compute_figures);
   command.add_option("NAME", options.names, "of a figure, see below (default: all)")->type_name("");
-  add_out_folder(command, options.out, "the Markdown page, CSV files and pictures");
+  add_out_folder(command, options.out, "Markdown pages, CSV files and pictures");
   add_models(command, options.models);
   command.add_flag("--quick", options.quick, "fewer and longer steps, shorter motions: to see that it works");
   add_quiet(command, options.quiet);

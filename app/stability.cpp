@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -36,6 +37,7 @@ int map(const StabilityOptions& options) {
   const Extent extent{options.quick, names_given("formulation", options.formulations),
                       names_given("integrator", options.integrators)};
   make_folder(options.out);
+  const std::vector<Mapped> before = maps_before(options.out, all);
   std::vector<Mapped> maps;
   {
     const Deferred deferred;
@@ -57,8 +59,15 @@ int map(const StabilityOptions& options) {
     if (const std::string none = write_plots({amplification_plot(options.quick)}, options.out, foot); why.empty())
       why = none;
   if (!why.empty()) print_error(why);
+  const bool amplification =
+      options.families.empty() ? why.empty() : fs::exists(fs::path(options.out) / "amplification.svg");
+  std::vector<Mapped> listed = before;
+  listed.insert(listed.end(), maps.begin(), maps.end());
+  std::ranges::sort(listed, {}, &Mapped::family);  // as in the list of families
+  for (const Mapped& one : before)
+    foot.push_back(fmt::format("{0}: computed before, as {0}.csv says", one.family->name));
   const std::vector<fs::path> written =
-      write_report(stability_report(maps, why.empty(), options.families.empty(), foot), options.out, "stability");
+      write_report(stability_report(listed, amplification, foot), options.out, "stability");
   const int status = why.empty() ? kDone : kNumericsFailed;
   if (options.quiet) return status;
   for (const Mapped& one : maps)

@@ -37,8 +37,8 @@ TEST_F(Figures, OrdersFollowFromThePoints) {
   std::set<std::string> found;
   for (const auto& file : std::filesystem::directory_iterator(folder() / "results"))
     found.insert(file.path().filename());
-  EXPECT_EQ(found, (std::set<std::string>{"figures.md", "order_paper.csv", "order_paper.svg", "order_paper.png",
-                                          "order_paper_table.csv"}));
+  EXPECT_EQ(found, (std::set<std::string>{"figures.md", "order_paper.md", "order_paper.csv", "order_paper.svg",
+                                          "order_paper.png", "order_paper_table.csv"}));
   EXPECT_TRUE(read("results/order_paper.png").starts_with("\x89PNG"));
   EXPECT_NE(read("results/order_paper.svg").find("four link, z of link 3: velocity"), std::string::npos);
 
@@ -73,6 +73,23 @@ TEST_F(Figures, OrdersFollowFromThePoints) {
   }
   EXPECT_EQ(rows, 3 * 2 * 3);
   EXPECT_TRUE(result.out.starts_with("order_paper\n  implicit_euler (order 1): exponents ")) << result.out;
+}
+
+TEST_F(Figures, TheIndexHoldsThoseThatWereThereBefore) {
+  expect_drawn(poinsot({"figures", "solution_deltas", "--quick", "--out", "results"}));
+  const std::string before = read("results/solution_deltas.md");
+  EXPECT_TRUE(before.starts_with("# solution_deltas: ")) << before;
+  EXPECT_NE(before.find("- settings: --quick"), std::string::npos) << before;
+  const Result result = poinsot({"figures", "order_paper", "--quick", "--out", "results"});
+  expect_drawn(result);
+  EXPECT_TRUE(result.out.ends_with("\nresults/figures.md\n")) << result.out;
+  const std::string index = read("results/figures.md");
+  const std::size_t first = index.find("\n- [order_paper](order_paper.md): the paper's order analysis"),
+                    second = index.find("\n- [solution_deltas](solution_deltas.md): the paper's double pendulum");
+  EXPECT_LT(first, second) << index;
+  EXPECT_NE(second, std::string::npos) << index;
+  EXPECT_EQ(index.find("energy"), std::string::npos) << "it is not there";
+  EXPECT_EQ(read("results/solution_deltas.md"), before);
 }
 
 TEST_F(Figures, OrdersOfErrorControlledMethods) {
@@ -122,7 +139,7 @@ TEST_F(Figures, WithoutMatplotlibTheNumbersAreThere) {
     EXPECT_FALSE(read(std::string("results/") + csv).empty());
   }
   unsetenv("PYTHONPATH");
-  EXPECT_NE(read("results/figures.md").find(sentence), std::string::npos);
+  EXPECT_NE(read("results/solution_deltas.md").find(sentence), std::string::npos);
 }
 
 TEST_F(Figures, AFamilyOfTheSuiteIsMapped) {
@@ -139,6 +156,37 @@ TEST_F(Figures, AFamilyOfTheSuiteIsMapped) {
   EXPECT_EQ(cells - 1, std::stoi(counts.back()));
   EXPECT_EQ(
       poinsot({"stability", "--family", "tides"}).err.find("poinsot: --family: found \"tides\", expected one of "), 0u);
+}
+
+TEST_F(Figures, TablesOfTheSuiteHoldFamiliesThatWereThereBefore) {
+  const auto map = [&](const char* family) {
+    expect_drawn(poinsot({"stability", "--family", family, "--quick", "--formulations", "rA", "--integrators",
+                          "rattle,dop853", "--quiet", "--out", "results"}));
+  };
+  const std::vector<std::string> tables{"stability_verdicts", "stability_use", "stability_doubtful"};
+  map("pulse");
+  std::map<std::string, std::vector<std::string>> before;
+  for (const std::string& table : tables) before[table] = lines(read("results/" + table + ".csv"));
+  EXPECT_GT(before["stability_doubtful"].size(), 6u) << "rattle goes over pulses";
+  map("far_away");
+  write("results/stiffness.csv", "t,x\n0,1\n");  // somebody's own of this name
+  map("far_away");
+  for (const std::string& table : tables) {
+    const std::vector<std::string> now = lines(read("results/" + table + ".csv"));
+    for (const std::string& line : before[table]) {
+      if (line.starts_with("all,") || line.starts_with("# ")) continue;
+      EXPECT_EQ(std::ranges::count(now, line), 1) << table << ": " << line;
+    }
+  }
+  const std::vector<std::string> verdicts = lines(read("results/stability_verdicts.csv"));
+  ASSERT_GT(verdicts.size(), 4u);
+  int sum = 0;
+  for (std::size_t k = 1; k < 3; ++k) sum += std::stoi(fields(verdicts[k]).back());
+  EXPECT_EQ(fields(verdicts[3])[0], "all");
+  EXPECT_EQ(std::stoi(fields(verdicts[3]).back()), sum);
+  const std::string page = read("results/stability.md");
+  EXPECT_EQ(page.find("](pulse.svg)") != std::string::npos, pictures_are_drawn()) << page;
+  EXPECT_NE(page.find("- pulse: computed before, as pulse.csv says\n"), std::string::npos) << page;
 }
 
 TEST_F(Figures, SaysWhatItDoesNotKnow) {

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "bench/cases/executor.h"
+#include "bench/study/csv.h"
 #include "bench/study/output_file.h"
 #include "bench/study/plot.h"
 #include "core/interruption.h"
@@ -38,6 +39,18 @@ std::vector<std::string> row_of(const Cell& cell) {
 }
 const std::vector<std::string> kHeader{"formulation", "integrator", "x",        "y",     "verdict",
                                        "status",      "error",      "promised", "steps", "message"};
+
+// What row_of() tells.
+Cell cell_of(const std::vector<std::string>& row) {
+  Cell cell;
+  cell.formulation = row[0], cell.integrator = row[1], cell.status = row[5], cell.message = row[9];
+  cell.x = study::csv_number(row[2]), cell.y = study::csv_number(row[3]);
+  for (int k = 0; k < kVerdicts; ++k)
+    if (row[4] == name(static_cast<Verdict>(k))) cell.verdict = static_cast<Verdict>(k);
+  cell.error = study::csv_number(row[6]), cell.promised = study::csv_number(row[7]);
+  cell.steps = study::csv_number(row[8]);
+  return cell;
+}
 
 // How a family's cells of one integrator divide, by formulation.
 struct Share {
@@ -101,8 +114,20 @@ int count(const std::vector<Cell>& cells, Verdict verdict) {
   return static_cast<int>(std::ranges::count(cells, verdict, &Cell::verdict));
 }
 
-std::string write_maps(const std::vector<Mapped>& maps, const fs::path& directory,
-                       const std::vector<std::string>& foot) {
+std::vector<Mapped> maps_before(const fs::path& folder, const std::vector<const Family*>& anew) {
+  std::vector<Mapped> maps;
+  for (const Family& family : families()) {
+    const fs::path file = folder / fmt::format("{}.csv", family.name);
+    if (std::ranges::find(anew, &family) != anew.end() || !fs::exists(file)) continue;
+    const study::CsvTable table = study::read_csv(file);
+    if (table.header != kHeader) continue;  // of something else that is called so
+    maps.push_back({&family, {}, fs::exists(folder / fmt::format("{}.svg", family.name))});
+    for (const auto& row : table.rows) maps.back().cells.push_back(cell_of(row));
+  }
+  return maps;
+}
+
+std::string write_maps(std::vector<Mapped>& maps, const fs::path& directory, const std::vector<std::string>& foot) {
   std::vector<study::Plot> plots;
   for (const Mapped& map : maps) {
     const Family& family = *map.family;
@@ -116,7 +141,9 @@ std::string write_maps(const std::vector<Mapped>& maps, const fs::path& director
     file.commit();
     plots.push_back({file.target(), directory / table.file});
   }
-  return study::draw("maps", plots);
+  const std::string why = study::draw("maps", plots);
+  for (Mapped& map : maps) map.drawn = why.empty();
+  return why;
 }
 
 std::vector<Table> tables(const std::vector<Mapped>& maps) {
@@ -175,14 +202,14 @@ std::vector<Table> tables(const std::vector<Mapped>& maps) {
   return {verdicts, use, doubtful};
 }
 
-study::Report stability_report(const std::vector<Mapped>& maps, bool pictures, bool amplification,
+study::Report stability_report(const std::vector<Mapped>& maps, bool amplification,
                                const std::vector<std::string>& foot) {
   study::Report report{"Where methods fail", "", tables(maps), foot};
   std::string text;
   for (const Mapped& one : maps)
     text += fmt::format("**{}**: {}.\n\n{}", one.family->title, one.family->about,
-                        pictures ? fmt::format("![{}]({}.svg)\n\n", one.family->title, one.family->name) : "");
-  if (pictures && amplification) text += "![Spectral radius](amplification.svg)\n\n";
+                        one.drawn ? fmt::format("![{}]({}.svg)\n\n", one.family->title, one.family->name) : "");
+  if (amplification) text += "![Spectral radius](amplification.svg)\n\n";
   report.tables.front().text = text + report.tables.front().text;
   return report;
 }

@@ -2,8 +2,8 @@
 // bench/study/plots/maps.py, and the tables of what they come to.
 //
 //   const auto maps = map_families(require_families({}), {.quick = true}, {.folder = "results"});
-//   const bool pictures = write_maps(maps, "results", foot).empty();
-//   study::write_report(stability_report(maps, pictures, false, foot), "results", "stability");
+//   const std::string why_not_drawn = write_maps(maps, "results", foot);
+//   study::write_report(stability_report(maps, false, foot), "results", "stability");
 #pragma once
 
 #include <filesystem>
@@ -19,6 +19,7 @@ namespace poinsot::stability {
 struct Mapped {
   const Family* family;
   std::vector<Cell> cells;  // by method
+  bool drawn = false;       // there is a picture
 };
 
 struct Mapping {
@@ -34,17 +35,21 @@ using MapsTold = std::function<void(double there, double all, const Family& fami
 std::vector<Mapped> map_families(const std::vector<const Family*>& families, const Extent& extent,
                                  const Mapping& mapping, const MapsTold& told = {});
 
+// Of all other families those that lie in the folder, of runs before, as far as write_maps() tells of a cell. Throws
+// InputError where a file of theirs is torn.
+std::vector<Mapped> maps_before(const std::filesystem::path& folder, const std::vector<const Family*>& anew);
+
 int count(const std::vector<Cell>& cells, Verdict verdict);
 
 // DIR/NAME.csv of each, .svg and .png. Returns why there are no pictures, empty where there are.
-std::string write_maps(const std::vector<Mapped>& maps, const std::filesystem::path& directory,
+std::string write_maps(std::vector<Mapped>& maps, const std::filesystem::path& directory,
                        const std::vector<std::string>& foot);
 
 // Verdicts by family; which methods are accurate over all of a family, and what the others come to; results that were
 // wrong or told, each.
 std::vector<study::Table> tables(const std::vector<Mapped>& maps);
-// These tables under what the families are and, where there are pictures, those of the maps; with the amplification's.
-study::Report stability_report(const std::vector<Mapped>& maps, bool pictures, bool amplification,
+// These tables under what the families are and their pictures; with the amplification's.
+study::Report stability_report(const std::vector<Mapped>& maps, bool amplification,
                                const std::vector<std::string>& foot);
 
 }  // namespace poinsot::stability
