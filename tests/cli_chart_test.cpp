@@ -45,6 +45,7 @@ TEST_F(Chart, MeasuresEveryCaseAndFindsTheFront) {
   ASSERT_EQ(all.size(), 1u + 2 * 5 + 2 * 5);
   EXPECT_EQ(all[0].at("status"), "reference");
   EXPECT_NE(read("out/pendulum.csv").find("# conclusion, position: 1e-2"), std::string::npos);
+  EXPECT_NE(read("out/pendulum.csv").find("; --quick, the reduced set\n"), std::string::npos);
   for (const char* quantity : {"position", "velocity", "acceleration", "multiplier"}) {
     const double floor = 10 * std::stod(all[0].at(quantity));
     EXPECT_LT(floor, 1e-10) << quantity;

@@ -57,7 +57,8 @@ TEST_F(Tables, WritesThePapersTables) {
     for (const std::string& line : lines(text)) body += !line.starts_with("#");
     EXPECT_EQ(body, count + 1) << table;
     for (const std::string& part : {std::string("# processor: "), provenance().commit, provenance().compiler,
-                                    std::string("h = 0.001 s, 0.3 s simulated, tolerance 1e-10 (kinematics)")})
+                                    std::string("h = 0.001 s, 0.3 s simulated, tolerance 1e-10 (kinematics)"),
+                                    std::string("; --quick, a tenth of the time")})
       EXPECT_NE(text.find(part), std::string::npos) << table << part;
   }
   const std::string page = read("results/tables.md");

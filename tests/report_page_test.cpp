@@ -186,6 +186,17 @@ TEST(Page, TellsWhatIsIncompleteAndWhatFailed) {
   EXPECT_THAT(studies->rows, ::testing::ElementsAre(::testing::IsSupersetOf({"sweep", "40", "7"})));
 }
 
+TEST(Page, TellsWhatWasMadeWithQuick) {
+  Results r = results();
+  EXPECT_THAT(page(r).html, Not(HasSubstr("Made with --quick")));
+  r.tables["raw"].notes.back() = "settings: s; --quick, a tenth";
+  r.tables.emplace("order_paper", study::CsvTable{"order_paper", {"x"}, {{"1"}}, {"settings: --quick, fewer steps"}});
+  r.studies.push_back({"sweep/", "sweep", "about", false, true, {}, 40, 0});
+  EXPECT_THAT(page(r).html,
+              HasSubstr("Made with --quick, in a reduced form: <a href=\"order_paper.csv\">order_paper.csv</a>, "
+                        "<a href=\"raw.csv\">raw.csv</a>, <a href=\"sweep/cases.csv\">sweep/cases.csv</a></p>"));
+}
+
 TEST(Page, NoNameBecomesMarkup) {
   const std::string html = page(results()).html;
   EXPECT_THAT(html, HasSubstr("&lt;b&gt;&amp;&quot;"));

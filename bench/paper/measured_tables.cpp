@@ -63,8 +63,9 @@ std::vector<std::string> foot(const TablesRequest& request, int core) {
   std::vector<std::string> lines = origin_lines(core);
   lines.push_back(fmt::format(
       "settings: h = {:g} s, {:g} s simulated, tolerance {:g} (kinematics) and {:g} (dynamics), integrator {}, "
-      "linear solver {} where no other is named",
-      kStep, request.end(), kKinematicsTolerance, kDynamicsTolerance, kIntegrator, request.linear_solver));
+      "linear solver {} where no other is named{}",
+      kStep, request.end(), kKinematicsTolerance, kDynamicsTolerance, kIntegrator, request.linear_solver,
+      request.quick ? "; --quick, a tenth of the time and few repetitions" : ""));
   lines.push_back(fmt::format(
       "timing: the time-stepping loop without reading and writing; a warm-up, then {} interleaved repetitions, median",
       request.runs()));

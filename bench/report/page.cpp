@@ -3,10 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
-#include <functional>
-#include <map>
 #include <set>
 
 #include "bench/report/assets.h"
@@ -14,6 +10,7 @@
 #include "bench/report/figures.h"
 #include "bench/report/findings.h"
 #include "bench/report/html.h"
+#include "bench/report/origin.h"
 #include "core/counted.h"
 
 namespace poinsot::report {
@@ -21,7 +18,6 @@ using namespace study;
 namespace {
 
 constexpr std::size_t kLong = 12;  // rows of a table that is folded
-constexpr std::array<std::string_view, 4> kOrigin{"processor", "program", "compiler", "libraries"};
 
 std::string table_block(std::string_view caption, const std::string& file, const std::vector<std::string>& header,
                         const std::vector<std::vector<std::string>>& rows, const std::string& settings) {
@@ -135,41 +131,6 @@ std::string findings_block(const Findings& found) {
   return html;
 }
 
-// Each origin once; where the folder's tables have several of a kind, of which files those are that fewer have.
-std::vector<std::pair<std::string, std::string>> origins(const Results& results) {
-  std::vector<std::pair<std::string, std::string>> all;
-  for (const std::string_view key : kOrigin) {
-    std::map<std::string, std::vector<std::string>> files;
-    for (const auto& [name, table] : results.tables)
-      if (const std::string value = table.note(key); !value.empty()) files[value].push_back(name);
-    std::vector<std::pair<std::string, std::vector<std::string>>> sorted(files.begin(), files.end());
-    std::ranges::stable_sort(sorted, std::greater(), [](const auto& one) { return one.second.size(); });
-    for (const auto& [value, of] : sorted)
-      all.emplace_back(key,
-                       &value == &sorted.front().first ? value : fmt::format("{} (of {})", value, fmt::join(of, ", ")));
-  }
-  return all;
-}
-
-std::string origin_block(const Results& results) {
-  std::string html = "<dl>\n";
-  for (const auto& [key, value] : origins(results))
-    html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape(key), escape(value));
-  if (const CsvTable* raw = results.find("raw"))
-    for (const char* key : {"settings", "timing"})
-      html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", key, escape(raw->note(key)));
-  return html + "</dl>\n";
-}
-
-// What was interrupted and holds a part of its rows: sentences and pictures are made of it like of a whole.
-std::string incomplete_block(const Results& results) {
-  std::string html;
-  for (const auto& [name, table] : results.tables)
-    if (const std::string why = table.note("incomplete"); !why.empty())
-      html += fmt::format("<li>{}: {}</li>\n", link(name + ".csv", name + ".csv"), escape(why));
-  return html.empty() ? "" : fmt::format("<p class=\"missing\">Incomplete:</p>\n<ul>{}</ul>\n", html);
-}
-
 std::string others_block(const Results& results, const std::set<std::string>& used) {
   std::string html;
   for (const auto& [name, table] : results.tables)
@@ -205,7 +166,7 @@ Page page(const Results& results) {
   const Findings found = findings(results);
   std::set<std::string> used{"raw"};
   std::string nav = "<li><a href=\"#s-findings\">Findings</a></li>", body;
-  body += section("findings", "Findings", incomplete_block(results) + findings_block(found));
+  body += section("findings", "Findings", reservations_block(results) + findings_block(found));
   for (const Section& s : contents()) {
     std::string own;
     for (const Item& item : s.items) own += item_block(results, item, used);

@@ -42,10 +42,10 @@ std::vector<std::string> chart_notes(const Scene& scene, double end, const Refer
   std::vector<std::string> lines{
       fmt::format("scene: {}, content {:016x}", printable(scene.name), content_hash(scene.source))};
   for (const std::string& line : origin_lines(core)) lines.push_back(line);
-  lines.push_back(fmt::format("settings: to t = {:g} s; {}; {}; linear solver {}; steps {}; rtol {}, atol rtol/100",
+  lines.push_back(fmt::format("settings: to t = {:g} s; {}; {}; linear solver {}; steps {}; rtol {}, atol rtol/100{}",
                               end, fmt::join(plan.formulations, " "), fmt::join(plan.integrators, " "),
                               fmt::join(plan.linear_solvers, " "), fmt::join(plan.steps, " "),
-                              fmt::join(plan.tolerances, " ")));
+                              fmt::join(plan.tolerances, " "), plan.reduced ? "; --quick, the reduced set" : ""));
   lines.push_back(fmt::format(
       "errors: largest over {} output times and all bodies or constraints, relative to the largest value of the motion "
       "(rotations: rad)",

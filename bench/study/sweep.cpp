@@ -45,6 +45,7 @@ SweepPlan SweepPlan::quick() {
   plan.longest = 0.02;
   plan.repetitions = 3;
   plan.digits = 10;
+  plan.reduced = true;
   return plan;
 }
 

@@ -47,7 +47,8 @@ struct SweepPlan {
   // kPatience times as long: what they are for is the accuracy that takes time.
   double longest = 0;  // s
   int repetitions = 0;
-  int digits = 0;  // of the reference
+  int digits = 0;        // of the reference
+  bool reduced = false;  // as quick() has it, which the results say
 
   static SweepPlan full();
   static SweepPlan quick();
