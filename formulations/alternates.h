@@ -28,10 +28,12 @@ bool alternates_change(const Configuration<F, double>& c) {
 }
 
 // A row and its alternate tell the same motion where one takes the other's place: with the one that stands now
-// satisfied, so is the one that stood.
-template <Formulation F>
-Status exchange_alternates(Configuration<F, double>& c, double t) {
-  constexpr double kLost = 1e-5;  // rad, as of rows set aside (integrators/start/over_constrained.h)
+// satisfied, so is the one that stood. `rows_off()`: by how much rows that stand are off at most, as where a tolerance
+// of kinematics leaves them.
+template <Formulation F, class RowsOff>
+Status exchange_alternates(Configuration<F, double>& c, double t, RowsOff&& rows_off) {
+  // rad, and times as far off as others: as of rows set aside (integrators/start/over_constrained.h)
+  constexpr double kLost = 1e-5, kAsOthers = 100;
   for (std::size_t k = 0; k < c.alternate_stood_in.size(); ++k) {
     const AlternateRow& row = c.elements->alternates[k];
     const char stands = alternate_stands_in(c, k);
@@ -40,7 +42,7 @@ Status exchange_alternates(Configuration<F, double>& c, double t) {
     const DP1Row& other = stands ? row.normal : row.alternate;
     const Vector3 &u = c.s[index(other.u)], &v = c.s[index(other.v)];
     const double off = std::abs(u.dot(v) - c.f[index(other.f)].f) / (u.norm() * v.norm());
-    if (stood == 2 || !(off > kLost)) {
+    if (stood == 2 || !(off > kLost) || off <= kAsOthers * rows_off()) {
       stood = stands;
       continue;
     }

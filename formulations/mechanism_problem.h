@@ -175,7 +175,12 @@ class MechanismProblem final : public Problem {
   Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double>,
                 bool& rewritten) override {
     auto& c = mechanism_.c;
-    if (Status status = exchange_alternates(c, t); !status.ok()) return status;
+    const auto rows_off = [&] {
+      Eigen::VectorXd Phi(nc_);
+      position_residual(std::span(Phi.data(), static_cast<std::size_t>(nc_)));
+      return Phi.template lpNorm<Eigen::Infinity>();
+    };
+    if (Status status = exchange_alternates(c, t, rows_off); !status.ok()) return status;
     for (std::size_t k = 0; k < c.twist.size(); ++k) {
       c.twist[k] = Torsion<F, double>::angle(c, c.elements->torsions[k], c.twist[k]);
     }

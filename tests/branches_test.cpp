@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 constexpr const char* kFormulations[] = {"rA", "rp", "reps"};
 
-// With the matrix of every iterate, and with the one of the position before.
+// With the matrix of every iterate, one that is kept, and that of the position before.
 class Branches : public ::testing::TestWithParam<const char*> {
  protected:
   static Settings kinematics(std::string_view formulation, double step, double end) {
@@ -24,7 +24,7 @@ class Branches : public ::testing::TestWithParam<const char*> {
     return settings;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Kinematics, Branches, ::testing::Values("exact", "kept"),
+INSTANTIATE_TEST_SUITE_P(Kinematics, Branches, ::testing::Values("exact", "kept", "simplified"),
                          [](const auto& jacobian) { return std::string(jacobian.param); });
 
 // A four-bar in the plane z = 0: crank from the origin, rocker from (d, 0, 0), crank at `angle` at the start and the

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "core/index.h"
@@ -100,6 +102,52 @@ TEST(KinematicSteps, that_end_off_the_position_beside_a_change_point_go_on) {
     const Recorded exact = run(of.scene, settings);
     EXPECT_LT((r.samples.back().bodies[1].r - exact.samples.back().bodies[1].r).norm(), 1e-3) << of.jacobian;
   }
+}
+
+// A four-bar whose shortest and longest bars are together as long as the others: folded flat it can go on in two ways,
+// and of these the one with the determinant's old sign is the one on which velocities jump.
+TEST(KinematicSteps, never_pass_a_change_point_unseen) {
+  const double pi = std::numbers::pi, lead = 0.9;
+  const struct {
+    double crank, coupler, rocker, d, folded;
+  } bars[] = {{0.5, 0.8, 0.9, 1.2, pi}, {0.5, 0.8, 1.2, 0.9, 0}, {0.45, 1.25, 0.7, 1.0, 0}, {0.7, 0.9, 0.7, 0.9, pi}};
+  for (const auto& of : bars)
+    for (const double side : {-1.0, 1.0}) {
+      const double angle = of.folded - lead;
+      const Vector3 A(of.crank * std::cos(angle), of.crank * std::sin(angle), 0), D(of.d, 0, 0), way = D - A;
+      const double length = way.norm(), along = (std::pow(of.coupler, 2) - std::pow(of.rocker, 2)) / (2 * length);
+      const double up = std::sqrt(std::pow(of.coupler, 2) - std::pow(along + length / 2, 2));
+      const Vector3 e = way / length, B = A + (along + length / 2) * e + side * up * Vector3(-e.y(), e.x(), 0);
+      const Scene scene = near_change_point({Vector3::Zero(), A, B, D}, "3*t");
+      for (const char* formulation : {"rA", "rp", "reps"})
+        for (const char* jacobian : {"exact", "kept", "simplified"})
+          for (const double step : {0.1, 0.05, 0.01})
+            for (const double tolerance : {1e-3, 1e-6, 1e-8}) {
+              Settings settings = kinematics(formulation, step, 0.6);
+              settings.jacobian = jacobian, settings.tolerance = tolerance;
+              const Recorded r = run(scene, settings);
+              EXPECT_EQ(r.outcome.status.failure, Failure::singular_position)
+                  << formulation << ' ' << jacobian << ' ' << step << ' ' << tolerance << ": " << of.d << ' ' << side;
+              EXPECT_NEAR(r.outcome.status.time, lead / 3, 1e-3);
+            }
+    }
+}
+
+// Where a driver's velocity jumps all others do, and the mechanism goes on as it is.
+TEST(KinematicSteps, pass_kinks_of_drivers) {
+  const Scene scene = near_change_point({{0, 0, 0}, {0.5, 0, 0}, {0.7, 0.9, 0}, {1.2, 0, 0}},
+                                        "abs(t - 0.333) + 0.5*max(0, t - 0.7771) - 3*max(0, t - 0.9) - 0.333");
+  const double angle = 0.867 + 0.5 * 0.4229 - 3 * 0.3 - 0.333;
+  for (const char* formulation : {"rA", "rp", "reps"})
+    for (const char* jacobian : {"exact", "kept", "simplified"})
+      for (const double step : {0.2, 0.05, 0.01}) {
+        Settings settings = kinematics(formulation, step, 1.2);
+        settings.jacobian = jacobian;
+        const Recorded r = run(scene, settings);
+        ASSERT_TRUE(r.outcome.status.ok()) << jacobian << step << r.outcome.status.message;
+        const Vector3 at = 0.25 * Vector3(std::cos(angle), std::sin(angle), 0);
+        EXPECT_LT((r.samples.back().bodies[0].r - at).norm(), 1e-6) << formulation << ' ' << jacobian << ' ' << step;
+      }
 }
 
 }  // namespace

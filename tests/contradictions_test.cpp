@@ -95,6 +95,18 @@ TEST_P(Contradictions, OfAnAlternateEndTheRun) {
   }
 }
 
+// What kinematics leaves of positions at the default tolerance is no contradiction.
+TEST_P(Contradictions, AreNotWhatAToleranceLeaves) {
+  for (const char* model : {"slider_crank", "four_link"})
+    for (const char* jacobian : {"exact", "kept", "simplified"})
+      for (const double step : {0.05, 0.03, 0.02, 0.013, 0.007, 0.003}) {
+        Settings settings = kinematics(GetParam(), step, 2);
+        settings.jacobian = jacobian, settings.tolerance = Settings().tolerance;
+        const Recorded r = run(scene_of(model), settings);
+        EXPECT_TRUE(r.outcome.status.ok()) << model << ' ' << jacobian << ' ' << step << r.outcome.status.message;
+      }
+}
+
 std::string blade(const char* a, const char* f) {
   return std::string(R"json(, "constraints": [{"type": "pfaffian", "name": "blade", "bodies": ["ground", "rod"],
     "a_j": )json") +

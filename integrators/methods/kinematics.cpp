@@ -28,7 +28,9 @@ constexpr double kShortest = 0x1p-24;  // part of a step
 constexpr int kMostParts = 1000;
 constexpr double kSharp = 1e-12;      // tolerance of Newton's corrections in parts, at least
 constexpr double kFarTurn = 0.1;      // rad, of a body in a part
-constexpr double kBent = 1e-4;        // of velocities
+constexpr double kBent = 1e-4;        // of velocities, over a step or part
+constexpr double kCorner = 0.02;      // of velocities that bend too much to be certain of where they lead
+constexpr double kFarBeside = 100;    // times what a part of a step can change of the share of a row
 constexpr double kSameLength = 1e-6;  // relative: what rounding of times makes of the lengths of steps
 
 // Numbers are those of the paper's equations.
@@ -135,16 +137,28 @@ class Kinematics final : public FixedSteps {
     if (comes_to_singular_position(h, t)) return false;
     const std::uint64_t here = solver_.orientation();
     if (here != orientation_ && !(rows_change_ && here == orientation_before(t))) return false;
+    if (turns_corner(h, t)) return false;
     orientation_ = here;
     rate_from_ = rate, turn_from_ = turn;
     return true;
   }
 
-  // Where velocities change over h by more than the accelerations at both ends tell they bend sharply, as beside a
-  // singular position: there those of positions beside x_, too, are others.
+  // Whether velocities change over h by more than so much of them, beside what the accelerations at both ends tell.
+  bool bend(double h, double by) const {
+    return (x_.v - v_from_ - (0.5 * h) * (a_from_ + x_.z.head(nv_))).squaredNorm() > by * by * x_.v.squaredNorm();
+  }
+
+  // Where they bend sharply, as beside a singular position, those of positions beside x_, too, are others.
   bool sharpen(double h, double t, double tolerance) {
-    const double bent = (x_.v - v_from_ - (0.5 * h) * (a_from_ + x_.z.head(nv_))).squaredNorm();
-    return !(bent > kBent * kBent * x_.v.squaredNorm()) || solver_.sharpen(t, tolerance, x_, beyond_);
+    return !bend(h, kBent) || solver_.sharpen(t, tolerance, x_, beyond_);
+  }
+
+  // Beyond a singular position one of the branches has a determinant of the same sign as before, the one on which
+  // velocities have jumped. Drivers' kinks, at which they jump as well, are where the mechanism is regular.
+  bool turns_corner(double h, double t) {
+    if (!bend(h, kCorner)) return false;
+    if (!careful_ || h > kSuspicious * step_) return true;
+    return !(most_dependent_share(t) > kFarBeside * h / step_);
   }
 
   // At a singular position itself rates are rounding over rounding, and the determinant has no sign to compare: there
@@ -154,10 +168,14 @@ class Kinematics final : public FixedSteps {
     const double speed = x_.v.norm() + v_from_.norm();
     const bool jumps = careful_ && (x_.v - v_from_).norm() > kJump * speed;
     if (!jumps && !(h * x_.z.head(nv_).norm() > kSudden * speed)) return false;
+    return most_dependent_share(t) < kSingular;
+  }
+
+  double most_dependent_share(double t) {
     const int rows = static_cast<int>(problem_.model_rows().size());
     const double share = most_dependent_row(problem_, rows, t, span(x_.q)).share;
     problem_.set_velocity(span(x_.v));
-    return share < kSingular;
+    return share;
   }
 
   // Where rows stand in for others at t: the orientation of the position before with the rows of now.
@@ -172,7 +190,7 @@ class Kinematics final : public FixedSteps {
 
   // The step to t, which as one ended as it did, in as many shorter ones as it takes to be certain of each.
   Status follow(double t, const Status& as_one) {
-    const double whole = t - x_.t;
+    const double whole = step_ = t - x_.t;
     double at = x_.t, h = 0.5 * whole;
     bool examined = false;
     careful_ = true;
@@ -263,7 +281,8 @@ class Kinematics final : public FixedSteps {
   Extrapolation extrapolation_;
   double extrapolates_for_ = 0;  // length of these steps
   double chose_at_ = -1;         // time of the part for which other rows were asked for
-  bool careful_ = false;         // in parts of a step
+  bool careful_ = false;         // in parts of a step,
+  double step_ = 0;              // of this length
   std::uint64_t orientation_ = 0;
   double rate_from_ = 0, turn_from_ = 0;  // rad/s, of counted turns and of bodies, where a step begins
 };
