@@ -12,6 +12,8 @@
 namespace poinsot::test {
 namespace {
 
+using std::numbers::pi;
+
 // A crank-rocker through the points of its hinges.
 Scene near_change_point(const std::vector<Vector3>& at, const char* angle) {
   Scene scene;
@@ -107,7 +109,7 @@ TEST(KinematicSteps, that_end_off_the_position_beside_a_change_point_go_on) {
 // A four-bar whose shortest and longest bars are together as long as the others: folded flat it can go on in two ways,
 // and of these the one with the determinant's old sign is the one on which velocities jump.
 TEST(KinematicSteps, never_pass_a_change_point_unseen) {
-  const double pi = std::numbers::pi, lead = 0.9;
+  constexpr double lead = 0.9;
   const struct {
     double crank, coupler, rocker, d, folded;
   } bars[] = {{0.5, 0.8, 0.9, 1.2, pi}, {0.5, 0.8, 1.2, 0.9, 0}, {0.45, 1.25, 0.7, 1.0, 0}, {0.7, 0.9, 0.7, 0.9, pi}};
