@@ -19,7 +19,7 @@ namespace {
 // steps leave of rows whose coefficients are large; in large blocks an exchange costs more than that.
 constexpr double kWorn = 12, kWornForControl = 4, kWornWhereAsked = 1.5, kWorst = 40;
 constexpr std::size_t kFew = 20;  // rows set aside
-constexpr double kTurnsMost = 2, kTurnsLittle = 0.75, kTurnsMore = 3;
+constexpr double kTurnsMost = 2, kTurnsLittle = 1.2, kTurnsMore = 3;
 // Long steps turn bodies by as much as wears a choice out at once: what it changed by in the last one, and somewhat
 // more, is left to it before the next, and a few times that to a new choice.
 constexpr double kSooner = 1.6, kStays = 2.5;

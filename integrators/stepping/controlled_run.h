@@ -2,14 +2,15 @@
 // jumps of the data stepped onto, pulses and what laws do on the way not stepped over, an exact end.
 //
 // A Method is a stepper with: Status attempt(to, rejections, error), trial_end(), Status complete(error),
-// Status interpolate(t), Status lead(t), interpolated(), take_back(), settle(), cross(t), state(); double
-// first_step(end, singular_for), Run's; double retry(h, rejections, usual), the step to try after so many rejections in
-// a row; double adopt(h, wanted), the step after a completed one of length h.
+// Status interpolate(t), Status lead(t), interpolated(), take_back(), settle(), bool choose_rows(), cross(t), state();
+// double first_step(end, singular_for), Run's; double retry(h, rejections, usual), the step to try after so many
+// rejections in a row; double adopt(h, wanted), the step after a completed one of length h.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/interruption.h"
 #include "integrators/stepping/course.h"
@@ -21,6 +22,8 @@ namespace poinsot {
 template <class Method, class Leave>
 Status controlled_steps(Method& method, const StepRule& rule, Course& course, const Leave& leave) {
   constexpr double kForgotten = 0.8;
+  constexpr int kAsksForRows =
+      4;  // rejections: of redundant rows the kept ones may all but depend on one another ahead
   const double end = course.end(), smallest = 16 * std::numeric_limits<double>::epsilon() * end;
   SampleTimes& times = course.times;
   StepController controller(rule);
@@ -30,7 +33,8 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
   double h = method.first_step(end, singular_for);
   double usual = singular_for > 0 ? h : 0;  // length of the steps so far, those long ago forgotten
   int rejections = 0;                       // in a row
-  bool cut = false;                         // h is what laws leave of a step
+  double asked_at = -1;
+  bool cut = false;  // h is what laws leave of a step
   while (method.state().t < end) {
     const double t = method.state().t;
     if (interruption_requested) return interrupted(t);
@@ -52,6 +56,11 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
         if (const double seen = course.switched(status, error, to, method); seen < to) {
           h = seen - t;
           cut = true;
+          continue;
+        }
+        if (rejections == kAsksForRows && std::exchange(asked_at, t) != t && method.choose_rows()) {
+          h = std::max(h, usual);
+          rejections = 0;
           continue;
         }
         h = status.ok() && std::isfinite(error) ? controller.rejected(h, error) : controller.failed(h);

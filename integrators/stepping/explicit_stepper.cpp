@@ -76,6 +76,13 @@ Status ExplicitStepper::settle() {
   return {};
 }
 
+bool ExplicitStepper::choose_rows() {
+  consistent_.stand(state_);
+  if (!problem_.choose_rows_here(state_.t, span(state_.q), span(state_.v), state_.lambda())) return false;
+  consistent_.forget_approach();
+  return true;
+}
+
 Status ExplicitStepper::cross(double t) {
   elsewhere_ = true;
   if (Status status = consistent_.cross(state_, t); !status.ok()) return status;

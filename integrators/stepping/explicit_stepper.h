@@ -59,6 +59,8 @@ class ExplicitStepper {
   void take_back();
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
   Status settle();
+  // Of redundant rows keeps others where those kept are not the best here: true where they are others now.
+  bool choose_rows();
   // Goes over a switch of the data, on to the time just past it.
   Status cross(double t);
   // Whether stability holds the steps, not accuracy.

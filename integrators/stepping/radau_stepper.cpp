@@ -51,20 +51,34 @@ Status RadauStepper::settle() {
   bool rewritten = false;
   const int revision = problem_.revision();
   if (Status status = accept(problem_, state_, rewritten); !status.ok()) return status;
-  if (rewritten) {
-    h_before_ = step_.h = 0;  // the stages are those of other coordinates or rows
-    convergence_ = 1;
-    consistent_.forget_approach();
-  }
+  if (rewritten) forget();
   if (problem_.revision() != revision) {
-    step_ = Linearized(problem_), within_ = Linearized(problem_);
-    in_solver_ = nullptr;
-    if (Status status = prepare(); !status.ok()) return status;
+    if (Status status = take_rows(); !status.ok()) return status;
   }
   if (!fast_) step_.h = 0;
   counted_ = problem_.counted_turn().rate;
   component_sizes(problem_, span(state_.q), span(state_.v), span(sizes_));
   return {};
+}
+
+bool RadauStepper::choose_rows() {
+  consistent_.stand(state_);
+  if (!problem_.choose_rows_here(state_.t, span(state_.q), span(state_.v), state_.lambda())) return false;
+  forget();
+  return take_rows().ok();
+}
+
+// The stages, which are those of other coordinates or rows.
+void RadauStepper::forget() {
+  h_before_ = step_.h = 0;
+  convergence_ = 1;
+  consistent_.forget_approach();
+}
+
+Status RadauStepper::take_rows() {
+  step_ = Linearized(problem_), within_ = Linearized(problem_);
+  in_solver_ = nullptr;
+  return prepare();
 }
 
 Status RadauStepper::cross(double t) {

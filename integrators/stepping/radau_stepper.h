@@ -59,6 +59,8 @@ class RadauStepper {
   void take_back();
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
   Status settle();
+  // Of redundant rows keeps others where those kept are not the best here: true where they are others now.
+  bool choose_rows();
   // Goes over a switch of the data, on to the time just past it.
   Status cross(double t);
 
@@ -89,6 +91,8 @@ class RadauStepper {
   static void write_filter(const Linearized& linear, double h, int nv, Sink&& entry);
   void stand_at_stage(const State& from, double to, Eigen::Index i);
   Status refresh(const State& from, double to, Linearized& linear);
+  void forget();
+  Status take_rows();
   Status stages(const State& from, double to, Linearized& linear);
   Status newton(const State& from, double to, Linearized& linear);
   void predict(const State& from, double h);
