@@ -72,7 +72,7 @@ class Kinematics final : public FixedSteps {
     const double h = t - x_.t;
     if (!(std::abs(h - extrapolates_for_) <= kSameLength * h)) extrapolate_anew(h);
     const Status status = advance(x_.t, t, settings_.tolerance);
-    if (status.ok() && certain(h, t) && sharpen(h, t, settings_.tolerance)) {
+    if (status.ok() && certain(h, t) && sharpen(t, settings_.tolerance)) {
       extrapolation_.lead(beyond_);
       return status;
     }
@@ -137,26 +137,23 @@ class Kinematics final : public FixedSteps {
     if (comes_to_singular_position(h, t)) return false;
     const std::uint64_t here = solver_.orientation();
     if (here != orientation_ && !(rows_change_ && here == orientation_before(t))) return false;
+    bent_ = (x_.v - v_from_ - (0.5 * h) * (a_from_ + x_.z.head(nv_))).squaredNorm();
     if (turns_corner(h, t)) return false;
     orientation_ = here;
     rate_from_ = rate, turn_from_ = turn;
     return true;
   }
 
-  // Whether velocities change over h by more than so much of them, beside what the accelerations at both ends tell.
-  bool bend(double h, double by) const {
-    return (x_.v - v_from_ - (0.5 * h) * (a_from_ + x_.z.head(nv_))).squaredNorm() > by * by * x_.v.squaredNorm();
-  }
-
-  // Where they bend sharply, as beside a singular position, those of positions beside x_, too, are others.
-  bool sharpen(double h, double t, double tolerance) {
-    return !bend(h, kBent) || solver_.sharpen(t, tolerance, x_, beyond_);
+  // Of a step that is certain. Where velocities bend sharply, as beside a singular position, those of positions beside
+  // x_, too, are others.
+  bool sharpen(double t, double tolerance) {
+    return !(bent_ > kBent * kBent * x_.v.squaredNorm()) || solver_.sharpen(t, tolerance, x_, beyond_);
   }
 
   // Beyond a singular position one of the branches has a determinant of the same sign as before, the one on which
   // velocities have jumped. Drivers' kinks, at which they jump as well, are where the mechanism is regular.
   bool turns_corner(double h, double t) {
-    if (!bend(h, kCorner)) return false;
+    if (!(bent_ > kCorner * kCorner * x_.v.squaredNorm())) return false;
     if (!careful_ || h > kSuspicious * step_) return true;
     return !(most_dependent_share(t) > kFarBeside * h / step_);
   }
@@ -208,7 +205,7 @@ class Kinematics final : public FixedSteps {
       h = to - at;
       const double tolerance = std::min(settings_.tolerance, std::max(1e-3 * h * v_from_.norm(), kSharp));
       status = advance(at, to, tolerance);
-      if (status.ok() && certain(h, to) && sharpen(h, to, tolerance)) {
+      if (status.ok() && certain(h, to) && sharpen(to, tolerance)) {
         at = x_.t = to;
         h *= 2;
         examined = false;
@@ -283,6 +280,8 @@ class Kinematics final : public FixedSteps {
   double chose_at_ = -1;         // time of the part for which other rows were asked for
   bool careful_ = false;         // in parts of a step,
   double step_ = 0;              // of this length
+  // By how much velocities changed in the last one beside what the accelerations at both ends tell; squared.
+  double bent_ = 0;
   std::uint64_t orientation_ = 0;
   double rate_from_ = 0, turn_from_ = 0;  // rad/s, of counted turns and of bodies, where a step begins
 };
