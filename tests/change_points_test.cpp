@@ -135,21 +135,40 @@ TEST(KinematicSteps, never_pass_a_change_point_unseen) {
     }
 }
 
-// Where a driver's velocity jumps all others do, and the mechanism goes on as it is.
+// Where a driver's velocity jumps all others do, and the mechanism goes on as it is, whatever its size.
 TEST(KinematicSteps, pass_kinks_of_drivers) {
-  const Scene scene = near_change_point({{0, 0, 0}, {0.5, 0, 0}, {0.7, 0.9, 0}, {1.2, 0, 0}},
-                                        "abs(t - 0.333) + 0.5*max(0, t - 0.7771) - 3*max(0, t - 0.9) - 0.333");
+  const char* const law = "abs(t - 0.333) + 0.5*max(0, t - 0.7771) - 3*max(0, t - 0.9) - 0.333";
   const double angle = 0.867 + 0.5 * 0.4229 - 3 * 0.3 - 0.333;
-  for (const char* formulation : {"rA", "rp", "reps"})
-    for (const char* jacobian : {"exact", "kept", "simplified"})
-      for (const double step : {0.2, 0.05, 0.01}) {
-        Settings settings = kinematics(formulation, step, 1.2);
-        settings.jacobian = jacobian;
-        const Recorded r = run(scene, settings);
-        ASSERT_TRUE(r.outcome.status.ok()) << jacobian << step << r.outcome.status.message;
-        const Vector3 at = 0.25 * Vector3(std::cos(angle), std::sin(angle), 0);
-        EXPECT_LT((r.samples.back().bodies[0].r - at).norm(), 1e-6) << formulation << ' ' << jacobian << ' ' << step;
+  for (const double size : {1e-6, 1.0, 1e6}) {
+    const Scene scene = near_change_point(
+        {Vector3::Zero(), size * Vector3(0.5, 0, 0), size * Vector3(0.7, 0.9, 0), size * Vector3(1.2, 0, 0)}, law);
+    for (const char* formulation : {"rA", "rp", "reps"})
+      for (const char* jacobian : {"exact", "kept", "simplified"})
+        for (const double step : {0.2, 0.05, 0.01}) {
+          Settings settings = kinematics(formulation, step, 1.2);
+          settings.jacobian = jacobian, settings.tolerance = 1e-10 * std::max(1.0, size);
+          const Recorded r = run(scene, settings);
+          ASSERT_TRUE(r.outcome.status.ok()) << size << jacobian << step << r.outcome.status.message;
+          const Vector3 at = 0.25 * size * Vector3(std::cos(angle), std::sin(angle), 0);
+          EXPECT_LT((r.samples.back().bodies[0].r - at).norm(), 1e-6 * size)
+              << formulation << ' ' << jacobian << ' ' << step;
+        }
+  }
+}
+
+// Velocities that are nothing but rounding jump from step to step.
+TEST(KinematicSteps, pass_where_velocities_are_rounding) {
+  for (const char* law :
+       {"sin(2*t) - 2*sin(t)*cos(t)", "exp(-((t - 1)/0.001)^2)", "0.1*(cos(t) + cos(t + 2*pi/3) + cos(t + 4*pi/3))"}) {
+    const Scene scene = near_change_point({{0, 0, 0}, {0.5, 0, 0}, {0.7, 0.9, 0}, {1.2, 0, 0}}, law);
+    for (const char* formulation : {"rA", "rp", "reps"})
+      for (const double step : {0.1, 0.01}) {
+        const Recorded r = run(scene, kinematics(formulation, step, 2));
+        ASSERT_TRUE(r.outcome.status.ok()) << law << ' ' << formulation << ' ' << step << r.outcome.status.message;
+        EXPECT_LT((r.samples.back().bodies[1].r - scene.bodies[1].position).norm(), 1e-9) << law << ' ' << formulation;
+        EXPECT_LT(r.outcome.statistics.newton_iterations, 5 * r.outcome.statistics.steps + 1000) << law;
       }
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "integrators/start/row_space.h"
 #include "integrators/stepping/singular_position.h"
 #include "integrators/stepping/vectors.h"
 
@@ -11,12 +12,16 @@ namespace {
 // A step is certain up to this ratio of the first two corrections and up to this turn of a body or a driven angle, rad.
 constexpr double kContraction = 0.25, kFullTurn = 1;
 constexpr double kCorner = 0.02;    // of velocities that bend too much to be certain of where they lead
-constexpr double kFarBeside = 100;  // times what a part of a step can change of the share of a row
+constexpr double kFarBeside = 100;  // times the way that leads to a singular position, in shares of a row
+constexpr double kNothing = 1e-12;  // of positions: velocities that change so little in a step are rounding
 
 }  // namespace
 
 KinematicCertainty::KinematicCertainty(Problem& problem, PrescribedState& solver)
-    : problem_(problem), solver_(solver), rows_change_(has_alternates(problem.model())) {}
+    : problem_(problem),
+      solver_(solver),
+      rows_change_(has_alternates(problem.model())),
+      sizes_(body_sizes(problem.model())) {}
 
 void KinematicCertainty::begin() {
   take_orientation();
@@ -30,19 +35,36 @@ bool KinematicCertainty::holds(const Beginning& from, const State& x, double h, 
   if (comes_to_singular_position(from, x, h, t, part)) return false;
   const std::uint64_t here = solver_.orientation();
   if (here != orientation_ && !(rows_change_ && here == orientation_before(from, x, t))) return false;
-  bent_ = (x.v - from.v - (0.5 * h) * (from.a + x.z.head(from.a.size()))).squaredNorm();
-  if (turns_corner(x, t, part)) return false;
+  bent_ = bend(from, x, h, part);
+  if (turns_corner(from, x, h, t)) return false;
   orientation_ = here;
   rate_from_ = rate, turn_from_ = turn;
   return true;
 }
 
+double KinematicCertainty::bend(const Beginning& from, const State& x, double h, double part) const {
+  const double bent = (x.v - from.v - (0.5 * h) * (from.a + x.z.head(from.a.size()))).squaredNorm();
+  const double step = part > 0 ? h / part : h, nothing = kNothing * std::max(1.0, x.q.lpNorm<Eigen::Infinity>());
+  return bent * step * step > nothing * nothing ? bent : 0;
+}
+
 // Beyond a singular position one of the branches has a determinant of the same sign as before, the one on which
-// velocities have jumped. Drivers' kinks, at which they jump as well, are where the mechanism is regular.
-bool KinematicCertainty::turns_corner(const State& x, double t, double part) {
+// velocities have jumped. Drivers' kinks, at which they jump as well, are where the mechanism is regular: a row would
+// have come to depend on the others, and be as far from it again, on a way that is short beside what is left of it.
+bool KinematicCertainty::turns_corner(const Beginning& from, const State& x, double h, double t) {
   if (!(bent_ > kCorner * kCorner * x.v.squaredNorm())) return false;
-  if (part == 0 || part > kSuspicious) return true;
-  return !(most_dependent_share(x, t) > kFarBeside * part);
+  const double beside = kFarBeside * way(from, x, h);
+  return beside >= 1 || !(most_dependent_share(x, t) > beside);
+}
+
+// The longest of a body over h by the velocities at either end, in its sizes.
+double KinematicCertainty::way(const Beginning& from, const State& x, double h) const {
+  double fastest = std::max(problem_.fastest_turn(), turn_from_);
+  const Eigen::Index per_body = x.v.size() / std::max<Eigen::Index>(problem_.bodies(), 1);
+  for (std::size_t b = 0; b < sizes_.size(); ++b)
+    for (const Vector* v : {&x.v, &from.v})
+      fastest = std::max(fastest, v->segment<3>(static_cast<Eigen::Index>(b) * per_body).norm() / sizes_[b]);
+  return h * fastest;
 }
 
 // At a singular position itself rates are rounding over rounding, and the determinant has no sign to compare: there

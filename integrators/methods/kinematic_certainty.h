@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 #include "integrators/integrator.h"
 #include "integrators/methods/prescribed_state.h"
@@ -48,14 +49,17 @@ class KinematicCertainty {
  private:
   static constexpr double kBent = 1e-4;
 
+  double bend(const Beginning& from, const State& x, double h, double part) const;
+  double way(const Beginning& from, const State& x, double h) const;
   bool comes_to_singular_position(const Beginning& from, const State& x, double h, double t, double part);
-  bool turns_corner(const State& x, double t, double part);
+  bool turns_corner(const Beginning& from, const State& x, double h, double t);
   double most_dependent_share(const State& x, double t);
   std::uint64_t orientation_before(const Beginning& from, const State& x, double t);
 
   Problem& problem_;
   PrescribedState& solver_;
   const bool rows_change_;
+  const std::vector<double> sizes_;  // of bodies, m
   std::uint64_t orientation_ = 0;
   double rate_from_ = 0, turn_from_ = 0;  // rad/s, of counted turns and of bodies, where it begins
   double bent_ = 0;  // by how much velocities changed beside what the accelerations at both ends tell; squared

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kBarredShare = 1e-2;  // of a row's length that is independent of the others
 constexpr double kShortest = 0x1p-24;  // part of a step
-constexpr int kMostParts = 1000;
+constexpr int kMostParts = 10'000;
 constexpr double kSharp = 1e-12;      // tolerance of Newton's corrections in parts, at least
 constexpr double kFarTurn = 0.1;      // rad, of a body in a part
 constexpr double kSameLength = 1e-6;  // relative: what rounding of times makes of the lengths of steps

@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "formulations/gradient.h"
+#include "integrators/start/row_space.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
 namespace {
 
-// G with rows of unit length.
+// G with rows of unit length, a turn counted as the way it makes at the body's size: whatever the unit of lengths.
 struct UnitRows {
   Eigen::VectorXd lengths;
   Eigen::MatrixXd inverse;  // of G Gᵀ
@@ -32,6 +33,10 @@ UnitRows unit_rows(Problem& problem, double t, std::span<const double> q) {
   Eigen::SparseMatrix<double> sparse(problem.nc(), problem.nv());
   sparse.setFromTriplets(entries.begin(), entries.end());
   Eigen::MatrixXd G = sparse;
+  const std::vector<double> sizes = body_sizes(problem.model());
+  const Eigen::Index per_body = problem.bodies() > 0 ? problem.nv() / problem.bodies() : 0;
+  for (std::size_t b = 0; b < sizes.size(); ++b)
+    G.middleCols(static_cast<Eigen::Index>(b) * per_body + 3, per_body - 3) /= sizes[b];
   const Eigen::VectorXd lengths = G.rowwise().norm();
   G.rowwise().normalize();
   Eigen::MatrixXd square = G * G.transpose();
