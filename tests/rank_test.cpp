@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/body_sizes.h"
 #include "core/index.h"
 #include "core/scene_generator.h"
 #include "integrators/start/initial_state.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "integrators/start/row_space.h"
+#include "core/body_sizes.h"
 #include "integrators/stepping/singular_position.h"
 #include "integrators/stepping/vectors.h"
 

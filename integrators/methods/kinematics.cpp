@@ -163,8 +163,10 @@ class Kinematics final : public FixedSteps {
         }
         // Towards a barred position shares go with the root of the time that is left.
         const bool barred = ends && found.barred && found.share < kBarredShare;
-        if (found.share < kSingularShare || barred || (ends && status.ok())) status = branching(at, found);
-        if (status.failure == Failure::not_converged && !as_one.ok()) status = as_one;
+        // Where velocities grow without bound by themselves parts are never short enough.
+        const bool grows = ends && status.ok() && found.share > kBarredShare && !as_one.ok();
+        if (found.share < kSingularShare || barred || (ends && status.ok() && !grows)) status = branching(at, found);
+        if (grows || (status.failure == Failure::not_converged && !as_one.ok())) status = as_one;
         if (ends || found.share < kSingularShare) break;
       }
     }

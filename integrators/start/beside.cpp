@@ -6,6 +6,7 @@
 #include <random>
 #include <utility>
 
+#include "core/body_sizes.h"
 #include "core/index.h"
 #include "formulations/registry.h"
 #include "integrators/settings.h"

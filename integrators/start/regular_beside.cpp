@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include "core/body_sizes.h"
 #include "core/index.h"
 #include "core/so3.h"
 #include "formulations/registry.h"

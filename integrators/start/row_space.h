@@ -30,9 +30,6 @@ inline constexpr double kVelocityRow = 32;
 // The numbers below `count` that are not among `some`; both ascending.
 std::vector<int> all_but(std::size_t count, const std::vector<int>& some);
 
-// m, by body: the longest arm of a row on it; bodies without one, or all but, take that of bodies they share rows with.
-std::vector<double> body_sizes(const Model& model);
-
 class RowSpace {
  public:
   // `rows` of the model, ascending.

@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/body_sizes.h"
 #include "formulations/gradient.h"
-#include "integrators/start/row_space.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {

@@ -1,0 +1,42 @@
+#include "core/body_sizes.h"
+
+#include <algorithm>
+
+#include "core/index.h"
+
+namespace poinsot {
+
+std::vector<double> body_sizes(const Model& model) {
+  // Of what lies beside it: less is what a few digits leave of a point that was meant to be the centre, or the other.
+  constexpr double kPoint = 1e-5, kSamePoint = 1e-4;
+  std::vector<double> arms(model.bodies.size(), 0.0);
+  const auto widen = [&](int body, double arm) {
+    if (body != kGround) arms[index(body)] = std::max(arms[index(body)], arm);
+  };
+  const auto place = [&](int body, const Vector3& s) -> Vector3 {
+    if (body == kGround) return s;
+    return model.bodies[index(body)].position + model.bodies[index(body)].orientation * s;
+  };
+  for (const Row& row : model.rows) {
+    if (row.type == RowType::DP1 || row.type == RowType::angle) continue;  // without points
+    widen(row.i, row.s_i.norm());
+    widen(row.j, row.s_j.norm());
+    const double d = row.type == RowType::DP2 ? (place(row.j, row.s_j) - place(row.i, row.s_i)).norm() : 0;
+    if (d > kSamePoint * std::max(row.s_i.norm(), row.s_j.norm())) widen(row.i, d);
+  }
+  std::vector<double> sizes = arms;
+  for (const Row& row : model.rows) {  // a body that turns about its centre
+    if (row.i == kGround || row.j == kGround) continue;
+    const std::size_t i = index(row.i), j = index(row.j);
+    if (arms[i] <= kPoint * arms[j]) sizes[i] = std::max(sizes[i], arms[j]);
+    if (arms[j] <= kPoint * arms[i]) sizes[j] = std::max(sizes[j], arms[i]);
+    if (sizes[i] == 0) sizes[i] = sizes[j];
+    if (sizes[j] == 0) sizes[j] = sizes[i];
+  }
+  const double largest = sizes.empty() ? 0 : *std::ranges::max_element(sizes);
+  for (double& size : sizes)
+    if (size == 0) size = largest > 0 ? largest : 1;
+  return sizes;
+}
+
+}  // namespace poinsot
