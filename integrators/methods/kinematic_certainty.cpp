@@ -44,15 +44,17 @@ bool KinematicCertainty::holds(const Beginning& from, const State& x, double h, 
 
 double KinematicCertainty::bend(const Beginning& from, const State& x, double h, double part) const {
   const double bent = (x.v - from.v - (0.5 * h) * (from.a + x.z.head(from.a.size()))).squaredNorm();
+  const double relative = bent / x.v.squaredNorm();
+  if (!(relative > kBent * kBent)) return 0;
   const double step = part > 0 ? h / part : h, nothing = kNothing * std::max(1.0, x.q.lpNorm<Eigen::Infinity>());
-  return bent * step * step > nothing * nothing ? bent : 0;
+  return bent * step * step > nothing * nothing ? relative : 0;
 }
 
 // Beyond a singular position one of the branches has a determinant of the same sign as before, the one on which
 // velocities have jumped. Drivers' kinks, at which they jump as well, are where the mechanism is regular: a row would
 // have come to depend on the others, and be as far from it again, on a way that is short beside what is left of it.
 bool KinematicCertainty::turns_corner(const Beginning& from, const State& x, double h, double t) {
-  if (!(bent_ > kCorner * kCorner * x.v.squaredNorm())) return false;
+  if (!(bent_ > kCorner * kCorner)) return false;
   const double beside = kFarBeside * way(from, x, h);
   return beside >= 1 || !(most_dependent_share(x, t) > beside);
 }
@@ -72,9 +74,11 @@ double KinematicCertainty::way(const Beginning& from, const State& x, double h) 
 bool KinematicCertainty::comes_to_singular_position(const Beginning& from, const State& x, double h, double t,
                                                     double part) {
   constexpr double kSudden = 100, kJump = 0.5;
+  const auto a = x.z.head(from.a.size());
+  if (part == 0 && !(h * h * a.squaredNorm() > kSudden * kSudden * x.v.squaredNorm())) return false;
   const double speed = x.v.norm() + from.v.norm();
   const bool jumps = part > 0 && (x.v - from.v).norm() > kJump * speed;
-  if (!jumps && !(h * x.z.head(from.a.size()).norm() > kSudden * speed)) return false;
+  if (!jumps && !(h * a.norm() > kSudden * speed)) return false;
   return most_dependent_share(x, t) < kSingularShare;
 }
 

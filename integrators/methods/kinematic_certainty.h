@@ -44,7 +44,7 @@ class KinematicCertainty {
   bool holds(const Beginning& from, const State& x, double h, double t, double part);
   // Whether velocities bend sharply over what was certain last, as beside a singular position: there those of positions
   // beside x, too, are others.
-  bool bends(const State& x) const { return bent_ > kBent * kBent * x.v.squaredNorm(); }
+  bool bends() const { return bent_ > 0; }
 
  private:
   static constexpr double kBent = 1e-4;
@@ -62,7 +62,9 @@ class KinematicCertainty {
   const std::vector<double> sizes_;  // of bodies, m
   std::uint64_t orientation_ = 0;
   double rate_from_ = 0, turn_from_ = 0;  // rad/s, of counted turns and of bodies, where it begins
-  double bent_ = 0;  // by how much velocities changed beside what the accelerations at both ends tell; squared
+  // By what part of themselves velocities changed beside what the accelerations at both ends tell, squared; 0 up to
+  // kBent.
+  double bent_ = 0;
 };
 
 }  // namespace poinsot

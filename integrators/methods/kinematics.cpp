@@ -121,7 +121,7 @@ class Kinematics final : public FixedSteps {
   // Whether x_ at t, over a time h, is where the motion leads, and found as sharply as velocities ask for.
   bool certain(double h, double t, double tolerance, double part = 0) {
     return certainty_.holds(from_, x_, h, t, part) &&
-           (!certainty_.bends(x_) || solver_.sharpen(t, tolerance, x_, beyond_));
+           (!certainty_.bends() || solver_.sharpen(t, tolerance, x_, beyond_));
   }
 
   // The step to t, which as one ended as it did, in as many shorter ones as it takes to be certain of each.

@@ -93,7 +93,8 @@ Status PrescribedState::find_position(double t, double tolerance, bool carefully
     if (k == 0) {
       // Beside a singular position corrections are as large as can be, and what they shrink by says nothing.
       first = correction;
-      if (first > std::sqrt(problem_.bodies()) * std::max(1.0, x.q.cwiseAbs().maxCoeff())) contraction_ = INFINITY;
+      if (first > 1 && first > std::sqrt(problem_.bodies()) * std::max(1.0, x.q.cwiseAbs().maxCoeff()))
+        contraction_ = INFINITY;
       if (first > kFarOff && largest_turn() > kFarOff) contraction_ = INFINITY;
     }
     if (k == 1 && first > kStandsStill) contraction_ = std::max(contraction_, correction / first);
