@@ -77,17 +77,19 @@ TEST(Findings, AreMadeOfTheNumbers) {
 
 // One run, or two, do not know how much runs scatter.
 TEST(Findings, OfFewRepetitionsDecideNothing) {
-  for (const auto& [repetitions, slower, verdict] :
-       {std::tuple{"1", "0", "leave it open"}, {"2", "0", "leave it open"}, {"5", "1", "It holds"}}) {
+  struct Measured {
+    double repetitions;
+    const char *slower, *verdict;
+  };
+  for (const Measured& m : {Measured{1, "0", "leave it open"}, {2, "0", "leave it open"}, {5, "1", "It holds"}}) {
     Results r = results();
-    std::erase_if(r.tables["raw"].rows, [&](const auto& row) {
-      return row[2] == "reps" || study::csv_number(row[6]) > study::csv_number(repetitions);
-    });
+    std::erase_if(r.tables["raw"].rows,
+                  [&](const auto& row) { return row[2] == "reps" || study::csv_number(row[6]) > m.repetitions; });
     const Findings found = findings(r);
-    EXPECT_THAT(found.all[0].sentences[0], HasSubstr(fmt::format("slower beyond the noise in {} of them", slower)));
+    EXPECT_THAT(found.all[0].sentences[0], HasSubstr(fmt::format("slower beyond the noise in {} of them", m.slower)));
     const auto claims = std::ranges::find(found.all, "claims", &Finding::id);
     ASSERT_NE(claims, found.all.end());
-    EXPECT_THAT(claims->sentences[0], HasSubstr(verdict)) << repetitions;
+    EXPECT_THAT(claims->sentences[0], HasSubstr(m.verdict)) << m.repetitions;
   }
 }
 
