@@ -37,7 +37,9 @@ int map(const StabilityOptions& options) {
   const Extent extent{options.quick, names_given("formulation", options.formulations),
                       names_given("integrator", options.integrators)};
   make_folder(options.out);
-  const std::vector<Mapped> before = maps_before(options.out, all);
+  std::vector<std::string> notices;
+  const std::vector<Mapped> before = maps_before(options.out, all, notices);
+  if (!options.quiet) std::ranges::for_each(notices, print_notice);
   std::vector<Mapped> maps;
   {
     const Deferred deferred;

@@ -187,6 +187,23 @@ TEST_F(Figures, TablesOfTheSuiteHoldFamiliesThatWereThereBefore) {
   const std::string page = read("results/stability.md");
   EXPECT_EQ(page.find("](pulse.svg)") != std::string::npos, pictures_are_drawn()) << page;
   EXPECT_NE(page.find("- pulse: computed before, as pulse.csv says\n"), std::string::npos) << page;
+
+  // Torn ones are no reason to compute nothing.
+  const std::string whole = read("results/pulse.csv");
+  const std::pair<std::string, std::string> damaged[] = {
+      {whole.substr(0, whole.rfind("\nrA,") + 6), "fields, expected 10"},
+      {"", "found no header, expected a table"},
+      {whole.substr(0, whole.find('\n')) + "\nrA,rattle,1,1,sound,ok,0,0,1,\n", "found \"sound\", expected a verdict"}};
+  for (const auto& [text, why] : damaged) {
+    write("results/pulse.csv", text);
+    const Result result = poinsot({"stability", "--family", "far_away", "--quick", "--formulations", "rA",
+                                   "--integrators", "rattle,dop853", "--out", "results"});
+    EXPECT_EQ(result.err.find("poinsot: note: left out of stability.md: results/pulse.csv: "), 0u) << result.err;
+    EXPECT_NE(result.err.find(why + "; delete the file, or have it written anew\n"), std::string::npos) << result.err;
+    EXPECT_EQ(read("results/stability.md").find("pulse"), std::string::npos);
+  }
+  map("pulse");
+  EXPECT_EQ(read("results/pulse.csv"), whole);
 }
 
 TEST_F(Figures, SaysWhatItDoesNotKnow) {

@@ -38,8 +38,9 @@ TEST_F(Report, RefusesWhatIsNoFolderOfResults) {
   };
   refused({"report", "nowhere"}, "nowhere: expected a folder of results");
   refused({"report", "none"}, "none: found no CSV file, expected what `poinsot tables --out none` writes");
-  refused({"report", "r"}, "r/bad.csv: line 2: found 1 fields, expected 2");
-  refused({"compare", "r", "none"}, "r/bad.csv: line 2: found 1 fields, expected 2");
+  refused({"report", "r"}, "r/bad.csv: line 2: found 1 fields, expected 2; delete the file, or have it written anew");
+  refused({"compare", "r", "none"},
+          "r/bad.csv: line 2: found 1 fields, expected 2; delete the file, or have it written anew");
   std::filesystem::remove(folder() / "r/bad.csv");
   refused({"report", "r", "--out", "r/constraint_counts.csv"},
           "r/constraint_counts.csv: --out would overwrite a table of the folder; choose another name or folder for the "

@@ -12,6 +12,7 @@
 #include "bench/study/csv.h"
 #include "bench/study/output_file.h"
 #include "bench/study/plot.h"
+#include "core/input_error.h"
 #include "core/interruption.h"
 #include "formulations/registry.h"
 #include "integrators/integrator.h"
@@ -41,12 +42,16 @@ const std::vector<std::string> kHeader{"formulation", "integrator", "x",        
                                        "status",      "error",      "promised", "steps", "message"};
 
 // What row_of() tells.
-Cell cell_of(const std::vector<std::string>& row) {
+Cell cell_of(const std::vector<std::string>& row, const fs::path& file) {
+  int verdict = 0;
+  while (verdict < kVerdicts && row[4] != name(static_cast<Verdict>(verdict))) ++verdict;
+  if (verdict == kVerdicts)
+    throw InputError(
+        fmt::format("{}: found \"{}\", expected a verdict; {}", file.string(), row[4], study::kTornRemedy));
   Cell cell;
+  cell.verdict = static_cast<Verdict>(verdict);
   cell.formulation = row[0], cell.integrator = row[1], cell.status = row[5], cell.message = row[9];
   cell.x = study::csv_number(row[2]), cell.y = study::csv_number(row[3]);
-  for (int k = 0; k < kVerdicts; ++k)
-    if (row[4] == name(static_cast<Verdict>(k))) cell.verdict = static_cast<Verdict>(k);
   cell.error = study::csv_number(row[6]), cell.promised = study::csv_number(row[7]);
   cell.steps = study::csv_number(row[8]);
   return cell;
@@ -114,15 +119,21 @@ int count(const std::vector<Cell>& cells, Verdict verdict) {
   return static_cast<int>(std::ranges::count(cells, verdict, &Cell::verdict));
 }
 
-std::vector<Mapped> maps_before(const fs::path& folder, const std::vector<const Family*>& anew) {
+std::vector<Mapped> maps_before(const fs::path& folder, const std::vector<const Family*>& anew,
+                                std::vector<std::string>& notices) {
   std::vector<Mapped> maps;
   for (const Family& family : families()) {
     const fs::path file = folder / fmt::format("{}.csv", family.name);
     if (std::ranges::find(anew, &family) != anew.end() || !fs::exists(file)) continue;
-    const study::CsvTable table = study::read_csv(file);
-    if (table.header != kHeader) continue;  // of something else that is called so
-    maps.push_back({&family, {}, fs::exists(folder / fmt::format("{}.svg", family.name))});
-    for (const auto& row : table.rows) maps.back().cells.push_back(cell_of(row));
+    try {
+      const study::CsvTable table = study::read_csv(file);
+      if (table.header != kHeader) continue;  // of something else that is called so
+      Mapped map{&family, {}, fs::exists(folder / fmt::format("{}.svg", family.name))};
+      for (const auto& row : table.rows) map.cells.push_back(cell_of(row, file));
+      maps.push_back(std::move(map));
+    } catch (const InputError& torn) {
+      notices.push_back(fmt::format("left out of stability.md: {}", torn.what()));
+    }
   }
   return maps;
 }

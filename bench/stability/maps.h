@@ -35,9 +35,10 @@ using MapsTold = std::function<void(double there, double all, const Family& fami
 std::vector<Mapped> map_families(const std::vector<const Family*>& families, const Extent& extent,
                                  const Mapping& mapping, const MapsTold& told = {});
 
-// Of all other families those that lie in the folder, of runs before, as far as write_maps() tells of a cell. Throws
-// InputError where a file of theirs is torn.
-std::vector<Mapped> maps_before(const std::filesystem::path& folder, const std::vector<const Family*>& anew);
+// Of all other families those that lie in the folder, of runs before, as far as write_maps() tells of a cell. What is
+// torn is left out, and told.
+std::vector<Mapped> maps_before(const std::filesystem::path& folder, const std::vector<const Family*>& anew,
+                                std::vector<std::string>& notices);
 
 int count(const std::vector<Cell>& cells, Verdict verdict);
 

@@ -76,11 +76,12 @@ CsvTable read_csv(const std::filesystem::path& file) {
     } else if (!line.empty()) {
       table.rows.push_back(csv_fields(line));
       if (table.rows.back().size() != table.header.size())
-        throw InputError(fmt::format("{}: line {}: found {} fields, expected {}", file.string(), number,
-                                     table.rows.back().size(), table.header.size()));
+        throw InputError(fmt::format("{}: line {}: found {} fields, expected {}; {}", file.string(), number,
+                                     table.rows.back().size(), table.header.size(), kTornRemedy));
     }
   }
-  if (table.header.empty()) throw InputError(fmt::format("{}: found no header, expected a table", file.string()));
+  if (table.header.empty())
+    throw InputError(fmt::format("{}: found no header, expected a table; {}", file.string(), kTornRemedy));
   return table;
 }
 

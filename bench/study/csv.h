@@ -25,7 +25,9 @@ struct CsvTable {
   std::string note(std::string_view key) const;
 };
 
-// Throws InputError where the file cannot be read, has no header, or a row is not as long as it.
+// What helps where a file was torn.
+inline constexpr std::string_view kTornRemedy = "delete the file, or have it written anew";
+// Throws InputError where the file cannot be read, has no header, or a row is not as long as it (it was torn).
 CsvTable read_csv(const std::filesystem::path& file);
 
 // Not a number where the field holds none.
