@@ -66,7 +66,7 @@ void print_agreement(std::FILE* out, const Scene& scene, const Reference& r, con
              r.nearest < 0 ? "no other method confirms it" : "its two tolerances are least apart");
 }
 
-Json record(const Scene& scene, const Reference& r, const ReferenceSettings& settings) {
+Json record(const Scene& scene, const Reference& r, const ReferenceSettings& settings, const ColumnsByOption& columns) {
   Json json;
   const auto named = [](const PerQuantity& difference) {
     Json object;
@@ -85,6 +85,7 @@ Json record(const Scene& scene, const Reference& r, const ReferenceSettings& set
                                {"failure", m.failure},
                                {"difference_of_tolerances", named(m.apart)},
                                {"difference_from_given", named(m.from_given)}});
+  for (const auto& [option, names] : columns) json["columns"][option] = names;
   add_origin(json);
   json["scene"] = Json::parse(scene.source, nullptr, true, true);
   return json;
@@ -122,15 +123,18 @@ int find_motion(const ReferenceOptions& options) {
     for (std::size_t k = 0; k < r.motion.t.size(); ++k) trajectory->write(r.motion.t[k], r.motion.bodies[k]);
     trajectory->file().complete();
   }
+  ColumnsByOption columns;
+  if (trajectory && is_npy(options.out)) columns.emplace_back("--out", trajectory->columns());
+  const Json told = record(scene, r, settings, columns);
   if (beside) {
-    beside->write(record(scene, r, settings).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    beside->write(told.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
     beside->complete();
   }
   if (trajectory) trajectory->file().commit();
   if (beside) beside->commit();
   std::FILE* const out = text_stream({options.out});
   if (options.json)
-    print_json(out, record(scene, r, settings));
+    print_json(out, told);
   else if (!options.quiet)
     print_agreement(out, scene, r, settings);
   return kDone;
@@ -151,7 +155,7 @@ void add_reference(CLI::App& app, int& status) {
       ->type_name("N");
   command
       .add_option("--out", options.out,
-                  "the motion, CSV, as `poinsot run` writes it; beside it .run.json with the evidence")
+                  "the motion, as `poinsot run` writes it: CSV, or .npy; beside it .run.json with the evidence")
       ->type_name("FILE.csv");
   add_cache(command, options.cache);
   add_json(command, options.json);

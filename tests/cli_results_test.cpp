@@ -97,6 +97,16 @@ TEST_F(CliResults, AnNpyHoldsTheNumbersOfTheCsv) {
   }
 }
 
+TEST_F(CliResults, AnNpyOfAReferenceHasNamesForItsColumns) {
+  write("pend.json", kPendulum);
+  for (const char* file : {"x.csv", "x.npy"})
+    ASSERT_EQ(poinsot({"reference", "pend.json", "--end", "0.1", "--cache", "cache", "--out", file}).status, 0);
+  std::string names;
+  const nlohmann::json record = read_json("x.run.json");
+  for (const auto& name : record["columns"]["--out"]) names += (names.empty() ? "" : ",") + name.get<std::string>();
+  EXPECT_EQ(names, first_line(read("x.csv")));
+}
+
 TEST_F(CliResults, ASavedStateRunsOn) {
   write("pend.json", kPendulum);
   const auto end_of = [&](const char* scene, const char* end) {
