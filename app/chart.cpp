@@ -57,9 +57,7 @@ std::vector<fs::path> scene_files(const ChartOptions& options) {
         files.insert(entry.path());
   }
   if (files.empty()) throw InputError("found no scene, expected poinsot chart SCENE, or --all");
-  std::set<std::string> stems;
-  if (files.size() > 1)
-    stems = {"fronts_integrators", "fronts_methods", "fronts_choice", "fronts_plot"};  // written, too
+  std::set<std::string> stems{"fronts_integrators", "fronts_methods", "fronts_choice", "fronts_plot"};  // written, too
   for (const fs::path& file : files)
     if (!stems.insert(stem_of(file)).second)
       throw InputError(fmt::format("{}: two tables would be written as {}.csv", shown_input(file), stem_of(file)));
@@ -84,6 +82,34 @@ SweepPlan plan_for(const Scene& scene, const SweepPlan& asked, const ChartOption
   if (options.integrators == compared_integrators() && without_freedom(scene))
     std::ranges::copy(integrators_of(Analysis::kinematics), std::back_inserter(plan.integrators));
   return plan;
+}
+
+// The order of the tables: what was asked for comes first.
+std::vector<std::string> all_integrators(const std::vector<std::string>& asked) {
+  std::vector<std::string> names = asked;
+  for (const IntegratorEntry& entry : integrators())
+    if (std::ranges::find(names, entry.name) == names.end()) names.emplace_back(entry.name);
+  return names;
+}
+
+// Of all charts that lie in the folder, of this sweep and of those before: the page, and why it lacks its picture.
+std::string write_fronts(const ChartOptions& options, const std::vector<std::string>& asked,
+                         std::vector<SceneChart> charts, int core, std::vector<fs::path>& written) {
+  std::vector<std::string> foot = origin_lines(core), notices;
+  foot.push_back(options.quick ? "settings: the reduced set, --quick" : "settings: the full set");
+  const std::vector<SceneChart> before = charts_before(options.out, charts, notices);
+  if (!options.quiet) std::ranges::for_each(notices, print_notice);
+  for (const SceneChart& one : before) foot.push_back(fmt::format("{0}: measured before, as {0}.csv says", one.scene));
+  std::ranges::copy(before, std::back_inserter(charts));
+  if (charts.size() < 2 && !fs::exists(fs::path(options.out) / "fronts.md")) return "";
+  std::ranges::sort(charts, {}, &SceneChart::scene);
+  Report report = fronts_report(all_integrators(asked), charts, foot);
+  const std::string why = write_plots({fronts_plot(charts)}, options.out, foot);
+  if (why.empty())
+    report.text +=
+        "\n\n![Time against the error in positions, of the cheapest method of each integrator](fronts_plot.svg)";
+  std::ranges::copy(write_report(report, options.out, "fronts"), std::back_inserter(written));
+  return why;
 }
 
 int chart(const ChartOptions& options) {
@@ -134,24 +160,13 @@ int chart(const ChartOptions& options) {
   }
   std::vector<fs::path> written;
   for (const Plot& plot : plots) written.push_back(plot.csv);
-  std::vector<std::string> compared = asked.integrators;
-  std::ranges::copy(integrators_of(Analysis::kinematics), std::back_inserter(compared));
-  if (charts.size() > 1) {
-    std::vector<std::string> foot = origin_lines(core);
-    foot.push_back(options.quick ? "settings: the reduced set, --quick" : "settings: the full set");
-    Report report = fronts_report(compared, charts, foot);
-    if (const std::string why = write_plots({fronts_plot(charts)}, options.out, foot); why.empty()) {
-      report.text +=
-          "\n\n![Time against the error in positions, of the cheapest method of each integrator](fronts_plot.svg)";
-    } else {
-      print_error(why);
-      status = kNumericsFailed;
-    }
-    std::ranges::copy(write_report(report, options.out, "fronts"), std::back_inserter(written));
+  if (const std::string why = write_fronts(options, asked.integrators, charts, core, written); !why.empty()) {
+    print_error(why);
+    status = kNumericsFailed;
   }
   if (options.quiet) return status;
   for (const fs::path& file : written) fmt::print("{}\n", file.string());
-  fmt::print("{}", fronts_summary(compared, charts));
+  fmt::print("{}", fronts_summary(all_integrators(asked.integrators), charts));
   return status;
 }
 
@@ -164,7 +179,8 @@ void add_chart(CLI::App& app, int& status) {
   add_set(command, options.set);
   command.add_flag("--all", options.all, "the models that came with the program, too");
   add_models(command, options.models);
-  add_out_folder(command, options.out, "a CSV, SVG and PNG for each scene, and of several a summary of the fronts");
+  add_out_folder(command, options.out,
+                 "a CSV, SVG and PNG for each scene, and a summary of the fronts of all charts in it");
   command.add_flag("--quick", options.quick, "a reduced set: fewer and shorter runs, a reference of ten digits");
   add_end(command, options.end);
   add_names(command, "formulation", options.formulations);

@@ -150,6 +150,39 @@ TEST_F(Chart, CountsTheFrontsOfSeveralScenes) {
   EXPECT_GT(found, 0);
 }
 
+TEST_F(Chart, FrontsAreThoseOfAllChartsThatLieInTheFolder) {
+  expect_drawn(chart());
+  EXPECT_FALSE(std::filesystem::exists(folder() / "out/fronts.md"));
+  write("second.json", kPendulum);
+  const std::vector<std::string> second{"chart",   "second.json",   "--quick", "--end", "0.5",
+                                        "--cache", "cache",         "--out",   "out",   "--formulations",
+                                        "rA",      "--integrators", "rattle"};
+  expect_drawn(poinsot(second));
+  const auto page = [&] { return read("out/fronts.md"); };
+  EXPECT_NE(page().find("On how many of 2 charts"), std::string::npos) << page();
+  EXPECT_NE(page().find("- pendulum: measured before, as pendulum.csv says\n"), std::string::npos) << page();
+  std::vector<std::string> integrators, expected{"rattle", "implicit_euler", "dop853"};  // what was asked for first
+  for (const Row& row : rows("out/fronts_integrators.csv")) {
+    integrators.push_back(row.at("integrator"));
+    const auto scenes = row.find("scenes");  // of whose fronts it is on
+    if (scenes != row.end()) {
+      EXPECT_EQ(scenes->second.find("second") != std::string::npos, integrators.back() == "rattle");
+    }
+  }
+  EXPECT_EQ(integrators, expected);
+
+  const std::string whole = read("out/pendulum.csv");
+  write("out/pendulum.csv", whole.substr(0, whole.find("implicit_euler", whole.size() / 2)) + "\n");
+  const Result torn = poinsot(second);
+  EXPECT_NE(torn.err.find("poinsot: note: left out of fronts.md: out/pendulum.csv: line "), std::string::npos)
+      << torn.err;
+  EXPECT_NE(torn.err.find("expected 22; delete the file, or have it written anew\n"), std::string::npos) << torn.err;
+  EXPECT_NE(page().find("On how many of 1 charts"), std::string::npos) << page();
+  write("out/pendulum.csv", "# incomplete: interrupted\n" + whole);
+  EXPECT_NE(poinsot(second).err.find("left out of fronts.md: out/pendulum.csv: incomplete: interrupted"),
+            std::string::npos);
+}
+
 // After so long a time implicit Euler is too far off at every step for any front, however quick it is.
 TEST_F(Chart, CountsOnlyWhatItMeasured) {
   const Result result = poinsot({"chart", "pendulum.json", "--quick", "--end", "20", "--cache", "cache", "--out", "out",

@@ -82,6 +82,7 @@ ChartRow row_of(const std::vector<std::string>& f) {
   m.steps = count(f[15]);
   m.newton_iterations = count(f[16]);
   m.factorizations = count(f[17]);
+  for (std::size_t k = 0; k < kQuantities.size(); ++k) row.front[k] = f[18 + k] == "1";
   return row;
 }
 
@@ -113,6 +114,14 @@ bool is_chart(const CsvTable& table) {
   return fmt::format("{}", fmt::join(table.header, ",")) == header();
 }
 
+bool is_chart(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  while (std::getline(in, line) && line.starts_with("#")) {
+  }
+  return line == header();
+}
+
 ChartFile::ChartFile(fs::path file, std::vector<std::string> notes, bool fresh)
     : file_(std::move(file)), notes_(std::move(notes)) {
   for (std::string& note : notes_) note = on_one_line(note);
@@ -141,7 +150,9 @@ void ChartFile::read() {
     if (lines[k].starts_with("#")) continue;  // a conclusion
     const std::vector<std::string> f = csv_fields(lines[k]);
     if (f.size() != kColumns) refuse(fmt::format("line {} is not a row of a chart", k + 1));
-    if (f[5] != "reference") rows_.push_back(row_of(f));
+    if (f[5] == "reference") continue;
+    rows_.push_back(row_of(f));
+    rows_.back().front = {};  // that of all rows is found at the end
   }
 }
 

@@ -32,6 +32,7 @@ struct ChartRow {
 
 // Whether a table is a chart, and its rows: that of the reference has its status and no seconds.
 bool is_chart(const CsvTable& table);
+bool is_chart(const std::filesystem::path& file);  // by its header alone
 std::vector<ChartRow> chart_rows(const CsvTable& table);
 // How far the reference among the rows can be trusted; zeros where there is none.
 PerQuantity chart_agreement(const std::vector<ChartRow>& rows);

@@ -4,8 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
+
+#include "core/input_error.h"
 
 namespace poinsot::study {
+namespace fs = std::filesystem;
 namespace {
 
 // The fronts of whatever `counts` picks among the rows.
@@ -73,6 +77,29 @@ Table table(std::string file, std::string title, std::vector<std::string> header
 }
 
 }  // namespace
+
+std::vector<SceneChart> charts_before(const fs::path& folder, const std::vector<SceneChart>& anew,
+                                      std::vector<std::string>& notices) {
+  std::set<fs::path> files;  // in order, whatever the folder's
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".csv" && entry.is_regular_file() && is_chart(entry.path()) &&
+        std::ranges::find(anew, entry.path().stem().string(), &SceneChart::scene) == anew.end())
+      files.insert(entry.path());
+  std::vector<SceneChart> charts;
+  for (const fs::path& file : files) {
+    try {
+      const CsvTable table = read_csv(file);
+      if (const std::string why = table.note("incomplete"); !why.empty())
+        throw InputError(fmt::format("{}: incomplete: {}", file.string(), why));
+      std::vector<ChartRow> rows = chart_rows(table);
+      const PerQuantity agreement = chart_agreement(rows);
+      charts.push_back({file.stem().string(), std::move(rows), agreement});
+    } catch (const InputError& torn) {
+      notices.push_back(fmt::format("left out of fronts.md: {}", torn.what()));
+    }
+  }
+  return charts;
+}
 
 Report fronts_report(const std::vector<std::string>& integrators, const std::vector<SceneChart>& charts,
                      const std::vector<std::string>& foot) {

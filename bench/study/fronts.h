@@ -1,6 +1,7 @@
 // On which fronts of several charts each method stands: what earns its place, and what does not.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,11 @@ struct SceneChart {
   std::vector<ChartRow> rows;  // with their fronts
   PerQuantity agreement{};     // of the reference
 };
+
+// The charts of all other scenes that lie in the folder, of sweeps before. What is torn or was interrupted is left out,
+// and told.
+std::vector<SceneChart> charts_before(const std::filesystem::path& folder, const std::vector<SceneChart>& anew,
+                                      std::vector<std::string>& notices);
 
 // "For this accuracy on this kind of scene take this": by kind (kSceneKinds), quantity and accuracy the method that is
 // the fastest, or not apart from it, on most of the charts.
