@@ -56,9 +56,8 @@ void SettingsOptions::tell_ignored_in_file(const Settings& settings, std::vector
     if (const std::string by = ignored_by(entry, settings);
         !by.empty() && root.optional(entry.key) && !on_command_line(entry.key))
       keys[by].push_back(fmt::format("/{}", entry.key));
-  for (const auto& [by, own] : keys)
-    notices.push_back(fmt::format("{}: {} {} nothing to {}", shown_input(config_file_), fmt::join(own, ", "),
-                                  own.size() == 1 ? "means" : "mean", by));
+  for (const std::string& sentence : ignored_sentences(keys))
+    notices.push_back(fmt::format("{}: {}", shown_input(config_file_), sentence));
 }
 
 // Names the option or the place in the configuration file that the value is from; of two that do not go together the

@@ -102,6 +102,14 @@ std::string ignored_by(const SettingEntry& entry, const Settings& settings) {
       controls_error ? "which controls its error by rtol and atol" : "whose accuracy follows from its step");
 }
 
+std::vector<std::string> ignored_sentences(const std::map<std::string, std::vector<std::string>>& places_by_method) {
+  std::vector<std::string> sentences;
+  for (const auto& [by, places] : places_by_method)
+    sentences.push_back(
+        fmt::format("{} {} nothing to {}", fmt::join(places, ", "), places.size() == 1 ? "means" : "mean", by));
+  return sentences;
+}
+
 std::span<const SettingEntry> setting_entries() {
   static const std::vector<SettingEntry> entries = make_entries();
   return entries;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,6 +44,8 @@ std::string value_text(const SettingEntry& entry, const Settings& settings);
 bool chooses_steps(const Settings& settings);
 // The method that does not look at a setting, and why: "kinematics, which ..."; empty where it does.
 std::string ignored_by(const SettingEntry& entry, const Settings& settings);
+// A sentence for all places in a file that the same methods do not look at: "/step, /retry mean nothing to ...".
+std::vector<std::string> ignored_sentences(const std::map<std::string, std::vector<std::string>>& places_by_method);
 // Names of the integrators that declare a parameter of this name.
 std::vector<std::string_view> integrators_with(std::string_view parameter);
 

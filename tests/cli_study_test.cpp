@@ -63,6 +63,28 @@ TEST_F(CliStudy, ATenthIsPartOfTheWholeAndAChangedStudyKeepsWhatItStillAsksFor) 
   EXPECT_EQ(rows(), before + 120);
 }
 
+TEST_F(CliStudy, TellsWhatNoCaseLooksAt) {
+  const auto told = [&](const std::string& settings, const std::string& vary) {
+    write("study.json", fmt::format(R"({{"study": 1, "scenes": ["pendulum.json"], "settings": {{"end": 0.01{}}},
+      "vary": [{{"setting": "formulation", "values": ["rA", "rp"]}}{}], "keep": ["counts"]}})",
+                                    settings, vary));
+    const Result result = poinsot({"study", "study.json", "--fresh", "--out", "out"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.err;
+  };
+  const std::string note = "poinsot: note: study.json: ", by = "which controls its error by rtol and atol";
+  EXPECT_EQ(told(R"(, "step": 1e-3, "retry": false)", ""),
+            note + "/settings/step, /settings/retry mean nothing to integrator auto, " + by + "\n");
+  EXPECT_EQ(read_json("out/cases.run.json")["notices"].size(), 1u);
+  EXPECT_EQ(told(R"(, "step": 1e-3)", R"(, {"setting": "integrator", "values": ["dop853", "radau5"]})"),
+            note + "/settings/step means nothing to integrator dop853, " + by + "; integrator radau5, " + by + "\n");
+  EXPECT_EQ(told(R"(, "step": 1e-3)", R"(, {"setting": "integrator", "values": ["dop853", "rattle"]})"), "");
+  EXPECT_EQ(told(R"(, "integrator": "rattle")", R"(, {"setting": "rtol", "values": [1e-6, 1e-8]})"),
+            note + "/vary/1 means nothing to integrator rattle, whose accuracy follows from its step\n");
+  EXPECT_EQ(told(R"(, "rtol": 1e-6)", R"(, {"setting": "rtol", "values": [1e-6, 1e-8]})"),
+            note + "/settings/rtol means nothing to the cases, as /vary/1 varies it\n");
+}
+
 TEST_F(CliStudy, AFailingCaseIsARow) {
   write("study.json", R"({"study": 1, "scenes": ["pendulum.json"],
     "settings": {"step": 1e-3, "end": 0.01, "max_iterations": 1, "tolerance": 1e-13, "retry": false},

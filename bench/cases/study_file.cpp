@@ -8,6 +8,7 @@
 #include <set>
 
 #include "bench/cases/study_scenes.h"
+#include "bench/cases/study_settings.h"
 #include "bench/study/cache.h"
 #include "core/input_error.h"
 #include "core/json_document.h"
@@ -20,38 +21,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::int64_t kMostCases = 1'000'000'000;
-
-// Each choice so far with each value.
-void vary_setting(Study& study, const JsonValue& item) {
-  item.keys("a setting that varies", {"setting", "values", "from", "to", "count", "spacing"});
-  const JsonValue key = item.required("setting");
-  const SettingEntry* entry = find_setting(key.string("the key of a solver configuration"));
-  if (!entry) key.expected(fmt::format("one of {}", fmt::join(projected(setting_entries(), &SettingEntry::key), ", ")));
-  if (std::ranges::find(study.settings_varied, entry->key) != study.settings_varied.end())
-    key.fail(fmt::format("'{}' varies already, expected another setting", entry->key));
-  std::vector<JsonValue> values;
-  std::vector<nlohmann::json> range;
-  const auto list = item.optional("values");
-  if (list) {
-    values = items(*list, "an array of values, at least one", 1);
-  } else if (item.optional("from")) {
-    std::ranges::copy(read_range(item), std::back_inserter(range));
-    for (const nlohmann::json& value : range) values.push_back(item.holding(value));
-  } else {
-    item.expected("\"values\", or \"from\", \"to\" and \"count\"");
-  }
-  std::vector<SettingsChoice> all;
-  for (const SettingsChoice& before : study.settings) {
-    for (const JsonValue& value : values) {
-      SettingsChoice choice = before;
-      read_setting(*entry, value, choice.settings);
-      choice.values.push_back(value_text(*entry, choice.settings));
-      all.push_back(std::move(choice));
-    }
-  }
-  study.settings_varied.emplace_back(entry->key);
-  study.settings = std::move(all);
-}
 
 void require_parameter(const Study& study, const JsonValue& place, const std::string& name) {
   for (const StudyScene& one : study.scenes) {
@@ -105,40 +74,6 @@ void read_variation(Study& study, const JsonValue& root, std::uint64_t seed) {
   }
 }
 
-// Whatever the scene: names, numbers, the grid of times.
-std::string why_refused(Settings& settings, std::vector<std::string>& notices) {
-  try {
-    check_numbers(settings);
-    check_formulation(settings);
-    fit_time_grid(settings, notices);
-    return "";
-  } catch (const InputError& error) {
-    return error.what();
-  }
-}
-
-// Those that no run can have are told by their cases, unless all are such.
-void settle_settings(Study& study, const JsonValue& root) {
-  bool any = false;
-  std::string first;
-  for (SettingsChoice& choice : study.settings) {
-    if (study.kept.errors && choice.settings.every == 0) choice.settings.every = choice.settings.end / kErrorTimes;
-    std::vector<std::string> notices;
-    const std::string why = why_refused(choice.settings, notices);
-    any = any || why.empty();
-    if (first.empty()) first = why;
-    for (const std::string& notice : notices)
-      if (std::ranges::find(study.notices, notice) == study.notices.end()) study.notices.push_back(notice);
-    choice.hash = study::content_hash(to_json(choice.settings));
-    for (const StudyScene& one : study.scenes)
-      for (const Column& column : one.columns) {
-        choice.settings.signals |= column.of == Column::signal;
-        choice.settings.reactions |= column.of == Column::reaction;
-      }
-  }
-  if (!any) root.fail(first);
-}
-
 std::vector<std::string> varied_columns(const Study& study) {
   std::vector<std::string> names = parameter_names(study);
   names.insert(names.end(), study.settings_varied.begin(), study.settings_varied.end());
@@ -167,7 +102,7 @@ void find_columns(Study& study, const JsonValue& root) {
   }
 }
 
-Study parse_document(const JsonDocument& document, const SceneOf& scene_of) {
+Study parse_document(const JsonDocument& document, std::string_view file, const SceneOf& scene_of) {
   const JsonValue root = document.root();
   root.keys("a study", {"$schema", "study", "name", "about", "seed", "scenes", "settings", "vary", "repetitions",
                         "keep", "pictures"});
@@ -193,6 +128,8 @@ Study parse_document(const JsonDocument& document, const SceneOf& scene_of) {
   study.kept = read_kept(root, study.timed());
   find_columns(study, root);
   settle_settings(study, root);
+  for (const std::string& sentence : ignored_settings(study, root))
+    study.notices.push_back(fmt::format("{}: {}", file, sentence));
   for (const SettingsChoice& choice : study.settings) require_output_times(root, study.kept, choice.settings);
   require_distinct_columns(study, root);
   const std::vector<std::string> varied = varied_columns(study);
@@ -207,7 +144,7 @@ Study parse_document(const JsonDocument& document, const SceneOf& scene_of) {
 
 Study parse(std::string_view text, std::string_view file, const SceneOf& scene_of) {
   Study study;
-  with_lines_of_errors(text, [&] { study = parse_document(JsonDocument(text, file), scene_of); });
+  with_lines_of_errors(text, [&] { study = parse_document(JsonDocument(text, file), file, scene_of); });
   return study;
 }
 

@@ -31,6 +31,7 @@ struct SettingsChoice {
   Settings settings;
   std::vector<std::string> values;  // by setting that varies, as the table shows them
   std::uint64_t hash = 0;
+  bool refused = false;  // no run can have them
 };
 
 struct Study {
