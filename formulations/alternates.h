@@ -46,11 +46,12 @@ Status exchange_alternates(Configuration<F, double>& c, double t, RowsOff&& rows
       stood = stands;
       continue;
     }
-    return {Failure::constraint_lost, t,
-            fmt::format("at t = {:.9g} s, where |f| passes 0.9, {} and its alternate contradict one another: with one "
-                        "satisfied the other is violated by {:.3g}; f and the directions of both have to tell the "
-                        "same motion, or an angle driver takes the place of both",
-                        t, describe_row(*c.elements->model, c.elements->model_row[index(row.normal.row)]), off)};
+    return with_remedy(
+        Failure::constraint_lost, t,
+        fmt::format("at t = {:.9g} s, where |f| passes 0.9, {} and its alternate contradict one another: with one "
+                    "satisfied the other is violated by {:.3g}",
+                    t, describe_row(*c.elements->model, c.elements->model_row[index(row.normal.row)]), off),
+        "f and the directions of both have to tell the same motion, or an angle driver takes the place of both");
   }
   return {};
 }

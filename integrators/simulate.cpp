@@ -157,12 +157,19 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   return outcome;
 }
 
+// Key paths beside the names in its message; the remedy begins so much later.
+void name_places(Status& status, const Scene& scene) {
+  const std::size_t before = with_key_paths(std::string_view(status.message).substr(0, status.remedy), scene).size();
+  status.message = with_key_paths(status.message, scene);
+  if (status.remedy > 0) status.remedy = before;
+}
+
 }  // namespace
 
 Outcome simulate(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
   try {
     Outcome outcome = run(scene, settings, observe, tell);
-    if (!outcome.status.ok()) outcome.status.message = with_key_paths(outcome.status.message, scene);
+    name_places(outcome.status, scene);
     return outcome;
   } catch (const InputError& refused) {
     throw InputError(with_key_paths(refused.what(), scene));

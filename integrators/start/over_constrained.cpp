@@ -95,12 +95,13 @@ Status OverConstrained::measure(double t, std::span<const double> a) {
     if (const double part = std::abs(residual[k]) * by_allowed_[k]; part > most) most = part, worst = k;
   if (most <= 1 || (to_tolerance_ && std::abs(residual[worst]) <= kAsKept * kept_off()))
     return rates_aside_ ? measure_rates(t, a) : Status{};
-  return {Failure::constraint_lost, t,
-          fmt::format("at t = {:.9g} s {} is violated by {:.3g}: it followed from the other constraints where the run "
-                      "began and was set aside, and does not hold with them any more; the constraints contradict one "
-                      "another from here on, and one of them has to go, or the steps leave them: try smaller steps or "
-                      "a smaller tolerance",
-                      t, describe_row(model(), aside_->rows()[worst]), std::abs(residual[worst]))};
+  return with_remedy(
+      Failure::constraint_lost, t,
+      fmt::format("at t = {:.9g} s {} is violated by {:.3g}: it followed from the other constraints where the run "
+                  "began and was set aside, and does not hold with them any more; the constraints contradict one "
+                  "another from here on, and one of them has to go, or the steps leave them",
+                  t, describe_row(model(), aside_->rows()[worst]), std::abs(residual[worst])),
+      "try smaller steps or a smaller tolerance");
 }
 
 // By how much the rows that are kept are off at most, where they stand.
@@ -133,12 +134,13 @@ Status OverConstrained::measure_rates(double t, std::span<const double> a) {
     const double allowed = kLostRate * row.a_j.norm() * speed + kFar * others + rounding;
     const double off = std::abs(residual[k]);
     if (off <= allowed) continue;
-    return {
+    return with_remedy(
         Failure::constraint_lost, t,
         fmt::format("at t = {:.9g} s {} is violated by {:.3g} m/s: it followed from the other constraints where the "
                     "run began and was set aside, and does not hold with them any more; the constraints contradict "
-                    "one another from here on, and one of them has to go",
-                    t, describe_row(model(), of), off)};
+                    "one another from here on",
+                    t, describe_row(model(), of), off),
+        "one of them has to go");
   }
   return {};
 }

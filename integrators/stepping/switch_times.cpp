@@ -128,10 +128,9 @@ double first_jump(const Model& model, double end) {
 }
 
 Status jump_of_positions(double t, std::string_view what) {
-  return {Failure::inconsistent_state, t,
-          fmt::format("at t = {:.9g} s {} prescribes a jump of positions, which no motion follows; let it pass "
-                      "through the values between",
-                      t, what)};
+  return with_remedy(Failure::inconsistent_state, t,
+                     fmt::format("at t = {:.9g} s {} prescribes a jump of positions, which no motion follows", t, what),
+                     "let it pass through the values between");
 }
 
 }  // namespace poinsot

@@ -19,6 +19,12 @@ inline std::optional<double> offered_step(const std::string& message) {
   return std::stod(found[1]);
 }
 
+// "; try a smaller step": what a run that stopped says to try.
+inline std::string remedy_of(const Recorded& run) {
+  const Status& status = run.outcome.status;
+  return status.remedy > 0 ? status.message.substr(status.remedy) : "";
+}
+
 // The longest step not above `most` that ends on the end.
 inline Settings with_step(Settings settings, double most) {
   settings.step = settings.end / std::ceil(settings.end / most * (1 - 1e-12));
