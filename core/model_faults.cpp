@@ -57,6 +57,20 @@ std::string beyond_any_position(const Model& model, double from, double to) {
   return {};
 }
 
+std::string faster_than_times(const Model& model, double from, double to, double end) {
+  constexpr double kTold = 0.1;  // rad
+  const double between = std::nextafter(end, HUGE_VAL) - end;
+  for (std::size_t k = 0; k < model.rows.size(); ++k) {
+    const Row& row = model.rows[k];
+    if (row.type != RowType::angle) continue;
+    const double rate = std::max(std::abs(row.f.at(from).fd), std::abs(row.f.at(to).fd));
+    if (rate * between > kTold)
+      return fmt::format("{} turns at {:.3g} rad/s, by {:.2g} rad from one time to the next that numbers tell apart",
+                         describe_row(model, static_cast<int>(k)), rate, rate * between);
+  }
+  return {};
+}
+
 std::string fault_of_functions(const Model& model, double t) {
   for (std::size_t row = 0; row < model.rows.size(); ++row)
     if (const std::string what = of_row(model.rows[row], t); !what.empty())

@@ -19,6 +19,11 @@ std::string fault_sentence(double t, const std::string& whose, const std::string
 // is none.
 std::string beyond_any_position(const Model& model, double from, double to);
 
+// "driver 'spin' turns at 1e+100 rad/s, ...": the first driven angle that within [from, to] changes by more than a
+// tenth of a radian from one time before `end` to the next that numbers tell apart, so that no step is short enough for
+// it; empty where there is none.
+std::string faster_than_times(const Model& model, double from, double to, double end);
+
 // The failure that a fault is, and what to try: an end before it, where it is not at the start.
 Status no_value(double t, const std::string& fault);
 

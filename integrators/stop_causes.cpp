@@ -22,6 +22,10 @@ bool explain_by_functions(Status& status, const Problem& problem, const Settings
   if (fault.empty()) fault = fault_of_functions(problem.model(), t);  // it may have gone back a step
   if (!fault.empty()) {
     status = no_value(t, fault);
+  } else if (const std::string fast = faster_than_times(problem.model(), t, t + near, settings.end); !fast.empty()) {
+    const bool at_once = !faster_than_times(problem.model(), 0, 0, settings.end).empty();
+    status = with_remedy(Failure::rotation_too_large, t, fmt::format("at t = {:.9g} s {}", t, fast),
+                         at_once ? "change the function" : "end before it, or change the function");
   } else if (const std::string why = overflowing(problem.model(), t); !why.empty()) {
     status = with_remedy(Failure::not_finite, t, fmt::format("at t = {:.9g} s a number overflows: {}", t, why),
                          "give it in units in which it is smaller");

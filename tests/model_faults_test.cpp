@@ -1,4 +1,4 @@
-// Functions of a scene that ask for what no position has are found, with the time from which on they do.
+// Functions of a scene that ask for what no position has, or no step is short enough for, are found.
 #include "core/model_faults.h"
 
 #include <gmock/gmock.h>
@@ -38,6 +38,23 @@ TEST(BeyondAnyPosition, IsNothingWithinReach) {
   EXPECT_THAT(beyond_any_position(asking(ConstraintType::DP1, "3*t"), 1, 1.99), IsEmpty());
   EXPECT_THAT(beyond_any_position(asking(ConstraintType::D, "t^2"), 0, 7), IsEmpty());
   EXPECT_THAT(beyond_any_position(asking(ConstraintType::CD, "100*t"), 0, 7), IsEmpty());
+}
+
+TEST(FasterThanTimes, IsADrivenAngleThatNoStepIsShortEnoughFor) {
+  const auto found = [](const char* angle, double t, double end) {
+    Scene scene = scene_of("free_body");
+    Driver& spin = scene.drivers.emplace_back();
+    spin.name = "spin", spin.type = DriverType::angle, spin.j = 0, spin.axis = {0, 0, 1};
+    spin.value = Expression::parse(angle);
+    return faster_than_times(compile(scene), t, t + 1e-3, end);
+  };
+  EXPECT_THAT(found("1e100*t", 0, 1), StrEq("driver 'spin' turns at 1e+100 rad/s, by 2.2e+84 rad from one time to the "
+                                            "next that numbers tell apart"));
+  EXPECT_THAT(found("1e100*t^2", 0, 1), ::testing::Not(IsEmpty()));
+  EXPECT_THAT(found("exp(100*t)", 0.25, 1), IsEmpty());
+  EXPECT_THAT(found("exp(100*t)", 0.4, 1), ::testing::Not(IsEmpty()));
+  EXPECT_THAT(found("1e14*t", 0, 1), IsEmpty());
+  EXPECT_THAT(found("1e20*t", 0, 1e-7), IsEmpty());
 }
 
 }  // namespace

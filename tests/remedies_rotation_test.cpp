@@ -134,7 +134,7 @@ TEST(RemediesOfRotation, AreNotMadeOfWhatDiverged) {
 
 TEST(RemediesOfRotation, OfKinematicsAreStepsThatItCanFollow) {
   for (const FormulationEntry& formulation : formulations()) {
-    for (const char* angle : {"1e4*t", "1e6*t"}) {
+    for (const char* angle : {"1e4*t", "1e6*t", "1e12*t"}) {
       SCOPED_TRACE(fmt::format("{} {}", formulation.name, angle));
       const Scene scene = wheel(0, angle);
       const Recorded stopped = run(scene, kinematics(formulation.name, 1, 3));
@@ -144,6 +144,29 @@ TEST(RemediesOfRotation, OfKinematicsAreStepsThatItCanFollow) {
       expect_helped(scene, with_step(kinematics(formulation.name, 1, 100 * *step), *step));
     }
   }
+}
+
+// Where no step is short enough the driver is what is wrong, whatever the analysis.
+TEST(RemediesOfRotation, OfADriverThatIsFasterThanTimesAreAnotherFunction) {
+  for (const FormulationEntry& formulation : formulations())
+    for (const char* angle : {"1e17*t", "1e100*t", "1e300*t"}) {
+      Settings settings = kinematics(formulation.name, 0.1, 1);
+      for (const char* integrator : {"", "dop853", "rattle"}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", formulation.name, angle, integrator));
+        if (*integrator) settings.analysis = Analysis::dynamics, settings.integrator = integrator;
+        const Recorded stopped = run(wheel(0, angle), settings);
+        expect_stopped(stopped, Failure::rotation_too_large, "driver '", "from one time to the next");
+        EXPECT_EQ(remedy_of(stopped), "; change the function");
+        expect_helped(wheel(0, "t"), settings);
+      }
+    }
+  Settings settings = kinematics("rA", 0.01, 1);
+  const Scene later = wheel(0, "1e17*max(0, t - 0.505)");
+  const Recorded stopped = run(later, settings);
+  expect_stopped(stopped, Failure::rotation_too_large, "driver '", "from one time to the next");
+  EXPECT_EQ(remedy_of(stopped), "; end before it, or change the function");
+  settings.end = 0.5;
+  expect_helped(later, settings);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ constexpr double kShortest = 0x1p-24;  // part of a step
 constexpr int kMostParts = 10'000;
 constexpr double kSharp = 1e-12;      // tolerance of Newton's corrections in parts, at least
 constexpr double kFarTurn = 0.1;      // rad, of a body in a part
+constexpr double kFollowed = 0.5;     // rad, of a body in a step
 constexpr double kSameLength = 1e-6;  // relative: what rounding of times makes of the lengths of steps
 
 // Numbers are those of the paper's equations.
@@ -134,9 +135,7 @@ class Kinematics final : public FixedSteps {
     Status status;
     for (int parts = 0; at < t; ++parts) {
       if (parts == kMostParts) {
-        problem_.set_position(at, span(from_.q));
-        problem_.set_velocity(span(from_.v));
-        const bool far = h * problem_.fastest_turn() > kFarTurn;  // else something else keeps parts as short
+        const bool far = h * turn_at(at) > kFarTurn;  // else something else keeps parts as short
         status = far || as_one.ok() ? leads_too_far(problem_, x_.a(), at, kMostParts, h) : as_one;
         break;
       }
@@ -154,6 +153,10 @@ class Kinematics final : public FixedSteps {
       }
       h *= 0.5;
       const bool ends = !(h >= kShortest * whole && at + h > at);
+      if (const double turn = ends ? turn_at(at) : 0; h * turn > kFarTurn) {  // the shortest are too long
+        status = leads_too_far(problem_, x_.a(), at, kMostParts, kFollowed / turn);
+        break;
+      }
       if (ends || (h < kSuspicious * whole && !std::exchange(examined, true))) {
         const DependentRow found =
             most_dependent_row(problem_, static_cast<int>(problem_.model_rows().size()), at, span(from_.q));
@@ -173,6 +176,13 @@ class Kinematics final : public FixedSteps {
     careful_ = false;
     if (status.failure == Failure::not_finite) problem_.set_position(status.time, span(from_.q));  // where to look why
     return status;
+  }
+
+  // rad/s, of the body that turns fastest where a part begins; the problem stands there.
+  double turn_at(double t) {
+    problem_.set_position(t, span(from_.q));
+    problem_.set_velocity(span(from_.v));
+    return problem_.fastest_turn();
   }
 
   // A step ends on its position up to the tolerance, which is more than short parts move: from there corrections would
