@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -19,6 +20,13 @@ namespace poinsot {
 namespace {
 
 using Json = nlohmann::json;
+
+// What other languages write and JSON has not.
+bool is_no_finite_number(std::string word) {
+  if (word.starts_with('-') || word.starts_with('+')) word.erase(0, 1);
+  std::ranges::transform(word, word.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word == "nan" || word == "inf" || word == "infinity";
+}
 
 // Builds the document from the parser's events. The library's own builder keeps the last of two equal keys silently.
 class Builder final : public nlohmann::json_sax<Json> {
@@ -48,12 +56,17 @@ class Builder final : public nlohmann::json_sax<Json> {
     return true;
   }
 
-  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
+  bool parse_error(std::size_t position, const std::string& token, const nlohmann::detail::exception& error) override {
     // `position` counts the characters read, the offending one included.
     const std::string_view before = text_.substr(0, std::min(position == 0 ? 0 : position - 1, text_.size()));
     const auto line = std::ranges::count(before, '\n') + 1;
     const std::size_t newline = before.rfind('\n');
     const std::size_t column = newline == before.npos ? before.size() + 1 : before.size() - newline;
+    constexpr int kOutOfRange = 406;
+    const std::string word = error.id == kOutOfRange ? token : word_at(before.size());
+    if (error.id == kOutOfRange || is_no_finite_number(word))
+      throw InputError(
+          fmt::format("{}: {}: found {}, expected a finite number (line {})", file_, place_path(), word, line));
     // "[json.exception.parse_error.101] parse error at line 1, column 2: what" or "[...out_of_range.406] what".
     std::string_view what = error.what();
     for (const std::string_view prefix : {std::string_view("] "), std::string_view(": ")}) {
@@ -98,6 +111,25 @@ class Builder final : public nlohmann::json_sax<Json> {
   bool close() {
     levels_.pop_back();
     return true;
+  }
+
+  // Of letters, about this place; with its sign.
+  std::string word_at(std::size_t place) const {
+    const auto is_letter = [this](std::size_t k) { return std::isalpha(static_cast<unsigned char>(text_[k])) != 0; };
+    std::size_t from = place, to = place;
+    while (from > 0 && is_letter(from - 1)) --from;
+    while (to < text_.size() && is_letter(to)) ++to;
+    if (from > 0 && (text_[from - 1] == '-' || text_[from - 1] == '+')) --from;
+    return std::string(text_.substr(from, to - from));
+  }
+
+  // Of the value that comes next.
+  std::string place_path() const {
+    if (levels_.empty()) return "/";
+    const Level& level = levels_.back();
+    return fmt::format(
+        "{}/{}", path(),
+        level.container->is_array() ? fmt::format("{}", level.container->size()) : pointer_token(level.key));
   }
 
   // Of the innermost container; empty for the document itself.

@@ -67,10 +67,14 @@ TEST(SceneReader, answers_to_text_that_is_not_a_document) {
       {"{\"scene\": 1} 2",
        "case.json: line 1, column 14: syntax error while parsing value - unexpected number literal; expected end of "
        "input"},
-      {"{\"scene\": NaN}",
-       "case.json: line 1, column 11: syntax error while parsing value - invalid literal; last "
-       "read: '\"scene\": N'"},
-      {"{\"scene\": 1e999}", "case.json: line 1, column 15: number overflow parsing '1e999'"},
+      {"{\"scene\": nothing}",
+       "case.json: line 1, column 12: syntax error while parsing value - invalid literal; last "
+       "read: '\"scene\": no'"},
+      {"{\"scene\":\n NaN}", "case.json: /scene: found NaN, expected a finite number"},
+      {"{\"x\": [1, {\"a\": -Infinity}]}", "case.json: /x/1/a: found -Infinity, expected a finite number"},
+      {"{\"x\": [1, inf]}", "case.json: /x/1: found inf, expected a finite number"},
+      {"nan", "case.json: /: found nan, expected a finite number"},
+      {"{\"scene\": 1e999}", "case.json: /scene: found 1e999, expected a finite number"},
       {"{\"scene\": 1 /* not closed",
        "case.json: line 1, column 26: syntax error while parsing object - invalid "
        "comment; missing closing '*/'; last read: '1 /* not closed'; "
@@ -82,6 +86,15 @@ TEST(SceneReader, answers_to_text_that_is_not_a_document) {
        "case.json: /x/0/1/a~1b/k~0: found the key twice, expected it once"},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(error_of(text), message);
+}
+
+TEST(SceneReader, names_the_line_of_a_number_that_is_none) {
+  try {
+    (void)parse_scene("{\"scene\":\n NaN}", "case.json");
+    FAIL() << "nothing was said";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "case.json: /scene: found NaN, expected a finite number (line 2)");
+  }
 }
 
 // As PowerShell and some editors write it; the mark that others put before UTF-8 means nothing.
