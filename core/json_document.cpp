@@ -149,8 +149,8 @@ class Builder final : public nlohmann::json_sax<Json> {
 };
 
 std::string content_of(const std::string& file) {
+  std::ifstream in = open_input(file);
   errno = 0;
-  std::ifstream in(file, std::ios::binary);
   std::string text(std::istreambuf_iterator<char>(in), {});
   if (!in || in.bad()) throw InputError(fmt::format("{}: cannot be read: {}", file, std::strerror(errno)));
   return text;
@@ -190,12 +190,21 @@ std::string shown_input(const std::string& file) {
   return file == "-" ? "standard input" : file;
 }
 
+std::ifstream open_input(const std::string& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error))
+    throw InputError(fmt::format("{}: found a directory, expected a file", file));
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(fmt::format("{}: cannot be read: {}", file, std::strerror(errno)));
+  return in;
+}
+
 std::string read_text(const std::string& file) {
   namespace fs = std::filesystem;
   if (file == "-") return read_text("/dev/stdin");
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (fs::is_directory(status)) throw InputError(fmt::format("{}: found a directory, expected a file", file));
   if (!fs::exists(status) || fs::is_regular_file(status)) return content_of(file);
   static std::mutex access;
   static std::map<std::string, std::string> kept;

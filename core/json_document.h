@@ -1,6 +1,7 @@
 // JSON text, parsed strictly: comments are allowed (// and /* */), a key that comes twice in an object is not.
 #pragma once
 
+#include <fstream>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -28,6 +29,8 @@ class JsonDocument {
   std::unique_ptr<nlohmann::json> json_;
 };
 
+// To be read from its beginning. Throws InputError: a directory, or why it cannot be read.
+std::ifstream open_input(const std::string& file);
 // The file's whole content; "-" is the standard input. What can be read but once, as that and pipes, is kept for
 // whoever asks again. Throws InputError.
 std::string read_text(const std::string& file);

@@ -196,7 +196,8 @@ TEST_F(WrongInput, OutputPaths) {
     arguments.insert(arguments.begin(), {"run", "pendulum.json"});
     expect_refused(arguments, "poinsot: " + message);
   };
-  refused({"--out", "pendulum.json/a.csv"}, "pendulum.json: the folder cannot be made: Not a directory");
+  refused({"--out", "pendulum.json/a.csv"},
+          "pendulum.json: the folder cannot be made: it is a file; choose another name");
   refused({"--out", "."}, ".: cannot be written: it is a directory; give a file name");
   refused({"--out", "no/such/a.csv", "--reactions", "."}, ".: cannot be written: it is a directory; give a file name");
   refused({"--out", "pendulum.json"},

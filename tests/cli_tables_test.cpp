@@ -98,7 +98,7 @@ TEST_F(Tables, WrongInput) {
           "--models: found no single_pendulum.json in nowhere, expected a folder with the paper's mechanisms");
   refused({"--repetitions", "0"}, "--repetitions: found 0, expected a whole number, at least 1");
   write("file", "");
-  refused({"--out", "file/results"}, "file/results: the folder cannot be made: Not a directory");
+  refused({"--out", "file/results"}, "file/results: the folder cannot be made: file is a file; choose another name");
 }
 
 }  // namespace

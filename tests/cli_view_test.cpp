@@ -183,6 +183,7 @@ TEST_F(View, WrongInputWritesNothing) {
                 .status,
             0);
   write("none.csv", "t\n");
+  write("empty.csv", "");
   write("a.npy", "\x93NUMPY\x01");
   write("number.csv", lines(read("a.csv"))[0] + "\n0,x\n");
   write("other.json", R"({"scene": 1, "name": "other", "bodies": [
@@ -197,6 +198,10 @@ TEST_F(View, WrongInputWritesNothing) {
   };
   refused({"view", "scene.json", "--trajectory", "a.npy", "--out", "a.html"},
           "a.npy: found an array of NumPy, expected the CSV that `poinsot run --out FILE.csv` writes");
+  refused({"view", "scene.json", "--trajectory", "nowhere.csv", "--out", "a.html"},
+          "nowhere.csv: cannot be read: No such file or directory");
+  refused({"view", "scene.json", "--trajectory", ".", "--out", "a.html"}, ".: found a directory, expected a file");
+  refused({"view", "scene.json", "--trajectory", "empty.csv", "--out", "a.html"}, "empty.csv: the file is empty");
   refused({"view", "scene.json", "--trajectory", "none.csv", "--out", "a.html"},
           "none.csv: found 1 columns, expected \"rod.x\" next: not a trajectory of scene \"pendulum\"");
   refused({"view", "other.json", "--trajectory", "a.csv", "--out", "a.html"},

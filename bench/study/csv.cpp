@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/input_error.h"
+#include "core/json_document.h"
 
 namespace poinsot::study {
 namespace {
@@ -63,8 +64,7 @@ std::string CsvTable::note(std::string_view key) const {
 }
 
 CsvTable read_csv(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  std::ifstream in = open_input(file.string());
   CsvTable table{file.stem().string(), {}, {}, {}};
   int number = 0;
   for (std::string line; std::getline(in, line);) {

@@ -14,6 +14,17 @@
 
 namespace poinsot::study {
 namespace fs = std::filesystem;
+namespace {
+
+std::string why_not_made(const fs::path& folder, const std::error_code& error) {
+  std::error_code none;
+  for (fs::path part = folder; part.has_relative_path(); part = part.parent_path())
+    if (fs::exists(part, none) && !fs::is_directory(part, none))
+      return fmt::format("{} is a file; choose another name", part == folder ? "it" : part.string());
+  return error.message();
+}
+
+}  // namespace
 
 OutputPlace output_place(const fs::path& file) {
   if (file == "-") return {{}, STDOUT_FILENO, 0};
@@ -44,7 +55,8 @@ std::vector<fs::path> make_folders(const fs::path& folder) {
   for (fs::path part = folder; !part.empty() && !fs::exists(part, error); part = part.parent_path())
     missing.push_back(part);
   fs::create_directories(folder, error);
-  if (error) throw InputError(fmt::format("{}: the folder cannot be made: {}", folder.string(), error.message()));
+  if (error)
+    throw InputError(fmt::format("{}: the folder cannot be made: {}", folder.string(), why_not_made(folder, error)));
   return missing;
 }
 

@@ -7,8 +7,8 @@
 
 #include "bench/study/csv.h"
 #include "bench/study/output_file.h"
+#include "bench/study/output_place.h"
 #include "core/check.h"
-#include "core/input_error.h"
 #include "core/provenance.h"
 
 namespace poinsot::study {
@@ -87,9 +87,7 @@ std::string kept_in(const fs::path& directory) {
 }
 
 void make_folder(const fs::path& directory) {
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw InputError(fmt::format("{}: the folder cannot be made: {}", directory.string(), error.message()));
+  (void)make_folders(directory);
   const OutputFile attempt(directory / "tables.md");  // not committed: nothing remains of it
 }
 

@@ -14,6 +14,7 @@
 #include "bench/study/csv.h"
 #include "bench/view/trajectory_columns.h"
 #include "core/input_error.h"
+#include "core/json_document.h"
 #include "core/so3.h"
 
 namespace poinsot::view {
@@ -72,10 +73,9 @@ BodyState state(std::span<const double, 19> x, const std::string& place) {
 void read_trajectory(const std::filesystem::path& file, const Scene& scene,
                      const std::function<void(double, std::span<const BodyState>)>& row) {
   const std::string name = file.string();
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in = open_input(name);
   std::string line;
-  if (!in || std::filesystem::is_directory(file) || !std::getline(in, line))
-    throw InputError(fmt::format("{}: cannot be read, or is empty", name));
+  if (!std::getline(in, line)) throw InputError(fmt::format("{}: the file is empty", name));
   if (line.starts_with("\x93NUMPY"))
     throw InputError(
         fmt::format("{}: found an array of NumPy, expected the CSV that `poinsot run --out FILE.csv` writes", name));
