@@ -36,6 +36,26 @@ std::string version_text() {
                      origin.dirty ? ", modified" : "", origin.compiler);
 }
 
+// But for names of one letter.
+std::string in_small_letters(std::string word) {
+  if (word.size() > 1)
+    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
+  return word;
+}
+
+// " SCENE --out FILE.html": what a command cannot do without.
+std::string required_arguments(const CLI::App& command) {
+  std::string text;
+  for (const CLI::Option* option : command.get_options([](const CLI::Option* o) { return o->get_required(); })) {
+    std::string name =
+        option->get_positional() ? option->get_name(true) : option->get_name() + " " + option->get_type_name();
+    if (option->get_positional())
+      std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::toupper(c); });
+    text += " " + name;
+  }
+  return text;
+}
+
 // What is wrong with the command line, in the words of all other messages.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const auto used = app.get_subcommands();
@@ -52,18 +72,18 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   } else if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
     what = fmt::format("{}: expected one value, once", what.substr(0, what.find(':')));
   } else if (dynamic_cast<const CLI::ConversionError*>(&error)) {  // "Could not convert: --bodies = x"
-    const std::size_t option = what.find(": ") + 2, value = what.find(" = ");
-    what = fmt::format("{}: found \"{}\", expected a whole number", what.substr(option, value - option),
-                       what.substr(value + 3));
+    const std::size_t option = what.find(": ") + 2, at = what.find(" = ");
+    const std::string value = what.substr(at + 3);
+    const bool whole = value.find_first_not_of("0123456789", value.starts_with('-') ? 1 : 0) == value.npos;
+    what = fmt::format("{}: found \"{}\", expected a {}whole number", what.substr(option, at - option), value,
+                       whole ? "smaller " : "");
   } else if (!unknown.empty()) {
     const auto option = std::find_if(unknown.begin(), unknown.end(), [](const auto& word) { return word[0] == '-'; });
     what = option != unknown.end() ? fmt::format("{}: unknown option", *option)
                                    : fmt::format("found \"{}\", expected nothing more", unknown.front());
   } else if (dynamic_cast<const CLI::RequiredError*>(&error)) {
-    std::string word = what.substr(0, what.find(' ')), place = word;
-    std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
-    std::transform(place.begin(), place.end(), place.begin(), [](unsigned char c) { return std::toupper(c); });
-    what = fmt::format("found no {}, expected {} {}", word, command, place);
+    what = fmt::format("found no {}, expected {}{}", in_small_letters(what.substr(0, what.find(' '))), command,
+                       required_arguments(*used.front()));
   }
   return fmt::format("{}; see {} --help", what, command);
 }

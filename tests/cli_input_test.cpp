@@ -50,6 +50,13 @@ TEST_F(WrongInput, Usage) {
   expect_refused({"--fly"}, "poinsot: found \"--fly\", expected one of " + commands);
   expect_refused({"run"}, "poinsot: found no scene, expected poinsot run SCENE; see poinsot run --help");
   expect_refused({"check"}, "poinsot: found no scene, expected poinsot check SCENE; see poinsot check --help");
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"view"}, {"view", "pendulum.json"}})
+    expect_refused(command,
+                   fmt::format("poinsot: found no {}, expected poinsot view SCENE --out FILE.html; see poinsot "
+                               "view --help",
+                               command.size() == 1 ? "scene" : "--out"));
+  expect_refused({"compare", "results"},
+                 "poinsot: found no B, expected poinsot compare A B; see poinsot compare --help");
   expect_refused({"run", "pendulum.json", "--stepp", "1"}, "poinsot: --stepp: unknown option; see poinsot run --help");
   expect_refused({"run", "pendulum.json", "more"},
                  "poinsot: found \"more\", expected nothing more; see poinsot run --help");
@@ -69,6 +76,8 @@ TEST_F(WrongInput, Usage) {
   expect_refused({"make"}, "poinsot: found no structure, expected poinsot make STRUCTURE; see poinsot make --help");
   expect_refused({"make", "chain", "--bodies", "2.5"},
                  "poinsot: --bodies: found \"2.5\", expected a whole number; see poinsot make --help");
+  expect_refused({"make", "chain", "--bodies", "99999999999"},
+                 "poinsot: --bodies: found \"99999999999\", expected a smaller whole number; see poinsot make --help");
   for (const std::vector<std::string>& command : {std::vector<std::string>{"study", "study.json"}, {"stability"}}) {
     std::vector<std::string> without = command;
     without.insert(without.end(), {"--threads", "0"});
