@@ -93,6 +93,9 @@ int run(const RunOptions& options) {
                       {"--save-state", options.save_state},
                       {"the run record", record_file}});
   const TrajectoryContent content(scene, options.columns, options.bodies);
+  for (const auto& [option, given] : {std::pair{"--columns", &options.columns}, {"--bodies", &options.bodies}})
+    if (!given->empty() && options.out.empty())
+      notices.push_back(fmt::format("{} means nothing without --out", option));
 
   Outcome outcome;
   std::optional<Verification> verification;

@@ -18,6 +18,11 @@ std::string help_text(const SettingEntry& entry) {
   return fmt::format("{}{} (default {})", entry.about, names, value_text(entry, Settings{}));
 }
 
+// "--no-retry"
+std::string as_given(const SettingEntry& entry, const std::string& text) {
+  return is_switch(entry) && text == "false" ? fmt::format("--no-{}", entry.key) : option_name(entry);
+}
+
 }  // namespace
 
 void SettingsOptions::add_to(CLI::App& command) {
@@ -85,7 +90,7 @@ Settings SettingsOptions::resolve(std::vector<std::string>& notices) const {
   for (const auto& [entry, text] : given_) set_setting(*entry, text, settings);
   for (const auto& [entry, text] : given_)
     if (const std::string by = ignored_by(*entry, settings); !by.empty())
-      notices.push_back(fmt::format("{} means nothing to {}", option_name(*entry), by));
+      notices.push_back(fmt::format("{} means nothing to {}", as_given(*entry, text), by));
   if (!config_file_.empty()) tell_ignored_in_file(settings, notices);
   try {
     check_numbers(settings);

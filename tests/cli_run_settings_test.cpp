@@ -65,6 +65,11 @@ TEST_F(RunSettings, KeysOfTheConfigurationThatMeanNothingToTheMethodAreTold) {
   EXPECT_EQ(told(R"({"integrator": "rattle", "step": 0.01, "rtol": 1e-6, "atol": 1e-8})", {}),
             "poinsot: note: config.json: /rtol, /atol mean nothing to integrator rattle, whose accuracy follows from "
             "its step\n");
+  EXPECT_EQ(told("{}", {"--no-retry"}),
+            "poinsot: note: --no-retry means nothing to integrator auto, which controls its error by rtol and atol\n");
+  EXPECT_EQ(
+      told("{}", {"--columns", "position", "--bodies", "rod"}),
+      "poinsot: note: --columns means nothing without --out\npoinsot: note: --bodies means nothing without --out\n");
   // The command line decides what the method is, and speaks for itself.
   EXPECT_EQ(
       told(R"({"integrator": "rattle", "step": 0.01, "rtol": 1e-6})", {"--integrator", "dop853"}),
