@@ -150,7 +150,8 @@ TEST(Assembly, RefusesPosesFarFromTheConstraints) {
   scene.bodies[0].position.x() = 0.25;
   EXPECT_EQ(refusal(scene),
             "the initial pose violates constraint 'revJoint_CD_1' by 0.25 m, more than the 0.0141 m that is put right "
-            "unasked; correct the scene, or have it projected onto the constraints with --assemble");
+            "unasked; correct the scene, or have it projected onto the constraints with `poinsot run --assemble`, "
+            "whose --save-state keeps it");
   const InitialState start = assemble(scene, Assembly::always);
   ASSERT_TRUE(start.status.ok()) << start.status.message;
   EXPECT_LT(violation(std::make_shared<const Model>(compile(scene)), start.bodies).position, 1e-12);

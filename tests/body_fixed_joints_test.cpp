@@ -258,7 +258,7 @@ TEST(BodyFixedJoints, ADriverHalfATurnOffIsRefusedOrTurned) {
   const Scene scene = driven_pendulum("pi + t");
   EXPECT_EQ(refused(scene),
             "driver 'motor' asks for an angle of 3.14159 rad at t = 0, where the initial pose has 0 rad; correct the "
-            "scene, or have it turned there with --assemble");
+            "scene, or have it turned there with `poinsot run --assemble`, whose --save-state keeps it");
   EXPECT_THAT(refused(scene, Assembly::never), HasSubstr("driver 'motor' asks for an angle of 3.14159 rad"));
   const InitialState start = start_of(scene, Assembly::always);
   ASSERT_TRUE(start.status.ok()) << start.status.message;

@@ -173,7 +173,14 @@ TEST_F(Check, QuantitiesWithUnitsAndPlaces) {
   EXPECT_EQ(tie.err,
             "poinsot: tie.json: the initial pose violates constraint 'tie_rod' (/constraints/0, line 3) by 0.114 m, "
             "more than the 0.01 m that is put right unasked; correct the scene, or have it projected onto the "
-            "constraints with --assemble\n");
+            "constraints with `poinsot run --assemble`, whose --save-state keeps it\n");
+  // And what it says helps where a command has no such option.
+  const std::vector<std::string> reference{"reference", "tie.json", "--end", "0.01", "--cache", "cache", "--quiet"};
+  EXPECT_EQ(poinsot(reference).err, tie.err);
+  ASSERT_EQ(poinsot({"run", "tie.json", "--assemble", "--end", "1e-9", "--save-state", "kept.json", "--quiet"}).status,
+            0);
+  write("tie.json", read("kept.json"));
+  EXPECT_EQ(poinsot(reference).status, 0);
   // The eighteenth joint.
   std::string joints, bodies;
   for (int k = 0; k < 18; ++k) {

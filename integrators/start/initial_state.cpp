@@ -136,12 +136,12 @@ class Assembler {
       const double asked = row.f.at(0.0).f, off = std::ranges::find(parts, group, &OpenPart::group)->value;
       return fmt::format(
           "{} asks for an angle of {:.6g} rad at t = 0, where the initial pose has {:.6g} rad; correct the scene, or "
-          "have it turned there with --assemble",
+          "have it turned there with `poinsot run --assemble`, whose --save-state keeps it",
           describe_group(*model_, group), asked, asked + off);
     }
     return fmt::format(
         "the initial pose violates {} by {}, more than the {:.3g} {} that is put right unasked; correct the scene, "
-        "or have it projected onto the constraints with --assemble",
+        "or have it projected onto the constraints with `poinsot run --assemble`, whose --save-state keeps it",
         describe_group(*model_, group), describe(gap), gap.metres > limit ? limit : std::min(limit, kQuarter),
         gap.metres > limit ? "m" : "rad");
   }
