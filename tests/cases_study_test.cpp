@@ -105,7 +105,12 @@ TEST(CasesStudy, ADamagedRowIsNone) {
   const std::string whole = "pendulum,1,1,rA,ok,1,2,3,4,5,";
   std::string damaged = make_row(study, case_of(study, 1), whole, false).line;
   damaged[damaged.size() - 3] ^= 1;  // a digit
+  Json document = case_table()["base"];
+  document["vary"].erase(1);  // a column less
+  document.erase("pictures");
+  const Study other = study_of(document);
   std::ofstream(part, std::ios::app) << make_row(study, case_of(study, 0), whole, false).line << damaged
+                                     << make_row(other, case_of(other, 0), "pendulum,1,1,ok,1,2,3,4,5,", false).line
                                      << make_row(study, case_of(study, 2), "pendulum,1,1", false).line << "no row\n";
   CaseTable rows(study);
   EXPECT_EQ(rows.read(part, false), 1);
@@ -113,6 +118,7 @@ TEST(CasesStudy, ADamagedRowIsNone) {
   EXPECT_FALSE(rows.has(1));
   EXPECT_FALSE(rows.has(2)) << "its checksum is right, but fields are missing";
   EXPECT_EQ(rows.damaged(), 3);
+  EXPECT_EQ(rows.unused(), 1);
   std::filesystem::remove_all(folder);
 }
 

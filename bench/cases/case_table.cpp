@@ -57,9 +57,9 @@ std::size_t fields_in(std::string_view line) {
   return count;
 }
 
-// Whether the line, without its end, is a row of so many fields; of which case.
-bool is_row(std::string_view line, std::size_t fields, std::uint64_t& key, std::int64_t& number, bool& failed) {
-  if (line.size() <= kHead || line[kHex] != ' ' || fields_in(line.substr(kHead)) != fields) return false;
+// Whether the line, without its end, is a row; of which case.
+bool is_row(std::string_view line, std::uint64_t& key, std::int64_t& number, bool& failed) {
+  if (line.size() <= kHead || line[kHex] != ' ') return false;
   failed = line[2 * kHex + 1] == kFailed;
   if (hex(line.substr(0, kHex)) != content_hash(line.substr(kHex + 1))) return false;
   key = hex(line.substr(kHex + 1, kHex));
@@ -153,13 +153,17 @@ std::int64_t CaseTable::read(const fs::path& file, bool once) {
     std::uint64_t key = 0;
     std::int64_t number = 0;
     bool failed = false;
-    if (!is_row(line, fields, key, number, failed)) {
-      ++damaged_;
-    } else if (number >= 0 && number < study_.size() && key == key_of(study_, case_of(study_, number))) {
+    const bool row = is_row(line, key, number, failed), whole = row && fields_in(line.substr(kHead)) == fields;
+    const bool own = row && number >= 0 && number < study_.size() && key == key_of(study_, case_of(study_, number));
+    if (own && whole) {
       place(number, part, lines.offset(), failed, once);
       ++taken;
-    } else {
+    } else if (!row || own) {
+      ++damaged_;
+    } else if (whole) {
       elsewhere.insert_or_assign(key, std::pair(lines.offset(), failed));
+    } else {  // as the study was when it had other columns
+      ++unused_;
     }
   }
   damaged_ += lines.torn();
