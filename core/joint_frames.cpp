@@ -95,17 +95,21 @@ JointFrames complete_frames(const Joint& joint, const std::vector<Body>& bodies)
 }
 
 template <class Item>
-AngleFrame angle_frame(const Item& item, const std::vector<Body>& bodies) {
+AngleFrame angle_frame(const Item& item, const std::vector<Body>& bodies, const Vector3& across_j) {
   const Vector3 axis = item.axis.stableNormalized();
   if (given(item.a_i)) {
     const Vector3 a = across(axis, item.a_i);
     return {a, axis.cross(a), item.a_j.stableNormalized()};
   }
   const InitialPose pose(bodies);
+  if (given(across_j)) {
+    const Vector3 a = across(axis, pose.direction_in(item.i, pose.direction_from(item.j, across_j)));
+    return {a, axis.cross(a), across_j};
+  }
   const auto [a, b] = perpendiculars(axis);
   return {a, b, pose.direction_in(item.j, pose.direction_from(item.i, a))};
 }
-template AngleFrame angle_frame(const Driver& item, const std::vector<Body>& bodies);
-template AngleFrame angle_frame(const TorsionSpring& item, const std::vector<Body>& bodies);
+template AngleFrame angle_frame(const Driver& item, const std::vector<Body>& bodies, const Vector3& across_j);
+template AngleFrame angle_frame(const TorsionSpring& item, const std::vector<Body>& bodies, const Vector3& across_j);
 
 }  // namespace poinsot

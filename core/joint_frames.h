@@ -23,11 +23,12 @@ Vector3 across(const Vector3& axis, const Vector3& a);
 JointFrames complete_frames(const Joint& joint, const std::vector<Body>& bodies);
 
 // Reference directions of an angle driver or a torsion spring: (a_i, b_i) across the axis in body i's frame, and a_j in
-// body j's frame, which is at a_i at angle 0.
+// body j's frame, which is at a_i at angle 0. Where none are given, `across_j` is taken if it is not zero: a direction
+// of body j that stays across the axis; else any that is across it in the initial pose.
 struct AngleFrame {
   Vector3 a_i, b_i, a_j;
 };
 template <class Item>  // Driver, TorsionSpring
-AngleFrame angle_frame(const Item& item, const std::vector<Body>& bodies);
+AngleFrame angle_frame(const Item& item, const std::vector<Body>& bodies, const Vector3& across_j);
 
 }  // namespace poinsot

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "core/check.h"
@@ -89,6 +90,8 @@ class Compiler {
       case JointType::universal:
         coincident(f);
         perpendicular(f.axis_i, f.axis_j);
+        crosses_.emplace(std::pair(j.i, j.j), std::pair(f.axis_i, f.axis_j));
+        crosses_.emplace(std::pair(j.j, j.i), std::pair(f.axis_j, f.axis_i));
         break;
       case JointType::cylindrical:
         parallel(f);
@@ -140,11 +143,25 @@ class Compiler {
     }
   }
 
+  // The directions of an angle. About one axis of a universal joint it is that of the other one, which stays across.
+  template <class Item>
+  AngleFrame directions(const Item& item, std::string_view kind, const std::string& name) {
+    constexpr double kSame = 1e-6;
+    const Vector3 axis = item.axis.stableNormalized();
+    Vector3 across = Vector3::Zero();
+    const auto [first, last] = crosses_.equal_range({item.i, item.j});
+    for (auto at = first; at != last; ++at)
+      if (at->second.first.cross(axis).norm() < kSame) across = at->second.second;
+    if (item.a_i.isZero(0) && across.isZero(0))
+      model_.open_angles.push_back({fmt::format("{} '{}'", kind, name), item.i, item.j, axis});
+    return angle_frame(item, model_.bodies, across);
+  }
+
   void driver(const Driver& d) {
     if (d.type == DriverType::angle) {
       begin(GroupKind::driver, d, Vector3::Zero());
       model_.groups.back().body_fixed = !d.a_i.isZero(0);
-      const AngleFrame frame = angle_frame(d, model_.bodies);
+      const AngleFrame frame = directions(d, "driver", model_.groups.back().name);
       Row& r = row(RowType::angle);
       r.a_i = frame.a_i, r.b_i = frame.b_i, r.a_j = frame.a_j;
       r.f = d.value;
@@ -166,7 +183,7 @@ class Compiler {
     TorsionElement element;
     element.spring = spring;
     element.spring.axis.stableNormalize();
-    const AngleFrame frame = angle_frame(spring, model_.bodies);
+    const AngleFrame frame = directions(spring, "torsion spring", spring.name);
     element.a_i = frame.a_i, element.b_i = frame.b_i, element.c_j = frame.a_j;
     model_.torsions.push_back(std::move(element));
   }
@@ -174,6 +191,8 @@ class Compiler {
   const Scene& scene_;
   Model model_;
   ItemNames row_names_, force_names_;
+  // Of universal joints by their bodies, from either: the axis in the first, and that in the second.
+  std::multimap<std::pair<int, int>, std::pair<Vector3, Vector3>> crosses_;
 };
 
 }  // namespace

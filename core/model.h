@@ -57,6 +57,14 @@ struct FollowedAngle {
   Vector3 a_i = Vector3::Zero(), b_i = Vector3::Zero(), c_j = Vector3::Zero();
 };
 
+// The angle of a driver or torsion spring for which the scene names no directions, on bodies that no joint keeps on an
+// axis: it is that of a direction across the axis which had to be chosen, and others give other angles once it tilts.
+struct OpenAngle {
+  std::string of;  // "driver 'motor'"
+  int i = kGround, j = kGround;
+  Vector3 axis = Vector3::Zero();  // in body i's frame
+};
+
 struct Model {
   std::string name;
   Vector3 gravity = Vector3::Zero();
@@ -72,6 +80,7 @@ struct Model {
   std::vector<LinearDrag> drags;
   std::vector<CallbackForce> callbacks;
 
+  std::vector<OpenAngle> open_angles;
   std::vector<FollowedAngle> followed;  // none, unless signals are asked for (integrators/signals.h)
 };
 

@@ -49,6 +49,7 @@ struct StepScale {
 struct CountedTurn {
   double rate = 0;                               // rad/s
   int torsion = -1, driver = -1, followed = -1;  // which: index of the model's torsion spring, row, or followed angle
+  double across = 1;  // of its direction on body j, what lies across the axis; at 0 there is no angle
 };
 
 class Problem {

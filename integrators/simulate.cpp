@@ -25,6 +25,7 @@
 #include "integrators/stepping/vectors.h"
 #include "integrators/stop_causes.h"
 #include "integrators/stopping_test.h"
+#include "integrators/tilted_axes.h"
 #include "linsolve/registry.h"
 
 namespace poinsot {
@@ -149,6 +150,13 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
         fmt::format("a body turns by up to {:.2g} rad in a step: rounding alone leaves its orientation open by "
                     "{:.1g} rad there, more than rtol",
                     largest, kEpsilon * largest));
+  if (outcome.status.ok() && !model->open_angles.empty()) {
+    std::vector<BodyState> bodies(model->bodies.size());
+    problem->set_position(state.t, span(state.q));
+    problem->set_velocity(span(state.v));
+    problem->to_bodies(state.a(), bodies);
+    tell_tilted_axes(*model, bodies, notice);
+  }
   if (settings.analysis == Analysis::dynamics && !explained) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
     explain_by_position(outcome.status, *problem, settings, rows, q_start, state);

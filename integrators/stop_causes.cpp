@@ -10,6 +10,7 @@
 #include "integrators/settings_table.h"
 #include "integrators/stepping/singular_position.h"
 #include "integrators/stepping/sticking.h"
+#include "integrators/stepping/turning.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
@@ -52,7 +53,11 @@ void explain_by_position(Status& status, Problem& problem, const Settings& setti
                            (failure == Failure::rotation_too_large && status.time > 0);
   if (!unexplained && failure != Failure::singular_position) return;
   const double instant = chooses_steps(settings) ? instant_of(settings.end) : settings.step;
-  std::string why = sticking_law(problem, settings.linear(), state, instant);
+  problem.set_position(state.t, span(state.q));
+  problem.set_velocity(span(state.v));
+  std::string why = undefined_angle(problem);
+  if (!why.empty() && failure == Failure::rotation_too_large) return;  // which it says already
+  if (why.empty()) why = sticking_law(problem, settings.linear(), state, instant);
   if (why.empty()) why = resting_law(problem, settings.linear(), state, instant);
   if (why.empty()) why = vanished_gradient(problem, state);
   if (!why.empty()) status.withdraw_remedy();  // nothing helps but to change what these say

@@ -95,7 +95,7 @@ DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<
 
 NearSingular near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
                                     std::span<const double> q) {
-  constexpr double kNear = 0.05;
+  constexpr double kNear = 0.05, kThere = 1e-3;
   if (rows < 2 || problem.nc() > kLargest) return {};
   const Eigen::VectorXd before = unit_rows(problem, 0, q_start).shares();
   const UnitRows here = unit_rows(problem, t, q);
@@ -107,7 +107,7 @@ NearSingular near_singular_position(Problem& problem, int rows, std::span<const 
       "it stopped beside a singular position of the mechanism, where the gradient of {} is a combination of the other "
       "constraints' but for {:.1g} of its length (at the start for {:.1g})",
       problem.describe_unknown(problem.nv() + static_cast<int>(row)), now[row], before[row]);
-  if (bars(problem, here, row, t, q)) return {where + "; " + kBarred, true, true};
+  if (bars(problem, here, row, t, q)) return {where + "; " + (now[row] < kThere ? kBarred : kSeemsBarred), true, true};
   const bool driven = std::ranges::any_of(problem.model().rows, [](const Row& r) { return !r.f.is_constant(); });
   return {where + "; dopri5 and dop853 step over most of such positions at larger tolerances, fixed steps may" +
               (driven ? std::string("; ") + kMayBeBarred : ""),

@@ -40,6 +40,11 @@ inline constexpr const char* kBarred =
     "drivers ask there for more than the mechanism reaches: its velocities grow without bound, and no method passes; "
     "end before it, or change the drivers";
 
+// From farther off, where a motion that passes beside it looks the same.
+inline constexpr const char* kSeemsBarred =
+    "drivers seem to ask there for more than the mechanism reaches: if so its velocities grow without bound, and no "
+    "method passes; end before it, or change the drivers; much smaller steps show whether it passes beside";
+
 // Likewise where it may be.
 inline constexpr const char* kMayBeBarred =
     "where a driver asks for more than the mechanism reaches nothing does: end before it";

@@ -21,24 +21,37 @@ Fastest fastest(const Problem& problem, std::span<const double> a) {
   return {problem.model().bodies[index(static_cast<int>(body - states.begin()))].name, body->w.norm()};
 }
 
+std::string name_of(const Model& model, const CountedTurn& turn) {
+  if (turn.torsion >= 0) return "torsion spring '" + model.torsions[index(turn.torsion)].spring.name + "'";
+  return turn.driver >= 0 ? describe_row(model, turn.driver)
+                          : describe_group(model, model.followed[index(turn.followed)].group);
+}
+
 std::string at_most(double step) {
   return fmt::format("try a step of at most {:.2g} s", step);
 }
 
 }  // namespace
 
-Status turned_too_far(const Problem& problem, double t, double h) {
+std::string undefined_angle(const Problem& problem) {
+  constexpr double kAlong = 0.1;
   const CountedTurn turn = problem.counted_turn();
-  const Model& model = problem.model();
-  const std::string name = turn.torsion >= 0
-                               ? "torsion spring '" + model.torsions[index(turn.torsion)].spring.name + "'"
-                           : turn.driver >= 0 ? describe_row(model, turn.driver)
-                                              : describe_group(model, model.followed[index(turn.followed)].group);
+  if (!(turn.across < kAlong)) return {};
+  return fmt::format(
+      "{} has no angle where its direction on the second body lies along its axis, as all but happens "
+      "here ({:.1g} of it is across): name by \"a_i\" and \"a_j\" one that stays across",
+      name_of(problem.model(), turn), turn.across);
+}
+
+Status turned_too_far(const Problem& problem, double t, double h) {
+  if (const std::string undefined = undefined_angle(problem); !undefined.empty())
+    return {Failure::rotation_too_large, t, fmt::format("at t = {:.9g} s {}", t, undefined)};
+  const CountedTurn turn = problem.counted_turn();
   return with_remedy(
       Failure::rotation_too_large, t,
       fmt::format("at t = {:.9g} s {} turns at {:.4g} rad/s, by {:.3g} rad in a step: beyond half a turn its turns "
                   "cannot be counted",
-                  t, name, turn.rate, h * turn.rate),
+                  t, name_of(problem.model(), turn), turn.rate, h * turn.rate),
       at_most(0.3 * kMostCounted / turn.rate));
 }
 

@@ -18,6 +18,9 @@ inline bool turns_too_far(const Problem& problem, double h) {
   return h * problem.counted_turn().rate >= kMostCounted;
 }
 
+// Where the fastest counted angle is all but undefined, why; else empty. Needs the velocity.
+std::string undefined_angle(const Problem& problem);
+
 // The stop of a fixed step, or of one that cannot be shorter. The problem stands at its end.
 Status turned_too_far(const Problem& problem, double t, double h);
 // The same for a body whose rotation in a step exceeds `most`, for a reason named by the integrator's registry.
