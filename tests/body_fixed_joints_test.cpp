@@ -63,7 +63,7 @@ Scene body_fixed(Scene scene) {
   }
   for (Driver& driver : scene.drivers) {
     if (driver.type != DriverType::angle) continue;
-    const AngleFrame frame = angle_frame(driver, scene.bodies);
+    const AngleFrame frame = angle_frame(driver, scene.bodies, Vector3::Zero());
     driver.a_i = 2 * frame.a_i, driver.a_j = 3 * frame.a_j;
   }
   return scene;
@@ -125,7 +125,7 @@ TEST(BodyFixedJoints, AngleDriversAndTorsionSpringsStartWhereTheirDirectionsSay)
   spring.i = 0, spring.j = 1, spring.axis = axis, spring.stiffness = 3, spring.angle = 0.3;
   scene.forces = {spring};
   Scene other = scene;
-  const AngleFrame frame = angle_frame(spring, scene.bodies);
+  const AngleFrame frame = angle_frame(spring, scene.bodies, Vector3::Zero());
   constexpr double kZero = 0.7;  // the angle at the initial pose
   spring.a_i = std::cos(kZero) * frame.a_i - std::sin(kZero) * frame.b_i, spring.a_j = frame.a_j, spring.angle += kZero;
   other.forces = {spring};
