@@ -27,7 +27,7 @@ CountedTurn fastest_counted_turn(const Configuration<F, double>& c) {
     const double x = c.s[index(a)].dot(v), y = c.s[index(b)].dot(v);
     const double xd = c.s[index(a)].dot(vd), yd = c.s[index(b)].dot(vd);
     const double square = x * x + y * y, round = x * yd - y * xd, towards = x * xd + y * yd;
-    const double rate = square > 0 ? std::hypot(round, 2 * towards) / square : HUGE_VAL;
+    const double rate = square > 0 ? std::sqrt(round * round + 4 * towards * towards) / square : HUGE_VAL;
     if (!(rate > fastest.rate)) return;
     fastest = of;
     fastest.rate = rate, fastest.across = std::sqrt(square);
