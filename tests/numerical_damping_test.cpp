@@ -9,6 +9,9 @@
 namespace poinsot::test {
 namespace {
 
+using ::testing::HasSubstr;
+using ::testing::Not;
+
 // Circles about the origin at 1 rad/s.
 Scene point_on_rod() {
   Scene scene;
@@ -103,6 +106,57 @@ TEST(NumericalDamping, is_small_at_the_step_that_is_offered) {
     EXPECT_EQ(fine.told, 0);
     EXPECT_LT(fine.percent, 6);
   }
+}
+
+// Falls from the horizontal about a hinge at x = at.
+void add_pendulum(Scene& scene, const char* name, double arm, double at) {
+  Body bob;
+  bob.name = name, bob.mass = 1, bob.inertia = 0.01 * arm * arm * Matrix3::Identity(), bob.position = {at + arm, 0, 0};
+  Joint hinge;
+  hinge.i = kGround, hinge.j = static_cast<int>(scene.bodies.size()), hinge.point = {at, 0, 0}, hinge.axis = {0, 1, 0};
+  scene.gravity = {0, 0, -9.81};
+  scene.bodies.push_back(bob);
+  scene.joints.push_back(hinge);
+}
+
+std::string notice(const Scene& scene, const Settings& settings) {
+  std::string all;
+  for (const std::string& sentence : simulate(scene, settings, {}).notices) all += sentence;
+  return all;
+}
+
+// A large mechanism beside a small one does not drown it, nor one that drivers lead.
+TEST(NumericalDamping, is_told_by_mechanism) {
+  Scene alone, both;
+  add_pendulum(alone, "small", 0.02, 0);
+  add_pendulum(both, "large", 20, 50);
+  add_pendulum(both, "small", 0.02, 0);
+  const Settings settings = implicit_euler("rA", 1e-3, 2);
+  const auto told = [&](const Scene& scene) {
+    std::smatch found;
+    const std::string said = notice(scene, settings);
+    EXPECT_TRUE(std::regex_search(
+        said, found,
+        std::regex("some ([0-9.e-]+) J or more out of the motion(.*) by itself, ([0-9.]+) % of (the|its) largest")))
+        << said;
+    return std::vector<std::string>(found.begin() + 1, found.end());
+  };
+  const std::vector<std::string> of_alone = told(alone), of_both = told(both);
+  ASSERT_EQ(of_alone.size(), 4u);
+  ASSERT_EQ(of_both.size(), 4u);
+  EXPECT_EQ(of_alone[0], of_both[0]);
+  EXPECT_EQ(of_alone[1], "");
+  EXPECT_EQ(of_both[1], " of the mechanism of body 'small' (/bodies/1)");
+  EXPECT_EQ(of_alone[2], of_both[2]);
+
+  Scene driven;
+  add_pendulum(driven, "large", 20, 50);
+  add_pendulum(driven, "led", 0.02, 0);
+  Driver driver;
+  driver.i = kGround, driver.j = 1, driver.axis = {0, 1, 0}, driver.value = Expression::parse("sin(40*t)/40");
+  driven.drivers.push_back(driver);
+  for (const char* formulation : {"rA", "rp", "reps"})
+    EXPECT_THAT(notice(driven, implicit_euler(formulation, 1e-3, 2)), Not(HasSubstr("by itself"))) << formulation;
 }
 
 // Drivers alone say how these move; other methods take nothing.

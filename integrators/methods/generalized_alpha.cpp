@@ -280,7 +280,7 @@ class GeneralizedAlpha : public FixedSteps {
   Vector y_;                          // displacement of stabilized index 2
   Vector held_dq_, held_v_, held_a_;  // what does not depend on the step's unknowns
   Vector residual_, aside_, there_;
-  Ringing ringing_;
+  Ringing ringing_{problem_};
 };
 
 struct Index3 final : GeneralizedAlpha {

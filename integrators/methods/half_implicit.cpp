@@ -22,7 +22,7 @@ class HalfImplicit final : public FixedSteps {
         extrapolation_(x_.z),
         dq_(nv_),
         rows_(nc_),
-        growth_(nv_) {}
+        growth_(run) {}
 
   double index3_scale() const override { return h_ * h_; }
   Status prepare() override { return ends_.prepare(); }

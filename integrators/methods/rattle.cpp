@@ -28,7 +28,7 @@ class Rattle final : public FixedSteps {
         rows_(nc_),
         rhs_(nv_ + nc_),
         zeros_(Vector::Zero(nv_ + nc_)),
-        growth_(nv_) {}
+        growth_(run) {}
 
   Status prepare() override { return ends_.prepare(); }
   Status forget() override {  // the factorization may be that of the end

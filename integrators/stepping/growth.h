@@ -1,45 +1,81 @@
 // Steps whose forces are explicit in the position grow without bound where a spring moves faster than they see: beyond
 // h w = 2 its free motion changes its sign in every step and gets larger. So do the changes of the velocity, which is
-// looked for: steps in a row, each of whose changes is against the one before and larger.
+// looked for: steps in a row, each of whose changes is against the one before and larger, in one of the scene's
+// mechanisms (core/mechanisms.h).
 #pragma once
 
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
+#include "core/index.h"
+#include "core/mechanisms.h"
 #include "integrators/integrator.h"
 
 namespace poinsot {
 
 class Growth {
  public:
-  explicit Growth(Eigen::Index nv) : change_(Eigen::VectorXd::Zero(nv)), next_(nv) {}
+  explicit Growth(const Run& run)
+      : mechanism_(mechanisms(run.problem.model())),
+        change_(Eigen::VectorXd::Zero(run.problem.nv())),
+        next_(run.problem.nv()) {
+    const Model& model = run.problem.model();
+    if (!mechanism_.empty()) parts_.resize(index(*std::ranges::max_element(mechanism_) + 1));
+    for (std::size_t b = 0; b < mechanism_.size(); ++b)
+      parts_[index(mechanism_[b])].rounding +=
+          std::pow(kRounding / run.settings.step, 2) * (1 + model.bodies[b].position.squaredNorm());
+  }
 
   // A step of length h to t took v_n to v. Tells it once.
   void watch(const Run& run, const Eigen::VectorXd& v, const Eigen::VectorXd& v_n, double t, double h) {
     if (told_) return;
     next_ = v - v_n;
-    const double square = next_.squaredNorm();
-    const bool grows = next_.dot(change_) < 0 && square > kGrows * square_ && square > kNoise * v.squaredNorm();
-    in_a_row_ = grows ? in_a_row_ + 1 : 0;
+    const Eigen::Index per_body = mechanism_.empty() ? 0 : v.size() / static_cast<Eigen::Index>(mechanism_.size());
+    for (std::size_t b = 0; b < mechanism_.size(); ++b) {
+      Part& of = parts_[index(mechanism_[b])];
+      const auto next = next_.segment(static_cast<Eigen::Index>(b) * per_body, per_body);
+      of.next += next.squaredNorm();
+      of.along += next.dot(change_.segment(static_cast<Eigen::Index>(b) * per_body, per_body));
+      of.speed += v.segment(static_cast<Eigen::Index>(b) * per_body, per_body).squaredNorm();
+    }
     change_.swap(next_);
-    square_ = square;
-    if (in_a_row_ < kTold) return;
-    told_ = true;
-    run.tell(fmt::format(
-        "at t = {:.6g} s velocities change to and fro from step to step, the {}th time by more: a spring or damper "
-        "moves "
-        "faster than h = {:g} s can follow where forces are taken at the start of a step, and what is computed "
-        "grows without bound; try integrator radau5 or generalized_alpha, or a smaller step",
-        t, kTold, h));
+    for (Part& of : parts_) {
+      const bool grows = of.along < 0 && of.next > kGrows * of.square && of.next > kNoise * of.speed + of.rounding;
+      of = {of.next, 0, 0, 0, of.rounding, grows ? of.in_a_row + 1 : 0};
+      if (of.in_a_row == kTold) tell(run, static_cast<int>(&of - parts_.data()), t, h);
+    }
   }
 
  private:
   static constexpr int kTold = 6;
-  static constexpr double kGrows = 1.2, kNoise = 1e-12;  // of squares
+  static constexpr double kGrows = 1.2, kNoise = 1e-12;                              // of squares
+  static constexpr double kRounding = 1e3 * std::numeric_limits<double>::epsilon();  // of positions, in a step
+
+  struct Part {
+    double square = 0;                      // of the change in the step before
+    double next = 0, along = 0, speed = 0;  // of the step under way: its square, with the one before, that of v
+    double rounding = 0;                    // of squares, what positions at rest make
+    int in_a_row = 0;
+  };
+
+  void tell(const Run& run, int mechanism, double t, double h) {
+    if (std::exchange(told_, true)) return;
+    run.tell(fmt::format(
+        "at t = {:.6g} s velocities{} change to and fro from step to step, the {}th time by more: a spring or damper "
+        "moves faster than h = {:g} s can follow where forces are taken at the start of a step, and what is computed "
+        "grows without bound; try integrator radau5 or generalized_alpha, or a smaller step",
+        t, of_mechanism(run.problem.model(), mechanism_, mechanism), kTold, h));
+  }
+
+  const std::vector<int> mechanism_;  // of each body
+  std::vector<Part> parts_;           // by mechanism
   Eigen::VectorXd change_, next_;
-  double square_ = 0;
-  int in_a_row_ = 0;
   bool told_ = false;
 };
 

@@ -4,18 +4,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "core/index.h"
+#include "core/mechanisms.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
 
 NumericalDamping::NumericalDamping(const Run& run)
-    : moves_(run.problem.nv() > run.problem.nc()), momentum_(run.problem.nv()) {
+    : mechanism_(mechanisms(run.problem.model())), momentum_(run.problem.nv()) {
+  constexpr double kNoise = 1e3 * std::numeric_limits<double>::epsilon();  // of a position, from step to step
+  const Problem& problem = run.problem;
+  const Model& model = problem.model();
+  if (model.bodies.empty()) return;
+  mechanisms_.resize(index(*std::ranges::max_element(mechanism_) + 1));
+  const int bodies = problem.bodies(), rows = static_cast<int>(problem.model_rows().size());
+  const int per_body = (problem.nv() - (problem.nc() - rows)) / bodies;  // less its normalization
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    Mechanism& of = mechanisms_[index(mechanism_[b])];
+    of.freedoms += per_body;
+    const double speed = kNoise / run.settings.step;
+    of.noise += 0.5 * speed * speed * (body.mass * body.position.squaredNorm() + body.inertia.trace());
+  }
+  for (const int k : problem.model_rows()) {
+    const Row& row = model.rows[index(k)];
+    if (row.i != kGround || row.j != kGround)
+      --mechanisms_[index(mechanism_[index(row.i == kGround ? row.j : row.i)])].freedoms;
+  }
+  moves_ = std::ranges::any_of(mechanisms_, [](const Mechanism& of) { return of.freedoms > 0; });
   if (!moves_) return;
-  bodies_.resize(index(run.problem.bodies()));
-  run.problem.to_bodies(run.state.a(), bodies_);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) then_.push_back(motion(run.problem.model().bodies[b], bodies_[b]));
+  bodies_.resize(index(bodies));
+  problem.to_bodies(run.state.a(), bodies_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) then_.push_back(motion(model.bodies[b], bodies_[b]));
 }
 
 NumericalDamping::Motion NumericalDamping::motion(const Body& body, const BodyState& at) {
@@ -27,29 +50,43 @@ void NumericalDamping::add(const Problem& problem, const State& x) {
   if (!moves_) return;
   steps_ += kApart;
   problem.to_bodies(x.a(), bodies_);
+  problem.momentum(span(x.v), span(momentum_));
+  const Eigen::Index per_body = x.v.size() / problem.bodies();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Body& body = problem.model().bodies[b];
     const Motion now = motion(body, bodies_[b]), &then = then_[b];
     const double turning = std::max(0.0, (now.L - then.L).dot(now.w - then.w));
-    taken_ += (body.mass * (now.rd - then.rd).squaredNorm() + turning) / kApart;
+    Mechanism& of = mechanisms_[index(mechanism_[b])];
+    of.taken += (body.mass * (now.rd - then.rd).squaredNorm() + turning) / kApart;
+    const Eigen::Index first = static_cast<Eigen::Index>(b) * per_body;
+    of.kinetic += 0.5 * x.v.segment(first, per_body).dot(momentum_.segment(first, per_body));
     then_[b] = now;
   }
-  problem.momentum(span(x.v), span(momentum_));
-  most_kinetic_ = std::max(most_kinetic_, 0.5 * x.v.dot(momentum_));
+  for (Mechanism& of : mechanisms_) {
+    of.most_kinetic = std::max(of.most_kinetic, of.kinetic);
+    of.kinetic = 0;
+  }
 }
 
 void NumericalDamping::say(const Run& run, double h) const {
   constexpr double kTold = 0.06;     // of the kinetic energy: 3 % of speeds
   constexpr double kFromRest = 2.5;  // steps: a constant force makes 2/n of that in n of them, with the motion it makes
-  if (steps_ == 0 || !(taken_ > (kTold + kFromRest / static_cast<double>(steps_)) * most_kinetic_)) return;
-  const double share = taken_ / most_kinetic_;
+  if (steps_ == 0) return;           // nor where nothing moves freely
+  const auto share_of = [](const Mechanism& of) {
+    return of.freedoms > 0 && of.most_kinetic > of.noise ? of.taken / of.most_kinetic : 0;
+  };
+  const Mechanism& of = *std::ranges::max_element(mechanisms_, {}, share_of);
+  const double share = share_of(of);
+  if (!(share > kTold + kFromRest / static_cast<double>(steps_))) return;
   // Less is taken of what is left: of most of it the step's part is not that of a small loss.
   const double rate = -std::log1p(-std::min(share, 0.99));
+  const std::string whose = of_mechanism(run.problem.model(), mechanism_, static_cast<int>(&of - mechanisms_.data()));
   run.tell(fmt::format(
-      "{} has taken some {:.3g} J or more out of the motion by itself, {:.3g} % of the largest kinetic energy (what "
+      "{} has taken some {:.3g} J or more out of the motion{} by itself, {:.3g} % of {} largest kinetic energy (what "
       "drivers put back included): it damps in proportion to the step; a step below {:.2g} s, rattle or error control "
       "take less than {:.0f} %",
-      run.settings.integrator, taken_, 100 * share, 0.9 * h * kTold / rate, 100 * kTold));
+      run.settings.integrator, of.taken, whose, 100 * share, whose.empty() ? "the" : "its", 0.9 * h * kTold / rate,
+      100 * kTold));
 }
 
 }  // namespace poinsot

@@ -9,7 +9,8 @@
 // of energy from the motion, L being a body's angular momentum about its centre of mass and ω its rate, both in space:
 // of a point that turns by φ in a step the part φ of its speed for each radian. It goes with the step's length;
 // constant forces leave less. Mechanisms without degrees of freedom keep their motion whatever is lost. What rotation
-// loses that no moment changes differs between the formulations (Rotations), and is not in it.
+// loses that no moment changes differs between the formulations (Rotations), and is not in it. Each mechanism of a
+// scene (core/mechanisms.h) is looked at by itself: the motion of a large one says nothing of a small one's.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,15 +40,21 @@ class NumericalDamping {
   struct Motion {
     Vector3 rd, L, w;  // in space
   };
+  struct Mechanism {
+    int freedoms = 0;                                 // it moves freely, if only in part
+    double kinetic = 0, taken = 0, most_kinetic = 0;  // J; at the last look, and since the start
+    double noise = 0;                                 // J, of which rounding can make as much
+  };
   static Motion motion(const Body& body, const BodyState& at);
   void add(const Problem& problem, const State& x);
 
-  const bool moves_;          // freely, if only in part
+  const std::vector<int> mechanism_;  // of each body
+  std::vector<Mechanism> mechanisms_;
+  bool moves_ = false;        // one of them does
   int since_ = 0;             // steps since the last look
   std::vector<Motion> then_;  // at that look, of each body
   std::vector<BodyState> bodies_;
   std::int64_t steps_ = 0;
-  double taken_ = 0, most_kinetic_ = 0;  // J
   Eigen::VectorXd momentum_;
 };
 

@@ -1,5 +1,6 @@
 // Accelerations that turn round and change by more than their size within a step, step after step, are not those of the
-// motion. Those of an oscillation that the steps resolve turn round now and then.
+// motion, in any of the scene's mechanisms (core/mechanisms.h). Those of an oscillation that the steps resolve turn
+// round now and then.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,37 +9,64 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "core/index.h"
+#include "core/mechanisms.h"
 #include "integrators/integrator.h"
 
 namespace poinsot {
 
 class Ringing {
  public:
+  explicit Ringing(const Problem& problem) : mechanism_(mechanisms(problem.model())) {
+    if (!mechanism_.empty()) parts_.resize(index(*std::ranges::max_element(mechanism_) + 1));
+  }
+
   // A step of length h to (t, q) took the accelerations at the head of z_n to those of z. Tells it once.
   void watch(const Run& run, const Eigen::VectorXd& z, const Eigen::VectorXd& z_n, const Eigen::VectorXd& q, double t,
              double h) {
-    if (in_a_row_ >= kTold) return;
-    double change = 0, before = 0, along = 0;
-    for (Eigen::Index k = 0; k < run.problem.nv(); ++k) {
-      change += std::pow(z[k] - z_n[k], 2);
-      before += std::pow(z_n[k], 2);
-      along += z[k] * z_n[k];
+    if (told_ || mechanism_.empty()) return;
+    const auto bodies = static_cast<Eigen::Index>(mechanism_.size());
+    const Eigen::Index per_body = run.problem.nv() / bodies, places = q.size() / bodies;
+    for (Eigen::Index b = 0; b < bodies; ++b) {
+      Part& of = parts_[index(mechanism_[index(b)])];
+      for (Eigen::Index k = b * per_body; k < (b + 1) * per_body; ++k) {
+        of.change += std::pow(z[k] - z_n[k], 2);
+        of.before += std::pow(z_n[k], 2);
+        of.along += z[k] * z_n[k];
+      }
+      of.place += q.segment(b * places, places).squaredNorm();
     }
-    const bool rings = along < 0 && change >= before && h * h * std::sqrt(change) >= kRounding * q.norm();
-    in_a_row_ = rings ? in_a_row_ + 1 : std::max(in_a_row_ - 1, 0);
-    if (in_a_row_ < kTold) return;
-    run.tell(fmt::format(
-        "up to t = {:.6g} s accelerations turn round and change by more than their size within a step, step after "
-        "step: a stiff damper or spring moves that h = {:g} s does not resolve, and what is made of it here dies out "
-        "by the factor spectral_radius a step; try integrator radau5 or a step that resolves it",
-        t, h));
+    for (Part& of : parts_) {
+      const bool rings = of.along < 0 && of.change >= of.before &&
+                         h * h * std::sqrt(of.change) >= kRounding * std::sqrt(std::max(of.place, 1.0));
+      of = {rings ? of.in_a_row + 1 : std::max(of.in_a_row - 1, 0)};
+      if (of.in_a_row >= kTold) return tell(run, static_cast<int>(&of - parts_.data()), t, h);
+    }
   }
 
  private:
   static constexpr int kTold = 10;
   static constexpr double kRounding = 1e4 * std::numeric_limits<double>::epsilon();
-  int in_a_row_ = 0;  // but for a few
+
+  struct Part {
+    int in_a_row = 0;                                     // but for a few
+    double change = 0, before = 0, along = 0, place = 0;  // of the step under way: squares, product
+  };
+
+  void tell(const Run& run, int mechanism, double t, double h) {
+    told_ = true;
+    run.tell(fmt::format(
+        "up to t = {:.6g} s accelerations{} turn round and change by more than their size within a step, step after "
+        "step: a stiff damper or spring moves that h = {:g} s does not resolve, and what is made of it here dies out "
+        "by the factor spectral_radius a step; try integrator radau5 or a step that resolves it",
+        t, of_mechanism(run.problem.model(), mechanism_, mechanism), h));
+  }
+
+  const std::vector<int> mechanism_;  // of each body
+  std::vector<Part> parts_;           // by mechanism
+  bool told_ = false;
 };
 
 }  // namespace poinsot
