@@ -72,6 +72,22 @@ std::string most_accelerated(const Problem& problem, const State& state) {
                      most->wd.norm());
 }
 
+// Of a distance where the scene starts, m.
+double start_length(const Model& model, const Row& row) {
+  const auto point = [&](int body, const Vector3& s) -> Vector3 {
+    if (body == kGround) return s;
+    return model.bodies[index(body)].position + model.bodies[index(body)].orientation * s;
+  };
+  return (point(row.j, row.s_j) - point(row.i, row.s_i)).norm();
+}
+
+// What a distance is short beside, m: its arms in bodies, the length it starts with. Not its place on the ground, which
+// is as far off as somebody put the origin.
+double about_distance(const Model& model, const Row& row) {
+  const double i = row.i == kGround ? 0 : row.s_i.norm(), j = row.j == kGround ? 0 : row.s_j.norm();
+  return std::max({i, j, start_length(model, row)});
+}
+
 constexpr int kLargest = 600;  // of G: a second's work
 
 }  // namespace
@@ -134,7 +150,7 @@ std::string growing_motion(const Problem& problem, const State& state) {
 }
 
 std::string vanished_gradient(Problem& problem, const State& state) {
-  constexpr double kVanished = 1e-3;
+  constexpr double kVanished = 1e-3, kShorter = 0.5;
   const Model& model = problem.model();
   problem.set_position(state.t, span(state.q));
   problem.set_velocity(span(state.v));
@@ -158,9 +174,8 @@ std::string vanished_gradient(Problem& problem, const State& state) {
           describe_row(model, k), sine);
     }
     if (row.type != RowType::D) continue;
-    const Vector3 of_i = point(row.i, row.s_i), of_j = point(row.j, row.s_j);
-    const double arm = std::max(row.s_i.norm(), row.s_j.norm()), length = (of_j - of_i).norm();
-    if (!(length < kVanished * (arm > 0 ? arm : 1))) continue;
+    const double length = (point(row.j, row.s_j) - point(row.i, row.s_i)).norm();
+    if (!(length < kVanished * about_distance(model, row)) || !(length < kShorter * start_length(model, row))) continue;
     return fmt::format(
         "{} has come to a length of {:.2g} m: at 0 its gradient vanishes, and it does not say in which direction the "
         "points come together or part; three CD constraints in its place, one for each axis, do",

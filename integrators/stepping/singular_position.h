@@ -56,7 +56,7 @@ Status never_beyond(const Problem& problem, const State& at, double limit);
 std::string growing_motion(const Problem& problem, const State& state);
 
 // A sentence about a row whose gradient has vanished by itself where a run stopped: a distance (D) that has come to
-// zero, relative to the longer of its two arms, or to a metre where it has none, or two directions at a prescribed
+// zero, relative to the longest of its arms in bodies and its length at the start, or two directions at a prescribed
 // cosine (DP1) that have come to lie in a line; else empty. The problem stands there afterwards.
 std::string vanished_gradient(Problem& problem, const State& state);
 
