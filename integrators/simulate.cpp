@@ -20,6 +20,7 @@
 #include "integrators/start/first_state.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
+#include "integrators/start/small_mechanisms.h"
 #include "integrators/stepping/pulses.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
@@ -125,6 +126,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     problem->set_velocity(span(state.v));
   }
   tell_of_switches(*model, integrator, settings, notice);
+  if (chooses_steps(settings)) tell_small_mechanisms(*model, settings.rtol, settings.absolute_tolerance(), notice);
   const double jumps_after =
       integrator.controls_error ? std::numeric_limits<double>::infinity() : first_jump(*model, settings.end);
   const Eigen::VectorXd q_start = state.q;
