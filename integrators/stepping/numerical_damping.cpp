@@ -70,6 +70,7 @@ void NumericalDamping::add(const Problem& problem, const State& x) {
 
 void NumericalDamping::say(const Run& run, double h) const {
   constexpr double kTold = 0.06;     // of the kinetic energy: 3 % of speeds
+  constexpr double kKnown = 0.5;     // up to there a step to offer follows from what was lost
   constexpr double kFromRest = 2.5;  // steps: a constant force makes 2/n of that in n of them, with the motion it makes
   if (steps_ == 0) return;           // nor where nothing moves freely
   const auto share_of = [](const Mechanism& of) {
@@ -78,15 +79,17 @@ void NumericalDamping::say(const Run& run, double h) const {
   const Mechanism& of = *std::ranges::max_element(mechanisms_, {}, share_of);
   const double share = share_of(of);
   if (!(share > kTold + kFromRest / static_cast<double>(steps_))) return;
-  // Less is taken of what is left: of most of it the step's part is not that of a small loss.
-  const double rate = -std::log1p(-std::min(share, 0.99));
+  // Less is taken of what is left, of the more the finer the motion is followed: a step is known where not much is
+  // lost.
+  const std::string enough =
+      share < kKnown ? fmt::format("a step below {:.2g} s, rattle or error control take less than {:.0f} %",
+                                   0.9 * h * kTold * std::pow(1 - share, 2) / share, 100 * kTold)
+                     : "of so much it cannot be told which step would take little; rattle or error control do";
   const std::string whose = of_mechanism(run.problem.model(), mechanism_, static_cast<int>(&of - mechanisms_.data()));
   run.tell(fmt::format(
       "{} has taken some {:.3g} J or more out of the motion{} by itself, {:.3g} % of {} largest kinetic energy (what "
-      "drivers put back included): it damps in proportion to the step; a step below {:.2g} s, rattle or error control "
-      "take less than {:.0f} %",
-      run.settings.integrator, of.taken, whose, 100 * share, whose.empty() ? "the" : "its", 0.9 * h * kTold / rate,
-      100 * kTold));
+      "drivers put back included): it damps in proportion to the step; {}",
+      run.settings.integrator, of.taken, whose, 100 * share, whose.empty() ? "the" : "its", enough));
 }
 
 }  // namespace poinsot
