@@ -30,6 +30,7 @@ class Growth {
     for (std::size_t b = 0; b < mechanism_.size(); ++b)
       parts_[index(mechanism_[b])].rounding +=
           std::pow(kRounding / run.settings.step, 2) * (1 + model.bodies[b].position.squaredNorm());
+    if (parts_.size() == 1) mechanism_.resize(1);  // at one go
   }
 
   // A step of length h to t took v_n to v. Tells it once.
@@ -73,8 +74,8 @@ class Growth {
         t, of_mechanism(run.problem.model(), mechanism_, mechanism), kTold, h));
   }
 
-  const std::vector<int> mechanism_;  // of each body
-  std::vector<Part> parts_;           // by mechanism
+  std::vector<int> mechanism_;  // of each body, or of all as one
+  std::vector<Part> parts_;     // by mechanism
   Eigen::VectorXd change_, next_;
   bool told_ = false;
 };

@@ -21,6 +21,7 @@ class Ringing {
  public:
   explicit Ringing(const Problem& problem) : mechanism_(mechanisms(problem.model())) {
     if (!mechanism_.empty()) parts_.resize(index(*std::ranges::max_element(mechanism_) + 1));
+    if (parts_.size() == 1) mechanism_.resize(1);  // at one go
   }
 
   // A step of length h to (t, q) took the accelerations at the head of z_n to those of z. Tells it once.
@@ -64,8 +65,8 @@ class Ringing {
         t, of_mechanism(run.problem.model(), mechanism_, mechanism), h));
   }
 
-  const std::vector<int> mechanism_;  // of each body
-  std::vector<Part> parts_;           // by mechanism
+  std::vector<int> mechanism_;  // of each body, or of all as one
+  std::vector<Part> parts_;     // by mechanism
   bool told_ = false;
 };
 
