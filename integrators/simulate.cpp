@@ -86,6 +86,20 @@ void tell_of_switches(const Model& model, const IntegratorEntry& integrator, con
                     pulse->function, pulse->t));
 }
 
+// Kinematics finds every position by itself, whatever lies between them; but where rows follow from others it says so
+// of the times that it looks at.
+void tell_of_redundant_pulses(const Model& model, const RankAnalysis& rank, const Settings& settings,
+                              const Tell& notice) {
+  if (settings.analysis != Analysis::kinematics || rank.aside.empty()) return;
+  Model loops;
+  for (const int row : rank.loops) loops.rows.push_back(model.rows[index(row)]);
+  if (const auto pulse = pulse_within(loops, settings.step, settings.end))
+    notice(
+        fmt::format("'{}' varies within less than a step at t = {:.6g} s, in a loop with redundant rows: whether they "
+                    "hold is seen at the steps alone, not between them; take a shorter step",
+                    pulse->function, pulse->t));
+}
+
 Outcome run(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
   check_numbers(settings);
   const FormulationEntry& formulation = formulations().require(settings.formulation);
@@ -126,6 +140,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     problem->set_velocity(span(state.v));
   }
   tell_of_switches(*model, integrator, settings, notice);
+  tell_of_redundant_pulses(*model, start.rank, settings, notice);
   if (chooses_steps(settings)) tell_small_mechanisms(*model, settings.rtol, settings.absolute_tolerance(), notice);
   const double jumps_after =
       integrator.controls_error ? std::numeric_limits<double>::infinity() : first_jump(*model, settings.end);

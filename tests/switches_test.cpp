@@ -4,6 +4,7 @@
 #include "integrators/stepping/switch_times.h"
 #include "tests/support/controlled_ways.h"
 #include "tests/support/simulation.h"
+#include "tests/support/twice_driven.h"
 
 namespace poinsot::test {
 namespace {
@@ -159,6 +160,25 @@ TEST(Pulses, AreTakenFromFixedStepsBySayingSo) {
     for (const char* smooth : {"10*exp(-((t - 0.5034)/0.1)^2)", "sin(20*t)", "exp(-5*t)*t^3", "1/(1 + t)", "7"})
       EXPECT_THAT(simulate(pushed(smooth), s, {}).notices, ::testing::Not(told)) << entry.name << ' ' << smooth;
   }
+}
+
+// Kinematics looks at redundant rows in its steps alone; where it is told, a shorter step sees that they do not hold.
+TEST(Pulses, OfRedundantRowsAreToldByKinematics) {
+  const auto told = ::testing::Contains(HasSubstr("varies within less than a step at t = 0.70"));
+  Settings s;
+  s.analysis = Analysis::kinematics;
+  s.step = 0.01;
+  const Scene scene = twice_driven("sin(t)", "sin(t) + 0.1*exp(-((t - 0.70031)/1e-5)^2)");
+  const Outcome coarse = simulate(scene, s, {});
+  EXPECT_TRUE(coarse.status.ok()) << coarse.status.message;
+  EXPECT_THAT(coarse.notices, told);
+  s.step = 1e-5;
+  EXPECT_FALSE(simulate(scene, s, {}).status.ok());
+  s.step = 0.01;
+  EXPECT_THAT(simulate(twice_driven("sin(t)", "sin(1*t)"), s, {}).notices, ::testing::Not(told));
+  Scene alone = scene;
+  alone.drivers.erase(alone.drivers.begin());
+  EXPECT_THAT(simulate(alone, s, {}).notices, ::testing::Not(told));
 }
 
 // Closed form: v = ∫ |sin| .
