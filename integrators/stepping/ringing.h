@@ -29,21 +29,20 @@ class Ringing {
              double h) {
     if (told_ || mechanism_.empty()) return;
     const auto bodies = static_cast<Eigen::Index>(mechanism_.size());
-    const Eigen::Index per_body = run.problem.nv() / bodies, places = q.size() / bodies;
+    const Eigen::Index per_body = run.problem.nv() / bodies;
     for (Eigen::Index b = 0; b < bodies; ++b) {
       Part& of = parts_[index(mechanism_[index(b)])];
-      for (Eigen::Index k = b * per_body; k < (b + 1) * per_body; ++k) {
-        of.change += std::pow(z[k] - z_n[k], 2);
-        of.before += std::pow(z_n[k], 2);
-        of.along += z[k] * z_n[k];
-      }
-      of.place += q.segment(b * places, places).squaredNorm();
+      const auto now = z.segment(b * per_body, per_body), then = z_n.segment(b * per_body, per_body);
+      of.change += (now - then).squaredNorm();
+      of.before += then.squaredNorm();
+      of.along += now.dot(then);
     }
     for (Part& of : parts_) {
+      const int number = static_cast<int>(&of - parts_.data());
       const bool rings = of.along < 0 && of.change >= of.before &&
-                         h * h * std::sqrt(of.change) >= kRounding * std::sqrt(std::max(of.place, 1.0));
+                         h * h * std::sqrt(of.change) >= kRounding * std::max(place(q, number), 1.0);
       of = {rings ? of.in_a_row + 1 : std::max(of.in_a_row - 1, 0)};
-      if (of.in_a_row >= kTold) return tell(run, static_cast<int>(&of - parts_.data()), t, h);
+      if (of.in_a_row >= kTold) return tell(run, number, t, h);
     }
   }
 
@@ -52,9 +51,19 @@ class Ringing {
   static constexpr double kRounding = 1e4 * std::numeric_limits<double>::epsilon();
 
   struct Part {
-    int in_a_row = 0;                                     // but for a few
-    double change = 0, before = 0, along = 0, place = 0;  // of the step under way: squares, product
+    int in_a_row = 0;                          // but for a few
+    double change = 0, before = 0, along = 0;  // of the step under way: squares, product
   };
+
+  // |q| of a mechanism, m.
+  double place(const Eigen::VectorXd& q, int mechanism) const {
+    const auto bodies = static_cast<Eigen::Index>(mechanism_.size());
+    const Eigen::Index places = q.size() / bodies;
+    double square = 0;
+    for (Eigen::Index b = 0; b < bodies; ++b)
+      if (mechanism_[index(b)] == mechanism) square += q.segment(b * places, places).squaredNorm();
+    return std::sqrt(square);
+  }
 
   void tell(const Run& run, int mechanism, double t, double h) {
     told_ = true;
