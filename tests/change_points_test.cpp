@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 #include "core/index.h"
@@ -166,7 +167,10 @@ TEST(KinematicSteps, pass_where_velocities_are_rounding) {
         const Recorded r = run(scene, kinematics(formulation, step, 2));
         ASSERT_TRUE(r.outcome.status.ok()) << law << ' ' << formulation << ' ' << step << r.outcome.status.message;
         EXPECT_LT((r.samples.back().bodies[1].r - scene.bodies[1].position).norm(), 1e-9) << law << ' ' << formulation;
-        EXPECT_LT(r.outcome.statistics.newton_iterations, 5 * r.outcome.statistics.steps + 1000) << law;
+        const double iterations = static_cast<double>(r.outcome.statistics.newton_iterations),
+                     steps = static_cast<double>(r.outcome.statistics.steps);
+        const bool moves = std::string_view(law).starts_with("exp");  // for an instant
+        EXPECT_LT(iterations, moves ? 5 * steps + 1000 : 1.5 * steps + 5) << law << ' ' << formulation;
       }
   }
 }
