@@ -13,15 +13,13 @@ std::vector<double> body_sizes(const Model& model) {
   const auto widen = [&](int body, double arm) {
     if (body != kGround) arms[index(body)] = std::max(arms[index(body)], arm);
   };
-  const auto place = [&](int body, const Vector3& s) -> Vector3 {
-    if (body == kGround) return s;
-    return model.bodies[index(body)].position + model.bodies[index(body)].orientation * s;
-  };
   for (const Row& row : model.rows) {
     if (row.type == RowType::DP1 || row.type == RowType::angle) continue;  // without points
     widen(row.i, row.s_i.norm());
     widen(row.j, row.s_j.norm());
-    const double d = row.type == RowType::DP2 ? (place(row.j, row.s_j) - place(row.i, row.s_i)).norm() : 0;
+    const double d = row.type == RowType::DP2
+                         ? (initial_point(model, row.j, row.s_j) - initial_point(model, row.i, row.s_i)).norm()
+                         : 0;
     if (d > kSamePoint * std::max(row.s_i.norm(), row.s_j.norm())) widen(row.i, d);
   }
   std::vector<double> sizes = arms;

@@ -34,8 +34,12 @@ std::vector<int> mechanisms(const Model& model) {
   return number;
 }
 
+std::size_t mechanism_count(std::span<const int> mechanism) {
+  return mechanism.empty() ? 0 : index(*std::ranges::max_element(mechanism) + 1);
+}
+
 std::string of_mechanism(const Model& model, std::span<const int> mechanism, int number) {
-  if (std::ranges::find_if(mechanism, [](int of) { return of > 0; }) == mechanism.end()) return {};
+  if (mechanism_count(mechanism) < 2) return {};
   const auto first = std::ranges::find(mechanism, number) - mechanism.begin();
   return fmt::format(" of the mechanism of body '{}'", model.bodies[index(first)].name);
 }

@@ -13,6 +13,8 @@ namespace poinsot {
 // By body, the number of its mechanism, from 0 in the order of their first bodies.
 std::vector<int> mechanisms(const Model& model);
 
+std::size_t mechanism_count(std::span<const int> mechanism);
+
 // " of the mechanism of body 'crank'": how messages speak of one of several by its first body; empty where there is
 // one.
 std::string of_mechanism(const Model& model, std::span<const int> mechanism, int number);

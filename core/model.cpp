@@ -83,6 +83,7 @@ class Compiler {
       case JointType::revolute:
         coincident(f);
         parallel(f);
+        hold_axis(f);
         break;
       case JointType::spherical:
         coincident(f);
@@ -90,17 +91,18 @@ class Compiler {
       case JointType::universal:
         coincident(f);
         perpendicular(f.axis_i, f.axis_j);
-        crosses_.emplace(std::pair(j.i, j.j), std::pair(f.axis_i, f.axis_j));
-        crosses_.emplace(std::pair(j.j, j.i), std::pair(f.axis_j, f.axis_i));
+        hold(f.axis_i, f.axis_j);
         break;
       case JointType::cylindrical:
         parallel(f);
         on_axis(f);
+        hold_axis(f);
         break;
       case JointType::translational:
         parallel(f);
         on_axis(f);
         perpendicular(f.a_i, f.axis_j.cross(f.a_j));
+        hold_axis(f);
         break;
       case JointType::fixed:
         coincident(f);
@@ -143,17 +145,33 @@ class Compiler {
     }
   }
 
-  // The directions of an angle. About one axis of a universal joint it is that of the other one, which stays across.
+  // Of the joint begun last: what an angle between its bodies may be that of.
+  void hold(const Vector3& axis_i, const Vector3& axis_j) {
+    const Group& joint = model_.groups.back();
+    held_.emplace(std::pair(joint.i, joint.j), Held{axis_i, axis_j});
+    held_.emplace(std::pair(joint.j, joint.i), Held{axis_j, axis_i});
+  }
+  void hold_axis(const JointFrames& f) {
+    const Group& joint = model_.groups.back();
+    held_.emplace(std::pair(joint.i, joint.j), Held{f.axis_i, Vector3::Zero()});
+    held_.emplace(std::pair(joint.j, joint.i), Held{f.axis_j, Vector3::Zero()});
+  }
+
+  // The directions of an angle. About one axis of a universal joint it is that of the other one, which stays across; on
+  // a hinge any serves.
   template <class Item>
   AngleFrame directions(const Item& item, std::string_view kind, const std::string& name) {
     constexpr double kSame = 1e-6;
     const Vector3 axis = item.axis.stableNormalized();
     Vector3 across = Vector3::Zero();
-    const auto [first, last] = crosses_.equal_range({item.i, item.j});
-    for (auto at = first; at != last; ++at)
-      if (at->second.first.cross(axis).norm() < kSame) across = at->second.second;
-    if (item.a_i.isZero(0) && across.isZero(0))
-      model_.open_angles.push_back({fmt::format("{} '{}'", kind, name), item.i, item.j, axis});
+    bool open = item.a_i.isZero(0);
+    const auto [first, last] = held_.equal_range({item.i, item.j});
+    for (auto at = first; at != last; ++at) {
+      if (at->second.axis.cross(axis).norm() > kSame) continue;
+      open = false;
+      if (!at->second.across.isZero(0)) across = at->second.across;
+    }
+    if (open) model_.open_angles.push_back({fmt::format("{} '{}'", kind, name), item.i, item.j, axis});
     return angle_frame(item, model_.bodies, across);
   }
 
@@ -191,11 +209,20 @@ class Compiler {
   const Scene& scene_;
   Model model_;
   ItemNames row_names_, force_names_;
-  // Of universal joints by their bodies, from either: the axis in the first, and that in the second.
-  std::multimap<std::pair<int, int>, std::pair<Vector3, Vector3>> crosses_;
+  // Of joints by their bodies, from either: an axis of the first that is one of the second, or stays across one.
+  struct Held {
+    Vector3 axis, across;  // in their frames; zero: the same axis
+  };
+  std::multimap<std::pair<int, int>, Held> held_;
 };
 
 }  // namespace
+
+Vector3 initial_point(const Model& model, int body, const Vector3& s) {
+  if (body == kGround) return s;
+  const Body& of = model.bodies[static_cast<std::size_t>(body)];
+  return of.position + of.orientation * s;
+}
 
 bool has_alternates(const Model& model) {
   return std::ranges::any_of(model.rows, [](const Row& row) { return row.alternate != nullptr; });

@@ -92,6 +92,9 @@ void for_each_joint(const Model& model, Visit&& visit) {
     if (group.kind == GroupKind::joint) visit(group, *frames++);
 }
 
+// Of a point s of a body's frame, or of the ground's, at the pose that the scene gives.
+Vector3 initial_point(const Model& model, int body, const Vector3& s);
+
 // Whether rows stand in for others where those are singular.
 bool has_alternates(const Model& model);
 

@@ -96,6 +96,18 @@ TEST_P(TiltedAngles, ThatNobodyNamedAreToldWhereTheAxisTilts) {
   EXPECT_THAT(notices(hinge), Not(told));
 }
 
+// A hinge that is closed from a rough pose turns the second body's axis onto the first one's: that is no tilt.
+TEST_P(TiltedAngles, OnAHingeDoNotTiltWhereItIsAssembled) {
+  Scene scene = hung(JointType::revolute, 0);
+  scene.joints[0].axis.setZero();
+  scene.joints[0].frames = JointFrames{{0, 0, 0}, {-0.6, -0.2, 0.3}, {0, 0, 1}, {0, 0, 1}};
+  scene.bodies[0].orientation = Turn(0.3, Vector3::UnitX()).toRotationMatrix();
+  spring(scene, Vector3::Zero());
+  const Recorded r = run(scene, controlled("auto", GetParam(), 1e-9, 0.3, 0.3));
+  ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+  EXPECT_THAT(r.outcome.notices, Not(Contains(HasSubstr("tilted"))));
+}
+
 // The spring's direction goes through its axis: there it has no angle, and beyond it one that is half a turn off.
 TEST_P(TiltedAngles, EndWhereTheirDirectionComesToLieAlongTheAxis) {
   Scene scene = hung(JointType::universal, 0);

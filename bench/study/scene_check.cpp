@@ -35,11 +35,7 @@ void measure(SceneCheck& result) {
     result.mass += body.mass;
     box.extend(body.position);
   }
-  const auto hold = [&](int of, const Vector3& s) {
-    if (of == kGround) return box.extend(s);
-    const Body& body = model.bodies[static_cast<std::size_t>(of)];
-    return box.extend(Vector3(body.position + body.orientation * s));
-  };
+  const auto hold = [&](int of, const Vector3& s) { box.extend(initial_point(model, of, s)); };
   for (const Row& row : model.rows) {
     if (row.type == RowType::DP1 || row.type == RowType::angle) continue;  // directions hold no points
     hold(row.i, row.s_i);

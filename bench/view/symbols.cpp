@@ -150,10 +150,7 @@ Symbols symbols(const Model& model) {
 std::vector<std::vector<Vector3>> attachment_points(const Model& model) {
   std::vector<std::vector<Vector3>> points(model.bodies.size());
   Eigen::AlignedBox3d whole;  // at the initial pose
-  const auto global = [&](int body, const Vector3& s) {
-    if (body == kGround) return s;
-    return Vector3(model.bodies[index(body)].position + model.bodies[index(body)].orientation * s);
-  };
+  const auto global = [&](int body, const Vector3& s) { return initial_point(model, body, s); };
   const auto add = [&](int body, const Vector3& s) {
     whole.extend(global(body, s));
     if (body == kGround) return;

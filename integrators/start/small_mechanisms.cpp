@@ -21,10 +21,6 @@ struct Mechanism {
   double size() const { return std::max(arm, way); }
 };
 
-Vector3 point(const Model& model, int body, const Vector3& s) {
-  return body == kGround ? s : Vector3(model.bodies[index(body)].position + model.bodies[index(body)].orientation * s);
-}
-
 // How far it stretches by weight and by the speed its bodies start with, m.
 double stretch(const Model& model, const Spring& spring) {
   double mass = 0, speed = 0;
@@ -40,7 +36,7 @@ double stretch(const Model& model, const Spring& spring) {
 
 std::vector<Mechanism> parts(const Model& model) {
   const std::vector<int> number = mechanisms(model);
-  std::vector<Mechanism> all(number.empty() ? 0 : index(*std::ranges::max_element(number) + 1));
+  std::vector<Mechanism> all(mechanism_count(number));
   for (std::size_t b = 0; b < number.size(); ++b) all[index(number[b])].bodies.push_back(static_cast<int>(b));
   const auto between = [&](const auto& pair, bool ties) -> Mechanism* {
     if (pair.i == kGround && pair.j == kGround) return nullptr;
@@ -49,7 +45,7 @@ std::vector<Mechanism> parts(const Model& model) {
     if (pair.j != kGround) of.arm = std::max(of.arm, pair.s_j.norm());
     if (!ties) return &of;
     of.tied = true;
-    of.way = std::max(of.way, (point(model, pair.j, pair.s_j) - point(model, pair.i, pair.s_i)).norm());
+    of.way = std::max(of.way, (initial_point(model, pair.j, pair.s_j) - initial_point(model, pair.i, pair.s_i)).norm());
     return &of;
   };
   for (std::size_t k = 0; k < model.rows.size(); ++k)
@@ -67,11 +63,11 @@ Vector3 direction(const Model& model, const Row& row) {
     case RowType::CD:
       return row.c.normalized();
     case RowType::D:
-      return (point(model, row.j, row.s_j) - point(model, row.i, row.s_i)).normalized();
+      return (initial_point(model, row.j, row.s_j) - initial_point(model, row.i, row.s_i)).normalized();
     case RowType::DP2:
-      return (point(model, row.i, row.a_i) - point(model, row.i, Vector3::Zero())).normalized();
+      return (initial_point(model, row.i, row.a_i) - initial_point(model, row.i, Vector3::Zero())).normalized();
     case RowType::pfaffian:
-      return (point(model, row.j, row.a_j) - point(model, row.j, Vector3::Zero())).normalized();
+      return (initial_point(model, row.j, row.a_j) - initial_point(model, row.j, Vector3::Zero())).normalized();
     default:
       return Vector3::Zero();
   }

@@ -26,7 +26,7 @@ class Growth {
         change_(Eigen::VectorXd::Zero(run.problem.nv())),
         next_(run.problem.nv()) {
     const Model& model = run.problem.model();
-    if (!mechanism_.empty()) parts_.resize(index(*std::ranges::max_element(mechanism_) + 1));
+    parts_.resize(mechanism_count(mechanism_));
     for (std::size_t b = 0; b < mechanism_.size(); ++b)
       parts_[index(mechanism_[b])].rounding +=
           std::pow(kRounding / run.settings.step, 2) * (1 + model.bodies[b].position.squaredNorm());

@@ -19,7 +19,7 @@ NumericalDamping::NumericalDamping(const Run& run)
   const Problem& problem = run.problem;
   const Model& model = problem.model();
   if (model.bodies.empty()) return;
-  mechanisms_.resize(index(*std::ranges::max_element(mechanism_) + 1));
+  mechanisms_.resize(mechanism_count(mechanism_));
   const int bodies = problem.bodies(), rows = static_cast<int>(problem.model_rows().size());
   const int per_body = (problem.nv() - (problem.nc() - rows)) / bodies;  // less its normalization
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {

@@ -20,7 +20,7 @@ namespace poinsot {
 class Ringing {
  public:
   explicit Ringing(const Problem& problem) : mechanism_(mechanisms(problem.model())) {
-    if (!mechanism_.empty()) parts_.resize(index(*std::ranges::max_element(mechanism_) + 1));
+    parts_.resize(mechanism_count(mechanism_));
     if (parts_.size() == 1) mechanism_.resize(1);  // at one go
   }
 

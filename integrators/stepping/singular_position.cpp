@@ -74,11 +74,7 @@ std::string most_accelerated(const Problem& problem, const State& state) {
 
 // Of a distance where the scene starts, m.
 double start_length(const Model& model, const Row& row) {
-  const auto point = [&](int body, const Vector3& s) -> Vector3 {
-    if (body == kGround) return s;
-    return model.bodies[index(body)].position + model.bodies[index(body)].orientation * s;
-  };
-  return (point(row.j, row.s_j) - point(row.i, row.s_i)).norm();
+  return (initial_point(model, row.j, row.s_j) - initial_point(model, row.i, row.s_i)).norm();
 }
 
 // What a distance is short beside, m: its arms in bodies, the length it starts with. Not its place on the ground, which
