@@ -35,7 +35,7 @@ std::string one_of(const SettingEntry& entry) {
 
 std::string allowed_number(const SettingEntry& entry) {
   if (std::holds_alternative<int Settings::*>(entry.member)) return "a whole number, at least 1";
-  if (std::isfinite(entry.most)) return fmt::format("a number from {:g} to {:g}", entry.least, entry.most);
+  if (std::isfinite(entry.most)) return fmt::format("a number from {:.2g} to {:g}", entry.least, entry.most);
   if (entry.least > 0) return fmt::format("a number, at least {:.2g}", entry.least);
   return entry.zero_allowed ? "a number, at least 0" : "a number greater than 0";
 }

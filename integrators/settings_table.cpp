@@ -48,7 +48,7 @@ const std::array kEntries{
     SettingEntry{"tolerance", "Newton: size of the correction, see stopping; in kinematics its 2-norm",
                  &Settings::tolerance, nullptr, false, 0, kInfinity, For::fixed_steps},
     SettingEntry{"rtol", "relative tolerance of integrators with error control", &Settings::rtol, nullptr, false,
-                 kLeastRtol, kInfinity, For::error_control},
+                 kLeastRtol, 1, For::error_control},
     SettingEntry{"atol", "absolute tolerance of integrators with error control", &Settings::atol, nullptr, false, 0,
                  kInfinity, For::error_control},
     SettingEntry{"max_iterations", "Newton: iterations allowed in a step", &Settings::max_iterations, nullptr, false, 0,

@@ -103,7 +103,7 @@ TEST_F(WrongInput, CommandLineValues) {
   };
   refused("--step", "0", "--step: found \"0\", expected a number greater than 0");
   refused("--step", "-1", "--step: found \"-1\", expected a number greater than 0");
-  refused("--rtol", "1e-15", "--rtol: found \"1e-15\", expected a number, at least 2.2e-15");
+  refused("--rtol", "1e-15", "--rtol: found \"1e-15\", expected a number from 2.2e-15 to 1");
   for (const char* radius : {"3", "-1", "1.001"})
     refused("--spectral-radius", radius,
             fmt::format("--spectral-radius: found \"{}\", expected a number from 0 to 1", radius));
@@ -135,7 +135,7 @@ TEST_F(WrongInput, Configuration) {
   expect_configuration_refused(R"({"step": 0})",
                                "poinsot: config.json: /step: found 0, expected a number greater than 0");
   expect_configuration_refused(R"({"rtol": 1e-15})",
-                               "poinsot: config.json: /rtol: found 1e-15, expected a number, at least 2.2e-15");
+                               "poinsot: config.json: /rtol: found 1e-15, expected a number from 2.2e-15 to 1");
   expect_configuration_refused(R"({"spectral_radius": 3})",
                                "poinsot: config.json: /spectral_radius: found 3, expected a number from 0 to 1");
   expect_configuration_refused(
@@ -196,7 +196,7 @@ TEST_F(WrongInput, TimeGrid) {
         "poinsot: --every: found 1e-300 s with end 1 s, which are 1e+300 output times, expected at most 1e15; "
         "try a larger one");
   }
-  expect_refused({"run", "pendulum.json", "--integrator", "dopri5", "--end", "1e-320", "--rtol", "1e300"},
+  expect_refused({"run", "pendulum.json", "--integrator", "dopri5", "--end", "1e-320", "--rtol", "1"},
                  "poinsot: --end: found \"1e-320\", expected a number, at least 1e-292");
 }
 

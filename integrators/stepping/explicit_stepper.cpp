@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "integrators/stepping/accept.h"
-#include "integrators/stepping/step_control.h"
 #include "integrators/stepping/turning.h"
 #include "integrators/stepping/vectors.h"
 
@@ -50,6 +49,7 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
       state_(problem),
       next_(problem),
       sample_(problem),
+      norm_(problem),
       stiffness_(pair.rule.safety * pair.stability) {
   const Eigen::Index nv = problem.nv();
   q_n_.setZero(problem.nq());
@@ -100,7 +100,7 @@ Status ExplicitStepper::norm(Terms terms, double& size) {
     for (const std::span<double> part : {span(combined_).first(nv_), span(combined_).subspan(nv_)})
       if (Status status = consistent_.along_constraints(next_, part); !status.ok()) return status;
   }
-  size = error_norm(span(combined_), span(scale_));
+  size = norm_(span(combined_), span(scale_));
   return {};
 }
 
@@ -131,7 +131,7 @@ Status ExplicitStepper::first_step(double end, double& h) {
   const double t = state_.t;
   scale_.array() = atol_ + rtol_ * sizes_.array();
   combined_ << state_.v, state_.z.head(problem_.nv());
-  const double y = error_norm(span(sizes_), span(scale_)), f = error_norm(span(combined_), span(scale_));
+  const double y = norm_(span(sizes_), span(scale_)), f = norm_(span(combined_), span(scale_));
   const double h0 = first_trial(y, f, end - t);
 
   q_n_ = state_.q;
@@ -141,7 +141,7 @@ Status ExplicitStepper::first_step(double end, double& h) {
   Status status = evaluate(next_, y_, 1);
   if (status.ok()) {
     combined_ = (k_.col(1) - combined_) / h0;
-    const double second = error_norm(span(combined_), span(scale_));
+    const double second = norm_(span(combined_), span(scale_));
     h = std::isfinite(second) ? poinsot::first_step(h0, f, second, pair_.order, end - t) : h0;
   }
   elsewhere_ = true;
@@ -167,14 +167,14 @@ Status ExplicitStepper::run_through_stages(double to, State& at) {
 void ExplicitStepper::test_stiffness() {
   if (project_stages_) return;
   combined_ = y_ - g_;
-  const double apart = error_norm(span(combined_), span(scale_));
+  const double apart = norm_(span(combined_), span(scale_));
   if (!(apart * rtol_ > kNoise)) return;
   const auto nv = static_cast<Eigen::Index>(nv_);
   const auto scaled = [&](auto&& x) { return x.tail(nv).array() / scale_.tail(nv).array(); };
   const double size = scaled(combined_).square().sum();
   const double along = (scaled(k_.col(last_) - k_.col(last_ - 1)) * scaled(combined_)).sum();
   combined_ = k_.col(last_) - k_.col(last_ - 1);
-  stiffness_.accepted(h_ * error_norm(span(combined_), span(scale_)) / apart, size > 0 ? -h_ * along / size : 0);
+  stiffness_.accepted(h_ * norm_(span(combined_), span(scale_)) / apart, size > 0 ? -h_ * along / size : 0);
 }
 
 Status ExplicitStepper::attempt(double to, Stages stages, double& error) {
@@ -218,7 +218,7 @@ Status ExplicitStepper::project_end(double& error, double most) {
     error = std::max(error, shift);
     return settled_ || !(error <= most) ? Status{} : consistent_.refine(next_);
   };
-  const auto shift = [&](std::span<const double> by) { return error_norm(by, span(scale_)); };
+  const auto shift = [&](std::span<const double> by) { return norm_(by, span(scale_)); };
   if (!settled_) {
     bool moved = false;
     Status status = consistent_.project(next_, moved);
@@ -243,7 +243,7 @@ Status ExplicitStepper::project_end(double& error, double most) {
 bool ExplicitStepper::ends_agree() {
   if (project_stages_) return true;
   combined_ = k_.col(last_) - k_.col(last_ - 1);
-  return !(h_ * error_norm(span(combined_), span(scale_)) * rtol_ > 1);
+  return !(h_ * norm_(span(combined_), span(scale_)) * rtol_ > 1);
 }
 
 Status ExplicitStepper::complete(double& error, double most) {

@@ -20,6 +20,7 @@
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/passage.h"
 #include "integrators/stepping/runge_kutta_pair.h"
+#include "integrators/stepping/step_control.h"
 #include "integrators/stepping/stiffness.h"
 
 namespace poinsot {
@@ -109,6 +110,7 @@ class ExplicitStepper {
   double h_ = 0, t_n_ = 0;
   bool elsewhere_ = false;
   enum class Dense { missing, ready, too_coarse } dense_ = Dense::missing;
+  ErrorNorm norm_;
   Vector sizes_, sizes_next_, scale_, combined_;
   StiffnessTest stiffness_;
 };

@@ -5,7 +5,6 @@
 
 #include "integrators/stepping/radau_stepper.h"
 #include "integrators/stepping/radau_tableau.h"
-#include "integrators/stepping/step_control.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
@@ -168,7 +167,7 @@ Status RadauStepper::newton(const State& from, double to, Linearized& linear) {
     double sum = 0;
     for (Eigen::Index i = 0; i < 3; ++i) {
       change_ << dQ_.col(i) - dQ_old_.col(i), V_.col(i) - V_old_.col(i);
-      sum += std::pow(error_norm(span(change_), span(scale_)), 2);
+      sum += std::pow(norm_(span(change_), span(scale_)), 2);
     }
     const double change = std::sqrt(sum / 3);
     if (!std::isfinite(change)) break;

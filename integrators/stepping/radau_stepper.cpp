@@ -5,7 +5,6 @@
 
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/radau_tableau.h"
-#include "integrators/stepping/step_control.h"
 #include "integrators/stepping/turning.h"
 #include "integrators/stepping/vectors.h"
 
@@ -33,7 +32,8 @@ RadauStepper::RadauStepper(Problem& problem, LinearSystems& systems, double rtol
       next_(problem),
       sample_(problem),
       before_(problem),
-      stage_(problem) {
+      stage_(problem),
+      norm_(problem) {
   for (Columns* x : {&Z_, &Z_before_, &R_}) x->setZero(n_, 3);
   for (Columns* x : {&V_, &dQ_, &V_old_, &dQ_old_, &rates_}) x->setZero(nv_, 3);
   for (Vector* x : {&sizes_, &sizes_next_, &scale_, &change_, &e_}) x->setZero(2 * nv_);
@@ -127,13 +127,13 @@ Status RadauStepper::error_of(const State& from, double h, double& error) {
   if (Status status = filter_.solve(from.t, span(filtered_)); !status.ok()) return status;
   e_.tail(nv_) -= hmu * filtered_.head(nv_);
   e_.head(nv_) += hmu * e_.tail(nv_);
-  error = error_norm(span(e_), span(scale_));
+  error = norm_(span(e_), span(scale_));
   return {};
 }
 
 Status RadauStepper::complete(double& error, double most) {
   if (Status status = passage_.complete(next_); !status.ok()) return status;
-  const double shift = error_norm(passage_.moved_by(), span(scale_));
+  const double shift = norm_(passage_.moved_by(), span(scale_));
   if (shift > std::max(error, kOfAccount)) consistent_.look(consistent_.steepness(next_.t));
   error = std::max(error, consistent_.error_in(next_, passage_.moved_by(), shift));
   if (!(error <= most)) return {};

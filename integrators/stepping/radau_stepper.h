@@ -26,6 +26,7 @@
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/linearization.h"
 #include "integrators/stepping/passage.h"
+#include "integrators/stepping/step_control.h"
 
 namespace poinsot {
 
@@ -119,6 +120,7 @@ class RadauStepper {
   bool fast_ = false;
   double convergence_ = 1;  // θ/(1 − θ)
   double counted_ = 0;      // rate of the fastest counted angle at the state, rad/s
+  ErrorNorm norm_;
   Vector sizes_, sizes_next_, scale_, change_, e_, filtered_;
 };
 

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
+#include "core/mechanisms.h"
+
 namespace poinsot {
 namespace {
 
@@ -15,6 +18,16 @@ double length(std::span<const double> x) {
   double sum = 0;
   for (double e : x) sum += e * e;
   return std::sqrt(sum);
+}
+
+// Σ (x/s)²
+double squared(std::span<const double> x, std::span<const double> scale) {
+  double sum = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double e = x[k] / scale[k];
+    sum += e * e;
+  }
+  return sum;
 }
 
 // What methods say of a step that is tried again: no words, which are allocated.
@@ -47,13 +60,28 @@ void component_sizes(const Problem& problem, std::span<const double> q, std::spa
   }
 }
 
-double error_norm(std::span<const double> x, std::span<const double> scale) {
-  double sum = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const double e = x[k] / scale[k];
-    sum += e * e;
+ErrorNorm::ErrorNorm(const Problem& problem) : mechanism_(mechanisms(problem.model())) {
+  parts_.resize(mechanism_count(mechanism_));
+  const std::size_t per_body = mechanism_.empty() ? 0 : index(2 * problem.nv()) / mechanism_.size();
+  for (const int of : mechanism_) parts_[index(of)].components += per_body;
+}
+
+double ErrorNorm::operator()(std::span<const double> x, std::span<const double> scale) {
+  if (parts_.size() < 2) return std::sqrt(squared(x, scale) / static_cast<double>(std::max<std::size_t>(x.size(), 1)));
+  const std::size_t nv = x.size() / 2, per_body = nv / mechanism_.size();
+  for (Part& of : parts_) of.sum = 0;
+  for (std::size_t b = 0; b < mechanism_.size(); ++b) {
+    Part& of = parts_[index(mechanism_[b])];
+    for (const std::size_t at : {b * per_body, nv + b * per_body})
+      of.sum += squared(x.subspan(at, per_body), scale.subspan(at, per_body));
   }
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(x.size(), 1)));
+  double most = 0;
+  for (const Part& of : parts_) {
+    const double mean = of.sum / static_cast<double>(of.components);
+    if (!(mean <= most)) most = mean;  // NaN stays
+    if (std::isnan(mean)) break;
+  }
+  return std::sqrt(most);
 }
 
 double StepController::accepted(double h, double error) {

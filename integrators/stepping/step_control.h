@@ -2,6 +2,7 @@
 //
 //   |x| = sqrt(mean (x_k / s_k)²),   s_k = atol + rtol size_k
 //
+// of the mechanism of the scene (core/mechanisms.h) where that is largest: what else there is loosens no tolerance.
 // size_k is, body by body, that of the vector k belongs to: |r| for a position, 1 for an orientation (whose variation
 // is an angle, or of its size), |ṙ| and |ẋ| for velocities. Vectors rather than components: steps do not depend on how
 // the global axes lie, and a component that passes through zero does not make the tolerance absolute.
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <span>
+#include <vector>
 
 #include "formulations/problem.h"
 
@@ -24,8 +26,20 @@ namespace poinsot {
 void component_sizes(const Problem& problem, std::span<const double> q, std::span<const double> v,
                      std::span<double> sizes);
 
-// sqrt(mean (x/s)²)
-double error_norm(std::span<const double> x, std::span<const double> scale);
+class ErrorNorm {
+ public:
+  explicit ErrorNorm(const Problem& problem);
+
+  double operator()(std::span<const double> x, std::span<const double> scale);  // of 2 nv components
+
+ private:
+  struct Part {
+    double sum = 0;
+    std::size_t components = 0;
+  };
+  std::vector<int> mechanism_;  // of each body
+  std::vector<Part> parts_;     // by mechanism
+};
 
 // Part of the tolerance that makes a difference to the next step.
 inline constexpr double kOfAccount = 0.1;
