@@ -68,6 +68,39 @@ TEST(OpenSpins, at_the_start_alone_are_refused_in_every_formulation) {
     }
 }
 
+// Point masses that are fixed to one another on the axis of a hinge: none of them spins by itself.
+TEST(OpenSpins, of_several_bodies_together_are_refused_and_named) {
+  Random random(44);
+  for (const Matrix3& A : {Matrix3(Matrix3::Identity()), random.rotation()}) {
+    Scene points = rod(A);
+    points.bodies[0].position.setZero();
+    for (const double at : {1.0, 2.0}) {
+      Body body = points.bodies[0];
+      body.name = fmt::format("point {}", at), body.position = {0, at, 0};
+      points.bodies.push_back(body);
+    }
+    for (Body& body : points.bodies) body.inertia.setZero();
+    points = held(points, JointType::revolute, {0, 0, 0});
+    for (int i = 0; i < 2; ++i) {
+      Joint joint;
+      joint.type = JointType::fixed, joint.i = i, joint.j = i + 1, joint.point = points.bodies[index(i + 1)].position;
+      points.joints.push_back(joint);
+    }
+    for (const FormulationEntry& formulation : formulations()) {
+      SCOPED_TRACE(formulation.name);
+      const Settings settings = controlled("dop853", std::string(formulation.name), 1e-8, 0.1, 0.1);
+      const Recorded refused = run(points, settings);
+      EXPECT_EQ(refused.outcome.status.message,
+                "at t = 0 s the linear system is singular: body 'rod' (/bodies/0) and body 'point 1' (/bodies/1) and 1 "
+                "more have no moment of inertia along a turn of theirs that the constraints leave free in the initial "
+                "pose; give one of them a small moment there, or start from another pose");
+      Scene heavy = points;
+      heavy.bodies[2].inertia = 1e-3 * Matrix3::Identity();
+      EXPECT_TRUE(run(heavy, settings).outcome.status.ok());
+    }
+  }
+}
+
 TEST(OpenSpins, of_point_masses_are_found) {
   Scene point = rod();
   point.bodies[0].inertia.setZero();

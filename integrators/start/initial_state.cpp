@@ -16,7 +16,7 @@
 #include "formulations/registry.h"
 #include "integrators/start/closure.h"
 #include "integrators/start/far_bodies.h"
-#include "integrators/start/momentary_spin.h"
+#include "integrators/start/free_of_inertia.h"
 #include "integrators/start/rank.h"
 #include "integrators/start/regular_beside.h"
 #include "integrators/start/rough_pose.h"
@@ -66,7 +66,7 @@ class Assembler {
       return std::move(result_);
     }
     if (settings_.analysis == Analysis::dynamics) {
-      if (result_.status = refuse_momentary_spin(model_, given_); !result_.status.ok()) return std::move(result_);
+      if (result_.status = refuse_motion_free_of_inertia(model_, given_); !result_.status.ok()) return std::move(result_);
     }
     result_.status = project();
     if (result_.status.failure == Failure::inconsistent_state) {
