@@ -228,6 +228,7 @@ class MechanismProblem final : public Problem {
     return Torsion<F, double>::angle(c, c.elements->followed[k], c.followed[k]);
   }
 
+  double turn(int body) const override { return mechanism_.c.rate[index(body)].w.norm(); }
   double fastest_turn() const override {
     double square = 0;
     for (const auto& rate : mechanism_.c.rate) square = std::max(square, rate.w.squaredNorm());

@@ -145,7 +145,8 @@ class Problem {
   // Angle of a torsion spring of the model, and of an angle that is followed: rad, with full turns.
   virtual double twist(int torsion) const = 0;
   virtual double followed_angle(int of) const = 0;
-  // The largest |ω| of a body, rad/s. Needs the velocity.
+  // |ω| of a body, rad/s, and the largest of one. Need the velocity.
+  virtual double turn(int body) const = 0;
   virtual double fastest_turn() const = 0;
   virtual CountedTurn counted_turn() const = 0;  // needs the velocity
   // How messages speak of unknown k of the step's linear system: a body's coordinates or a constraint row.

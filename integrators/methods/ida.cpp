@@ -32,6 +32,7 @@ class Session {
         settings_(run.settings),
         statistics_(run.statistics),
         ida_(run, clock_),
+        parts_(problem_),
         consistent_(problem_, run.systems.add(), statistics_, clock_),
         passage_(problem_, consistent_),
         at_(run.state),
@@ -121,12 +122,17 @@ class Session {
     std::swap(before_, last_);
     last_.t = t, last_.a = next_.z.head(problem_.nv()), last_.way = way_, last_.known = true;
     way_ = 0;
-    if (!before_.known || last_.way > kTurned || !turned_round(before_.a, last_.a)) return {};
-    consistent_.stand(next_);
-    if (!consistent_.factor(t).ok()) return {};
-    consistent_.look(consistent_.steepness(t));
-    const bool left = consistent_.amplification() > 1 && consistent_.lies_free(t, last_.a - before_.a);
-    return left ? other_branch_after_rest(t, before_.t) : Status{};
+    if (!before_.known || last_.way > kTurned) return {};
+    for (std::size_t part = 0; part < parts_.count(); ++part) {
+      if (!turned_round(parts_, part, before_.a, last_.a)) continue;
+      if (parts_.rests(parts_.largest(part, span(last_.a)), largest(span(last_.a)))) continue;
+      consistent_.stand(next_);
+      if (!consistent_.factor(t).ok()) return {};
+      consistent_.look(consistent_.steepness(t));
+      if (consistent_.amplification(part) > 1 && consistent_.lies_free(t, last_.a - before_.a, part))
+        return other_branch_after_rest(t, before_.t);
+    }
+    return {};
   }
 
   // What is discrete follows the motion as IDA has it, off the constraints by its tolerance. Where that seems to be off
@@ -271,6 +277,7 @@ class Session {
   Statistics& statistics_;
   PhaseClock clock_;
   IdaSystem ida_;
+  const Parts parts_;
   Consistent consistent_;
   Passage passage_;
   State at_, next_;  // the last point given out, and the next one while it is made

@@ -74,6 +74,7 @@ class OverConstrained final : public Problem {
   std::string fault() const override { return kept_->fault(); }
   double twist(int torsion) const override { return kept_->twist(torsion); }
   double followed_angle(int of) const override { return kept_->followed_angle(of); }
+  double turn(int body) const override { return kept_->turn(body); }
   double fastest_turn() const override { return kept_->fastest_turn(); }
   CountedTurn counted_turn() const override { return kept_->counted_turn(); }
   std::string describe_unknown(int k) const override { return kept_->describe_unknown(k); }

@@ -15,22 +15,24 @@ struct Most {
   double way, turn;
 };
 
-// `of`: number k of a velocity.
+// Of a mechanism; `of`: number k of a velocity.
 template <class Velocity>
-Most most(const Problem& problem, Velocity&& of) {
-  const Eigen::Index nv = problem.nv(), per_body = nv / problem.bodies();
+Most most(const Problem& problem, const Parts& parts, std::size_t part, Velocity&& of) {
+  const Eigen::Index per_body = problem.nv() / problem.bodies();
   double way = 0, turn = 0;
-  for (Eigen::Index b = 0; b < nv; b += per_body) {
-    double squares[2] = {0, 0};
-    for (Eigen::Index k = 0; k < per_body; ++k) squares[k > 2] += of(b + k) * of(b + k);
-    way = std::max(way, squares[0]);
-    turn = std::max(turn, squares[1]);
-  }
+  parts.for_each_run(part, [&](Eigen::Index first, Eigen::Index count) {
+    for (Eigen::Index b = first; b < first + count; b += per_body) {
+      double squares[2] = {0, 0};
+      for (Eigen::Index k = 0; k < per_body; ++k) squares[k > 2] += of(b + k) * of(b + k);
+      way = std::max(way, squares[0]);
+      turn = std::max(turn, squares[1]);
+    }
+  });
   return {std::sqrt(way), std::sqrt(turn)};
 }
 
-Most most(const Problem& problem, const Eigen::VectorXd& v) {
-  return most(problem, [&](Eigen::Index k) { return v[k]; });
+Most most(const Problem& problem, const Parts& parts, std::size_t part, const Eigen::VectorXd& v) {
+  return most(problem, parts, part, [&](Eigen::Index k) { return v[k]; });
 }
 
 // The larger of two velocities, of which points and turns are no less than a part of the other: where centres of mass
@@ -43,31 +45,44 @@ Most larger(double length, const Most& a, const Most& b) {
 
 }  // namespace
 
+BranchWatch::BranchWatch(const Problem& problem)
+    : parts_(problem), changes_(parts_.count()), length_(longest_arm(problem.model())) {}
+
 void BranchWatch::begin(const Problem& problem, std::span<const double> a) {
-  const Most change = most(problem, [&](Eigen::Index k) { return a[index(k)]; });
-  usual_way_ = change.way, usual_turn_ = change.turn;
-  length_ = longest_arm(problem.model());
+  for (std::size_t part = 0; part < parts_.count(); ++part) {
+    const Most change = most(problem, parts_, part, [&](Eigen::Index k) { return a[index(k)]; });
+    changes_[part].usual_way = change.way, changes_[part].usual_turn = change.turn;
+  }
 }
 
 double BranchWatch::jump(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h) {
   constexpr double kUnusual = 4, kMoved = 0.1;
   if (problem.model_rows().empty()) return 0;  // no constraints, no branches
-  const Most change = most(problem, [&](Eigen::Index k) { return v[k] - v_n[k]; });
-  way_ = change.way / h, turn_ = change.turn / h;
-  if (!(way_ > kUnusual * usual_way_ || turn_ > kUnusual * usual_turn_)) return 0;
-  const Most before = most(problem, v_n), after = most(problem, v);
-  const Most size = larger(length_, before, after);
-  const auto part = [&](double Most::*of) {  // of no start from rest, which has no branch to leave
-    return before.*of > kMoved * after.*of ? change.*of / size.*of : 0;
-  };
-  return std::max(part(&Most::way), part(&Most::turn));
+  double most_changed = 0, fastest = -1;
+  for (std::size_t n = 0; n < parts_.count(); ++n) {
+    const Most change = most(problem, parts_, n, [&](Eigen::Index k) { return v[k] - v_n[k]; });
+    Changes& of = changes_[n];
+    of.way = change.way / h, of.turn = change.turn / h;
+    if (!(of.way > kUnusual * of.usual_way || of.turn > kUnusual * of.usual_turn)) continue;
+    if (fastest < 0) fastest = largest(span(v));
+    if (parts_.rests(parts_.largest(n, span(v)), fastest)) continue;
+    const Most before = most(problem, parts_, n, v_n), after = most(problem, parts_, n, v);
+    const Most size = larger(length_, before, after);
+    const auto part = [&](double Most::*which) {  // of no start from rest, which has no branch to leave
+      return before.*which > kMoved * after.*which ? change.*which / size.*which : 0;
+    };
+    most_changed = std::max({most_changed, part(&Most::way), part(&Most::turn)});
+  }
+  return most_changed;
 }
 
 void BranchWatch::follow() {
   const double share = begun_ ? 0.1 : 1;
   begun_ = true;
-  usual_way_ += share * (way_ - usual_way_);
-  usual_turn_ += share * (turn_ - usual_turn_);
+  for (Changes& of : changes_) {
+    of.usual_way += share * (of.way - of.usual_way);
+    of.usual_turn += share * (of.turn - of.usual_turn);
+  }
 }
 
 Departure departure(Problem& problem, const LinearChoice& choice, const StepEnd& from, const StepEnd& to) {
@@ -93,10 +108,16 @@ Departure departure(Problem& problem, const LinearChoice& choice, const StepEnd&
   };
   Consistent consistent(problem, choice);
   if (!consistent.factor(to.t).ok() || !consistent.solve(to.t, span(rhs)).ok()) return departed(HUGE_VAL);
-  const Most delta = most(problem, rhs),
-             size = larger(longest_arm(problem.model()), most(problem, from.v), most(problem, to.v));
-  const auto share = [&](double Most::*of) { return size.*of > 0 ? delta.*of / size.*of : 0; };
-  return departed(std::max(share(&Most::way), share(&Most::turn)));
+  const Parts parts(problem);
+  const double length = longest_arm(problem.model());
+  double largest = 0;
+  for (std::size_t n = 0; n < parts.count(); ++n) {
+    const Most delta = most(problem, parts, n, rhs),
+               size = larger(length, most(problem, parts, n, from.v), most(problem, parts, n, to.v));
+    for (double Most::*of : {&Most::way, &Most::turn})
+      if (size.*of > 0) largest = std::max(largest, delta.*of / size.*of);
+  }
+  return departed(largest);
 }
 
 }  // namespace poinsot

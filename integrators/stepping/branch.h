@@ -12,31 +12,42 @@
 // and kinks of drivers do that, too, and leave no such δ. What follows is decided in fixed_steps.cpp.
 #pragma once
 
+#include <vector>
+
 #include "formulations/problem.h"
 #include "integrators/state.h"
+#include "integrators/stepping/parts.h"
 #include "linsolve/linear_system.h"
 
 namespace poinsot {
 
 class BranchWatch {
  public:
+  explicit BranchWatch(const Problem& problem);
+
   // The first step begins with velocities that change by a per second.
   void begin(const Problem& problem, std::span<const double> a);
   // The part of the velocities that changes in a step of length h from v_n to v, where that is several times what steps
-  // before lead to expect; else 0.
+  // before lead to expect; else 0. The largest of a mechanism.
   double jump(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h);
   // The last step that was looked at stands.
   void follow();
 
  private:
+  struct Changes {  // of velocities per second
+    double way = 0, turn = 0, usual_way = 0, usual_turn = 0;
+  };
+
+  const Parts parts_;
+  std::vector<Changes> changes_;  // by mechanism
   bool begun_ = false;
-  double length_ = 1;                                           // m, the longest arm
-  double way_ = 0, turn_ = 0, usual_way_ = 0, usual_turn_ = 0;  // changes of velocities per second
+  double length_;  // m, the longest arm
 };
 
 struct Departure {
   double share = 0;  // |δ|/|v|: of the larger one of v_n and v, points and turns each for itself, but beside no less
-                     // than a hundredth of the other; infinite where it ends in a singular position
+                     // than a hundredth of the other, the largest of a mechanism; infinite where it ends in a singular
+                     // position
   int row = 0;       // whose impulse μ is the largest, as an unknown of the problem
 };
 struct StepEnd {

@@ -41,6 +41,8 @@ Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& stati
     : problem_(problem),
       aside_(std::move(aside)),
       system_(problem, linear, MatrixKind::consistent, statistics, clock),
+      parts_(problem),
+      branches_(parts_.count()),
       nv_(static_cast<std::size_t>(problem.nv())),
       nc_(static_cast<std::size_t>(problem.nc())),
       rhs_(problem.nv() + problem.nc()),
@@ -48,8 +50,7 @@ Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& stati
       rows_(problem.nc()),
       q_moved_(problem.nq()),
       moved_by_(Eigen::VectorXd::Zero(2 * problem.nv())) {
-  calm_.v.setZero(problem.nv());
-  approach_.a = approach_.last = Eigen::VectorXd::Zero(problem.nv());
+  for (Eigen::VectorXd* x : {&calm_v_, &approach_a_, &last_a_}) x->setZero(problem.nv());
   off_by_one_.setZero(problem.nv() + problem.nc());
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0.5, 1);

@@ -14,7 +14,9 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
+#include "integrators/stepping/parts.h"
 #include "integrators/stepping/step_system.h"
 #include "integrators/stepping/vectors.h"
 
@@ -58,9 +60,12 @@ class Consistent {
   // being the distance. amplification(): how many times more than usually at the ends of steps, where that is so much
   // that a singular position is near, else 1; at the end of some steps, and by the steepness given to look().
   // beside_singular(): whether that was so ever since asked last.
+  // Of one mechanism of the scene: how far its bodies.
   double steepness(double t);
-  void look(double steepness);
+  double steepness(double t, std::size_t part);
+  void look(double steepness);  // as was just found
   double amplification() const { return amplification_; }
+  double amplification(std::size_t part) const { return branches_[part].amplification; }
   // What of `shift`, the norm of a state's move onto the constraints by δq and then δv, is an error of its own: next to
   // a singular position a part of it, and none of what rounding moves at the steepness looked at, ε/σ and ω ε/σ².
   double error_in(const State& at, std::span<const double> moved_by, double shift) const;
@@ -73,16 +78,17 @@ class Consistent {
   // what they were before, or one whose accelerations have turned round where velocities vanish. Rounding has then
   // chosen among branches.
   bool leaves_branch(const State& at);
-  // Whether most of x, nv numbers, lies in the direction in which rows that are off by one move positions, in M; that
-  // is where beside a singular position the constraints leave free more than elsewhere. With the factorization at hand.
-  bool lies_free(double t, const Eigen::VectorXd& x);
+  // Whether most of x, nv numbers, lies in the direction in which rows that are off by one move positions, in M, of one
+  // mechanism; that is where beside a singular position the constraints leave free more than elsewhere. With the
+  // factorization at hand.
+  bool lies_free(double t, const Eigen::VectorXd& x, std::size_t part);
   // A step ends there that leaves none.
   void follow(const State& at);
   // Instead of what was followed: accelerations were a at a time t, bodies have turned since, and how steep the
   // constraints usually are another one knows.
   void expect(double t, std::span<const double> a, double turned, const Consistent& other);
   // Coordinates or the data are others: accelerations of before are not to be compared with.
-  void forget_approach() { approach_.known = false, approach_.rate = -1; }
+  void forget_approach();
   // x ← its part along the constraints, M-orthogonally, with the factorization at hand; nv numbers. The problem stands
   // at `at`, before and after.
   Status along_constraints(const State& at, std::span<double> x);
@@ -107,8 +113,11 @@ class Consistent {
   Consistent(Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock,
              std::unique_ptr<Aside>&& aside);
 
-  bool turns_back(const State& at);
-  void approach(const State& at);
+  // Of one mechanism.
+  bool made_of_rounding(const State& at, std::size_t part);
+  bool turns_back(const State& at, std::size_t part);
+  bool jumps(const State& at, std::size_t part) const;
+  void approach(const State& at, std::size_t part);
 
   // δq and δv for the constraints' residuals at the problem's point, in moves().
   Status position_correction(double t);
@@ -127,24 +136,28 @@ class Consistent {
   int not_looked_ = 0;  // steps
   double turned_ = 0;   // rad, by those
   double followed_ = 0;
-  struct Calm {  // the last state whose accelerations were as usual
-    double t = 0, usual = 0;
-    Eigen::VectorXd v;
-  } calm_;
-  struct Approach {  // the last state that had no singular position near, as was last seen
-    bool known = false;
-    double t = 0, turned = 0;
-    double rate = -1;  // at which accelerations changed before it; below 0: not known
-    Eigen::VectorXd a;
-    Eigen::VectorXd last;  // accelerations of the last state
-    bool steady = true;    // those since have hardly turned, each against the one before
-  } approach_;
-  double off_ = 0;  // largest |Φ| or |G v − ν| that the last correction was for
+  // What is known of a mechanism's branch, each by itself; of vectors its components.
+  struct Branch {
+    double steepness = 0, usual_steepness = 0, amplification = 1;
+    struct Calm {  // the last state whose accelerations were as usual
+      double t = 0, usual = 0;
+    } calm;
+    struct Approach {  // the last state that had no singular position near, as was last seen
+      bool known = false;
+      double t = 0, turned = 0;
+      double rate = -1;    // at which accelerations changed before it; below 0: not known
+      bool steady = true;  // those since have hardly turned, each against the one before
+    } approach;
+  };
+  const Parts parts_;
+  std::vector<Branch> branches_;
+  Eigen::VectorXd calm_v_, approach_a_, last_a_;  // velocities when calm; accelerations at the approach, and the last
+  double off_ = 0;                                // largest |Φ| or |G v − ν| that the last correction was for
   const std::size_t nv_, nc_;
   Eigen::VectorXd rhs_, zeros_, rows_, q_moved_, moved_by_, off_by_one_;
 };
 
-// Whether accelerations are about the reverse of what they were.
-bool turned_round(const Eigen::VectorXd& before, const Eigen::VectorXd& now);
+// Whether accelerations of a mechanism are about the reverse of what they were.
+bool turned_round(const Parts& parts, std::size_t part, const Eigen::VectorXd& before, const Eigen::VectorXd& now);
 
 }  // namespace poinsot

@@ -31,7 +31,7 @@ Status FixedSteps::examine_end(bool& settled) {
   // position, and whether it is on its branch.
   constexpr double kSingular = 0.02, kLeft = 0.2;
   double jump = integrates() ? branch_.jump(problem_, v_n_, x_.v, h_) : 0;
-  if (settles_ && (singular_ends_.grow(x_.lambda()) || jump > kSingular)) {
+  if (settles_ && (singular_ends_.grow(last_seen(), x_.lambda()) || jump > kSingular)) {
     // It may be that of the rows kept alone, where others are set aside.
     if (chooses_ && !rows_asked_) return {Failure::singular_position, x_.t, {}};
     if (Status status = settle_end(settled); !status.ok()) return status;

@@ -164,7 +164,7 @@ bool FixedSteps::settles_beginning() {
   if (!settles_ || start_ == Start::limit) return false;
   const std::unique_ptr<Problem> problem = last_seen().clone();  // which goes on showing where it stopped
   place(*problem);
-  SingularEnds ends(settings_);
+  SingularEnds ends(problem_, settings_);
   if (!settle(ends, *problem, x_.v, x_)) return false;
   start_ = Start::limit;
   return true;

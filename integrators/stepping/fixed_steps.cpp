@@ -29,10 +29,11 @@ FixedSteps::FixedSteps(const Run& run)
       discrete_(run.problem.has_discrete_state()),
       has_alternates_(has_alternates(run.problem.model())),
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
+      branch_(run.problem),
       rests_(run.problem),
       still_(run.problem, run.tell),
       damping_(run),
-      singular_ends_(run.settings),
+      singular_ends_(run.problem, run.settings),
       passed_(run.problem.model(), run.settings.end, run.tell),
       turned_(run.problem.model(), run.tell),
       jumps_(run.problem.model()),
@@ -118,7 +119,7 @@ Status FixedSteps::reach(double t, bool sampled) {
 
 Status FixedSteps::begin() {
   place(problem_);
-  if (run_.singular_for == 0) (void)singular_ends_.grow(x_.lambda());
+  if (run_.singular_for == 0) (void)singular_ends_.grow(problem_, x_.lambda());
   sample(run_.observe, problem_, x_, run_.statistics);
   clock_.start();
   return {};

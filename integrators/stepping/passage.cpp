@@ -44,24 +44,33 @@ struct Passage::Work {
     for (std::size_t k = 1; k < kWeights.size(); ++k) all += kWeights[k] * mean(k, x);
     return all;
   }
-  // Changes of up to `nothing` are none.
-  bool is_smooth(Part x, const Eigen::VectorXd& value, double nothing) {
-    const double most =
-        std::max(kSmooth * std::max(largest(span(value)), largest(span(std::as_const(beside)[0][0].*x))), nothing);
+  // In every mechanism by itself, by norm(mechanism, x). Changes of up to `nothing` are none.
+  template <class Norm>
+  bool is_smooth(const Parts& parts, Part x, const Eigen::VectorXd& value, double nothing, Norm&& norm) {
     moved = (4 * mean(0, x) - mean(1, x)) / 3 - value;
-    if (!(largest(span(moved)) <= most)) return false;
-    moved = beside[0][0].*x - beside[0][1].*x - 0.5 * (beside[1][0].*x - beside[1][1].*x);  // half of a jump
-    return largest(span(moved)) <= most;
+    jump = beside[0][0].*x - beside[0][1].*x - 0.5 * (beside[1][0].*x - beside[1][1].*x);  // half of one
+    const auto size = [&](std::size_t part) {
+      return std::max(norm(part, span(value)), norm(part, span(std::as_const(beside)[0][0].*x)));
+    };
+    double all = 0;
+    for (std::size_t part = 0; part < parts.count(); ++part) all = std::max(all, size(part));
+    for (std::size_t part = 0; part < parts.count(); ++part) {
+      const double of = size(part), most = std::max(kSmooth * of, nothing);
+      if (parts.rests(of, all)) continue;
+      if (!(norm(part, span(moved)) <= most && norm(part, span(jump)) <= most)) return false;
+    }
+    return true;
   }
 
   State place, nearest;                                       // nearest: at +τ
   std::array<std::array<Beside, 2>, kWeights.size()> beside;  // at ±τ, ±2τ, ...
-  Eigen::VectorXd moved, moved_by;
+  Eigen::VectorXd moved, jump, moved_by;
 };
 
 Passage::Passage(Problem& problem, Consistent& consistent)
     : problem_(problem),
       consistent_(consistent),
+      parts_(problem),
       given_(problem),
       driven_(std::ranges::any_of(problem.model().rows, [](const Row& row) { return !row.f.is_constant(); })) {}
 Passage::~Passage() = default;
@@ -142,7 +151,9 @@ bool Passage::limit(State& at, const Eigen::VectorXd& along, double tau, double 
   const Eigen::VectorXd c = work_->limit(&Beside::c), v = work_->limit(&Beside::v), a = work_->limit(&Beside::a);
   // Of a motion without accelerations they are nothing but rounding.
   const double unseen = kTooLittle * largest(span(v)) / tau;
-  if (!work_->is_smooth(&Beside::v, v, 0) || !work_->is_smooth(&Beside::a, a, unseen)) return false;
+  const auto norm = [&](std::size_t part, std::span<const double> x) { return parts_.largest(part, x); };
+  if (!work_->is_smooth(parts_, &Beside::v, v, 0, norm) || !work_->is_smooth(parts_, &Beside::a, a, unseen, norm))
+    return false;
   problem_.retract(span(at.q), {c.data(), static_cast<std::size_t>(c.size())}, span(work_->place.q));
   work_->moved_by << c, v - at.v;
   at.q = work_->place.q;
@@ -153,7 +164,8 @@ bool Passage::limit(State& at, const Eigen::VectorXd& along, double tau, double 
 
 bool Passage::limit_multipliers(State& at) {
   const Eigen::VectorXd lambda = work_->limit(&Beside::lambda);
-  if (!work_->is_smooth(&Beside::lambda, lambda, 0)) return false;
+  const auto norm = [&](std::size_t part, std::span<const double> x) { return parts_.largest_row(part, problem_, x); };
+  if (!work_->is_smooth(parts_, &Beside::lambda, lambda, 0, norm)) return false;
   at.z.tail(lambda.size()) = lambda;
   return true;
 }

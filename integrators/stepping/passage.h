@@ -58,6 +58,7 @@ class Passage {
 
   Problem& problem_;
   Consistent& consistent_;
+  const Parts parts_;
   State given_;
   const bool driven_;        // rows depend on time
   double least_ = HUGE_VAL;  // steepness

@@ -4,13 +4,16 @@
 // of another branch differ altogether from those before, in the direction that the constraints leave free there. Every
 // eighth step the mean acceleration since the last look is compared with those before; where it turned round,
 // velocities are what such stretches make of them, and the constraints are much steeper at one of the looks than at
-// another, it was left. (With error control: Consistent::leaves_branch.)
+// another, it was left. Each of the scene's mechanisms is looked at by itself. (With error control:
+// Consistent::leaves_branch.)
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "formulations/problem.h"
 #include "integrators/state.h"
+#include "integrators/stepping/parts.h"
 #include "linsolve/linear_system.h"
 
 namespace poinsot {
@@ -36,12 +39,14 @@ class RestWatch {
     double t = 0;
     Eigen::VectorXd q, v, a;  // a: the mean since the look before
   };
-  bool left_branch(const Problem& problem, const LinearChoice& choice, const State& at, const Look& then) const;
+  bool left_branch(const Problem& problem, const LinearChoice& choice, const State& at, const Look& then,
+                   std::size_t part) const;
 
+  const Parts parts_;
   int wait_ = kApart, looks_ = 0;
   std::array<Look, 2> before_;  // the last one first
   Eigen::VectorXd a_;           // as of a look, now
-  double usual_ = 0;            // largest of the looks so far, those long ago forgotten
+  std::vector<double> usual_;   // by mechanism, the largest of the looks so far, those long ago forgotten
 };
 
 }  // namespace poinsot

@@ -10,17 +10,17 @@
 namespace poinsot {
 namespace {
 
-// Whether M a + Gᵀλ and Q are a tenth of their size apart.
-bool leaves_loads(Problem& problem, const State& at) {
+// Whether M a + Gᵀλ and Q of the mechanism are a tenth of their size apart.
+bool leaves_loads(Problem& problem, const State& at, const Parts& parts, std::size_t part) {
   constexpr double kPart = 0.1;
   std::vector<double> a(at.a().begin(), at.a().end()), load(a.size());
   problem.equations_of_motion(a, at.lambda(), load);
-  const double off = largest(load);
+  const double off = parts.largest(part, load);
   problem.momentum(a, load);
-  double most = largest(load);
+  double most = parts.largest(part, load);
   std::ranges::fill(a, 0.0);
   problem.equations_of_motion(a, {}, load);
-  most = std::max(most, largest(load));
+  most = std::max(most, parts.largest(part, load));
   return off > kPart * most;
 }
 
@@ -35,32 +35,62 @@ bool SingularEnds::settle(Problem& problem, const Eigen::VectorXd& v_n, State& a
   }
   const bool settled = passage_->settle_end(at, v_n);
   if (!settled) {
-    largest_ = std::max(largest_, std::exchange(doubted_, 0));
-    largest_multiplier_ = std::max(largest_multiplier_, std::exchange(doubted_multiplier_, 0));
+    for (Largest& of : largest_) {
+      of.acceleration = std::max(of.acceleration, std::exchange(of.doubted, 0));
+      of.multiplier = std::max(of.multiplier, std::exchange(of.doubted_multiplier, 0));
+    }
   }
   return settled;
 }
 
-bool SingularEnds::grow(std::span<const double> lambda) {
+void SingularEnds::take_largest(const Problem& problem, std::span<const double> lambda, double Largest::*into) {
+  if (largest_.size() == 1) {  // once a step
+    double multiplier = 0;
+    for (const double x : lambda) multiplier = std::max(multiplier, std::abs(x));
+    largest_[0].*into = multiplier;
+    return;
+  }
+  for (Largest& of : largest_) of.*into = 0;
+  for (std::size_t k = 0; k < lambda.size(); ++k) {
+    double& most = largest_[parts_.of_row(problem, k)].*into;
+    most = std::max(most, std::abs(lambda[k]));
+  }
+}
+
+bool SingularEnds::grow(const Problem& problem, std::span<const double> lambda) {
   constexpr double kGrown = 100;
-  double multiplier = 0;  // once a step
-  for (const double x : lambda) multiplier = std::max(multiplier, std::abs(x));
-  const bool grown = largest_multiplier_ > 0 && multiplier > kGrown * largest_multiplier_;
-  doubted_multiplier_ = grown ? multiplier : 0;
-  before_ = std::exchange(last_, multiplier);
-  if (!grown) largest_multiplier_ = std::max(largest_multiplier_, multiplier);
-  return grown;
+  for (Largest& of : largest_) of.before = of.last;
+  take_largest(problem, lambda, &Largest::last);
+  bool any = false;
+  for (Largest& of : largest_) {
+    const bool grown = of.multiplier > 0 && of.last > kGrown * of.multiplier;
+    of.doubted_multiplier = grown ? of.last : 0;
+    if (!grown) of.multiplier = std::max(of.multiplier, of.last);
+    any = any || grown;
+  }
+  return any;
 }
 
 bool SingularEnds::doubts(Problem& problem, const State& at, const Eigen::VectorXd& v_n, double h) {
   constexpr double kPart = 0.25, kLarger = 1.5;
   const auto a = at.z.head(v_n.size());
-  const auto change = (at.v - v_n) / h;
-  const double mean = change.lpNorm<Eigen::Infinity>(), end = a.lpNorm<Eigen::Infinity>();
-  const double apart = (a - change).lpNorm<Eigen::Infinity>();
-  const bool doubtful = apart > kPart * std::max(mean, end) && end > largest_;
-  doubted_ = doubtful ? end : 0;
-  return doubtful || (largest(at.lambda()) > kLarger * before_ && leaves_loads(problem, at));
+  const auto mean = (at.v - v_n) / h;
+  bool any = false;
+  take_largest(problem, at.lambda(), &Largest::given);
+  const double all = largest(at.a());
+  for (std::size_t part = 0; part < parts_.count(); ++part) {
+    Largest& of = largest_[part];
+    double end = 0, over = 0, apart = 0;
+    parts_.for_each_run(part, [&](Eigen::Index first, Eigen::Index count) {
+      end = std::max(end, a.segment(first, count).lpNorm<Eigen::Infinity>());
+      over = std::max(over, mean.segment(first, count).lpNorm<Eigen::Infinity>());
+      apart = std::max(apart, (a - mean).segment(first, count).lpNorm<Eigen::Infinity>());
+    });
+    const bool doubtful = apart > kPart * std::max(over, end) && end > of.acceleration && !parts_.rests(end, all);
+    of.doubted = doubtful ? end : 0;
+    any = any || doubtful || (of.given > kLarger * of.before && leaves_loads(problem, at, parts_, part));
+  }
+  return any;
 }
 
 }  // namespace poinsot

@@ -88,10 +88,10 @@ constexpr int kLargest = 600;  // of G: a second's work
 
 }  // namespace
 
-DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q) {
-  if (rows < 1 || problem.nc() > kLargest) return {};
-  Eigen::Index row = 0;
-  const UnitRows here = unit_rows(problem, t, q);
+namespace {
+
+// Where the problem stands.
+Eigen::VectorXd shares_of(Problem& problem, const UnitRows& here, int rows) {
   Eigen::VectorXd shares = here.shares().head(rows);
   // A DP1 row between parallel directions vanishes: of unit vectors, it is shorter than 1 by that alone.
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(problem.nc());
@@ -101,7 +101,21 @@ DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<
     if (problem.model().rows[static_cast<std::size_t>(of)].type == RowType::DP1)
       shares[k] *= std::min(1.0, std::sqrt(squares[k]));
   }
-  const double share = shares.minCoeff(&row);
+  return shares;
+}
+
+}  // namespace
+
+Eigen::VectorXd independent_shares(Problem& problem, int rows, double t, std::span<const double> q) {
+  if (rows < 1 || problem.nc() > kLargest) return {};
+  return shares_of(problem, unit_rows(problem, t, q), rows);
+}
+
+DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q) {
+  if (rows < 1 || problem.nc() > kLargest) return {};
+  Eigen::Index row = 0;
+  const UnitRows here = unit_rows(problem, t, q);
+  const double share = shares_of(problem, here, rows).minCoeff(&row);
   return {static_cast<int>(row), share, bars(problem, here, row, t, q)};
 }
 

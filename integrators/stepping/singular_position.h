@@ -6,6 +6,7 @@
 // matter of the mechanism (of its lengths, of the number of its loops): it is compared with what it was at the start.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <string>
 
@@ -24,6 +25,8 @@ struct DependentRow {
   bool barred = false;
 };
 DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q);
+// Of all of these rows that part; none where the mechanism is too large.
+Eigen::VectorXd independent_shares(Problem& problem, int rows, double t, std::span<const double> q);
 
 // A sentence; empty where every row is as independent as at the start, or nearly, and for mechanisms too large to look
 // at densely. `rows`: rows of G that are constraints of the scene (before normalizations). The problem stands at (t, q)

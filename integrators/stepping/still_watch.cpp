@@ -3,63 +3,82 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
+#include "core/index.h"
 #include "integrators/stepping/singular_position.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
-namespace {
-
-// How independent the least independent row is.
-double least_share(const Problem& problem, const State& at) {
-  const std::unique_ptr<Problem> own = problem.clone();
-  return most_dependent_row(*own, static_cast<int>(own->model_rows().size()), at.t, span(at.q)).share;
-}
-
-}  // namespace
-
 StillWatch::StillWatch(const Problem& problem, std::function<void(const std::string&)> tell)
-    : tell_(std::move(tell)), v_(Eigen::VectorXd::Zero(problem.nv())) {}
+    : parts_(problem),
+      of_(parts_.count()),
+      tell_(std::move(tell)),
+      v_(Eigen::VectorXd::Zero(problem.nv())),
+      change_(v_) {}
 
 void StillWatch::look(const Problem& problem, const State& at) {
+  if (told_) return;
+  const double since = at.t - t_;
+  change_ = at.v - v_;
+  v_ = at.v;
+  fastest_ = largest(span(v_));
+  shares_known_ = false;
+  const bool first = std::exchange(t_, at.t) < 0;
+  for (std::size_t part = 0; part < parts_.count() && !told_; ++part) {
+    if (first)
+      of_[part].speed = parts_.largest(part, span(v_));
+    else
+      look(problem, at, part, since);
+  }
+}
+
+// How independent the least independent row of the mechanism is.
+double StillWatch::least_share(const Problem& problem, const State& at, std::size_t part) {
+  if (!std::exchange(shares_known_, true)) {
+    const std::unique_ptr<Problem> own = problem.clone();
+    shares_ = independent_shares(*own, static_cast<int>(own->model_rows().size()), at.t, span(at.q));
+  }
+  double least = 1;
+  for (Eigen::Index k = 0; k < shares_.size(); ++k)
+    if (parts_.of_row(problem, index(k)) == part) least = std::min(least, shares_[k]);
+  return least;
+}
+
+void StillWatch::look(const Problem& problem, const State& at, std::size_t part, double since) {
   constexpr double kStill = 0.1, kMoves = 0.25;
   constexpr double kFades = 0.05;    // in the time that the motion takes to change
   constexpr double kFarLess = 0.05;  // as independent as elsewhere
-  if (told_) return;
-  const double speed = at.v.lpNorm<Eigen::Infinity>();
-  const double since = at.t - t_;
-  const double acceleration = (at.v - v_).lpNorm<Eigen::Infinity>() / since;
-  const bool first = t_ < 0;
-  v_ = at.v;
-  t_ = at.t;
-  if (first) {
-    speed_ = speed;
+  Part& of = of_[part];
+  const double acceleration = parts_.largest(part, span(change_)) / since;
+  double speed = parts_.largest(part, span(v_));
+  const bool rests = parts_.rests(speed, fastest_);
+  if (rests) speed = 0;
+  if (rests || (speed <= kStill * of.speed && acceleration <= kStill * of.acceleration)) {
+    const bool before = std::exchange(of.motion, Motion::at_rest) != Motion::under_way;
+    if (before && !(speed < kStill * of.slowest)) return;
+    of.t_rest = at.t;
+    of.slowest = speed;
+    const double share = least_share(problem, at, part);
+    of.share = before ? std::min(of.share, share) : share;
     return;
   }
-  if (speed <= kStill * speed_ && acceleration <= kStill * acceleration_) {
-    const bool before = std::exchange(motion_, Motion::at_rest) != Motion::under_way;
-    if (before && !(speed < kStill * slowest_)) return;
-    t_rest_ = at.t;
-    slowest_ = speed;
-    share_ = before ? std::min(share_, least_share(problem, at)) : least_share(problem, at);
-    return;
-  }
-  if (motion_ == Motion::at_rest) motion_ = Motion::going_on;
-  if (motion_ == Motion::going_on) {
-    if (speed < kMoves * speed_) return;
-    motion_ = Motion::under_way;
-    if (share_ < kFarLess * least_share(problem, at)) {
+  if (of.motion == Motion::at_rest) of.motion = Motion::going_on;
+  if (of.motion == Motion::going_on) {
+    if (speed < kMoves * of.speed) return;
+    of.motion = Motion::under_way;
+    if (of.share < kFarLess * least_share(problem, at, part)) {
       told_ = true;
       tell_(
           fmt::format("at t = {:.6g} s the motion rests in a singular position of the constraints, its accelerations "
                       "included, from where it could go on either way: by which branch it does is not certain",
-                      t_rest_));
+                      of.t_rest));
     }
   }
-  const double faded = 1 - kFades * std::min(1.0, speed_ > 0 ? since * acceleration_ / speed_ : 0);
-  speed_ = std::max(speed, faded * speed_);
-  acceleration_ = std::max(acceleration, faded * acceleration_);
+  const double faded = 1 - kFades * std::min(1.0, of.speed > 0 ? since * of.acceleration / of.speed : 0);
+  of.speed = std::max(speed, faded * of.speed);
+  of.acceleration = std::max(acceleration, faded * of.acceleration);
 }
 
 }  // namespace poinsot
