@@ -304,5 +304,24 @@ TEST_P(Switches, PulsesBetweenKinksAreFelt) {
   EXPECT_NEAR(r.samples.back().bodies[0].rd.x(), 32 * each, 1e-7);
 }
 
+// Where the run begins, as a saved one does that ends where a driver sets out: what holds beyond is begun with.
+TEST_P(Switches, AtTheStartAreCrossed) {
+  for (const char* angle : {"max(0, sin(3*t))", "max(0, exp(t) - 1)", "max(0, (t + 0.31) - 0.31)",
+                            "max(sin(3*t), sin(6*t))", "max(0, sqrt(1 + t) - 1)"}) {
+    const auto found = motion(driven(angle), settings(1e-8, 0.25, 0.25));
+    const Expression f = Expression::parse(angle);
+    EXPECT_NEAR(found.back().bodies[0].w.x(), f.at(0.25).fd, 1e-6) << angle;
+  }
+}
+
+// Kinks of two drivers that are as near as rounding puts them.
+TEST_P(Switches, NextToOneAnotherAreCrossedTogether) {
+  for (const double apart : {1e-15, 1e-13, 1e-11, 1e-9}) {
+    Scene scene = driven(fmt::format("0.3*max(0, t - 0.3) + 0.2*max(0, t - {:.17g})", 0.3 + apart).c_str());
+    const auto found = motion(scene, settings(1e-8, 0.6, 0.3));
+    EXPECT_NEAR(found.back().bodies[0].w.x(), 0.5, 1e-9) << apart;
+  }
+}
+
 }  // namespace
 }  // namespace poinsot::test

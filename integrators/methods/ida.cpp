@@ -184,6 +184,7 @@ class Session {
 
   // at_ stands at a switch.
   Status cross(double t) {
+    if (Status status = course_.driver_jumps.look(t); !status.ok()) return status;
     if (Status status = consistent_.cross(at_, t); !status.ok()) return status;
     before_.known = last_.known = false;
     bool other_rows = false;

@@ -64,7 +64,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
           continue;
         }
         h = status.ok() && std::isfinite(error) ? controller.rejected(h, error) : controller.failed(h);
-        if (h < smallest) return step_too_small(t, h, status);
+        if (h < smallest) return course.too_small(t, to, h, status);
         h = method.retry(h, ++rejections, usual);
         continue;
       }
@@ -108,6 +108,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
       course.give_out(method.interpolated());
     }
     const double other_side = leads ? beyond_law : std::min(turn.after, end);
+    if (Status status = course.driver_jumps.look(crosses ? other_side : method.state().t); !status.ok()) return status;
     if (Status status = crosses ? method.cross(other_side) : method.settle(); !status.ok()) return status;
     if (course.every_step) {
       if (to > t) course.give_out(method.state());

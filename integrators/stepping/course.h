@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "integrators/stepping/consistent.h"
+#include "integrators/stepping/driver_jumps.h"
 #include "integrators/stepping/law_switches.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/passed_laws.h"
@@ -16,6 +17,7 @@
 #include "integrators/stepping/pulses.h"
 #include "integrators/stepping/sample_times.h"
 #include "integrators/stepping/singular_position.h"
+#include "integrators/stepping/step_control.h"
 #include "integrators/stepping/sticking.h"
 #include "integrators/stepping/still_watch.h"
 #include "integrators/stepping/switch_times.h"
@@ -36,6 +38,7 @@ class Course {
         times(run.settings.every, run.settings.end),
         switches(run.problem.model(), run.settings.end, run.tell),
         pulses(run.problem.model(), run.settings.end, run.settings.rtol, run.tell),
+        driver_jumps(run.problem.model(), run.settings.end),
         laws(run.problem.model()),
         passed_laws(laws, run.settings.end, run.settings.rtol, run.settings.absolute_tolerance(), run.tell),
         law_switches(laws, run.settings.end, run.settings.rtol, run.settings.absolute_tolerance()),
@@ -59,8 +62,14 @@ class Course {
     return poinsot::singular_sample(times.next(),
                                     row < 0 ? "" : run_.problem.describe_unknown(run_.problem.nv() + row));
   }
+  // Steps from t have become as short as h, the last one tried went to `to`.
+  Status too_small(double t, double to, double h, const Status& cause) {
+    if (Status status = driver_jumps.look(to); !status.ok()) return status;
+    return step_too_small(t, h, cause);
+  }
   // A step ended at `at`, where the problem stands.
   Status follow(const State& at) {
+    if (Status status = driver_jumps.look(at.t); !status.ok()) return status;
     still_.look(run_.problem, at);
     if (progress_.look(at.t)) {
       if (progress_.never_ends()) return never_beyond(run_.problem, at, progress_.limit());
@@ -117,6 +126,7 @@ class Course {
   SampleTimes times;
   SwitchTimes switches;
   Pulses pulses;
+  DriverJumps driver_jumps;
   LawSteps laws;
   PassedLaws passed_laws;
   LawSwitches law_switches;

@@ -30,6 +30,7 @@ FixedSteps::FixedSteps(const Run& run)
       has_alternates_(has_alternates(run.problem.model())),
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
       branch_(run.problem),
+      driver_jumps_(run.problem.model(), run.settings.end),
       rests_(run.problem),
       still_(run.problem, run.tell),
       damping_(run),
@@ -62,6 +63,7 @@ Status FixedSteps::march() {
       status = jump_of_positions(run_.jumps_after);
       break;
     }
+    if (status = driver_jumps_.look(grid_.time(n)); !status.ok()) break;
     const bool sampled = grid_.sampled(n);
     const std::int64_t before = run_.statistics.steps;
     status = advance(grid_.time(n), sampled);

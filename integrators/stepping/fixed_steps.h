@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "integrators/stepping/branch.h"
+#include "integrators/stepping/driver_jumps.h"
 #include "integrators/stepping/index1_output.h"
 #include "integrators/stepping/law_jumps.h"
 #include "integrators/stepping/numerical_damping.h"
@@ -162,6 +163,7 @@ class FixedSteps {
   double rotation_ = 0;          // of the last step, the largest of a body
   Vector change_;
   BranchWatch branch_;
+  DriverJumps driver_jumps_;
   RestWatch rests_;
   StillWatch still_;
   NumericalDamping damping_;

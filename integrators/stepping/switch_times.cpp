@@ -36,14 +36,26 @@ SwitchTimes::Switch SwitchTimes::first(double t, double to) {
   }
   if (found_.before > to && clear_to_ < to) {
     const double from = std::max(t, clear_to_);
+    const Switching* first = nullptr;
     for (Switching& of : switching_) {
       of.budget = kBudget;
       const Switch sooner = find(of, from, std::min(to, found_.before));
-      if (sooner.before < found_.before && sooner.before <= to) found_ = sooner;
+      if (sooner.before < found_.before && sooner.before <= to) found_ = sooner, first = &of;
     }
+    // Others so near that no step leads from one to the next are crossed with it.
+    if (first)
+      for (Switching& of : switching_)
+        if (&of != first) found_.after = std::max(found_.after, last_after(of, found_.after, found_.after + resolution_));
     clear_to_ = std::min(to, found_.before);
   }
   return found_.before <= to ? found_ : Switch{};
+}
+
+// `from`, or beyond a switch up to `to`.
+double SwitchTimes::last_after(Switching& of, double from, double to) {
+  of.budget = kBudget;
+  const Switch next = find(of, from, to);
+  return next.before <= to ? next.after : from;
 }
 
 SwitchTimes::Switch SwitchTimes::find(Switching& of, double from, double to) {
@@ -78,6 +90,7 @@ SwitchTimes::Switch SwitchTimes::between(const Switching& of, double from, doubl
     (beyond(middle) ? to : from) = middle;
   if (computed_side(of, to) == Side::on) to = std::nextafter(to, HUGE_VAL);  // neither: one further is beyond
   if (to <= begin) return {};                                                // behind
+  if (from - begin < kLeastStep * resolution_) from = begin;  // no step leads there
   return {from, to};
 }
 
@@ -103,13 +116,14 @@ void SwitchTimes::say(Switching& of, const char* what, double t) const {
   if (tell_ && !std::exchange(of.told, true)) tell_(fmt::format("about t = {:.6g} s '{}' {}", t, of.f->text(), what));
 }
 
+bool may_jump(const Expression& f) {
+  for (int k = 0; k < f.switch_count(); ++k)
+    if (f.switch_jumps(k)) return true;
+  return false;
+}
+
 double first_jump(const Model& model, double end) {
   constexpr double kJump = 1e-9;  // relative, or of 1: more than rounding of a time leads to
-  const auto may_jump = [](const Expression& f) {
-    for (int k = 0; k < f.switch_count(); ++k)
-      if (f.switch_jumps(k)) return true;
-    return false;
-  };
   std::vector<const Expression*> prescribed;
   for (const Row& row : model.rows) {
     if (row.type == RowType::pfaffian) continue;

@@ -42,12 +42,13 @@ class SwitchTimes {
 
   Switch find(Switching& of, double from, double to);
   Switch between(const Switching& of, double from, double to);
+  double last_after(Switching& of, double from, double to);
   Side side(const Switching& of, double t) const;
   Side computed_side(const Switching& of, double t);
   bool rests(const Switching& of, double from, double to) const;
   void say(Switching& of, const char* what, double t) const;
 
-  static constexpr double kResolved = 1e-10, kInstant = 1e-17;
+  static constexpr double kResolved = 1e-10, kInstant = 1e-17, kLeastStep = 1e-4;
 
   std::vector<Switching> switching_;
   std::vector<double> values_;
@@ -56,6 +57,9 @@ class SwitchTimes {
   double clear_to_ = 0;  // no switch between the last one that was asked for and here
   Switch found_;
 };
+
+// Whether it has a sign or a step.
+bool may_jump(const Expression& f);
 
 // The last time before a prescribed position jumps, past the start and before `end`; none: infinity.
 double first_jump(const Model& model, double end);
