@@ -131,6 +131,43 @@ TEST_P(RestInSingular, IsToldWhereAccelerationsVanishToo) {
   EXPECT_GE(went_on, 12);
 }
 
+// Beside a wheel that spins by itself, whose velocities and accelerations are far larger.
+void add_spinning_wheel(Scene& scene) {
+  Body& other = scene.bodies.emplace_back();
+  other.name = "other", other.mass = 1, other.inertia = Matrix3::Identity();
+  other.position = {1, 5, 0}, other.velocity = {0, 20, 0}, other.angular_velocity = {0, 0, 20};
+  Joint& hinge = scene.joints.emplace_back();
+  hinge.name = "other hinge", hinge.i = kGround, hinge.j = 1, hinge.point = {0, 5, 0}, hinge.axis = {0, 0, 1};
+}
+
+TEST_P(RestInSingular, IsSeenBesideAFasterMechanism) {
+  int went_on = 0;
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.controls_error || integrator.analysis != Analysis::dynamics) continue;
+    for (const Turn& turn : kTurns) {
+      SCOPED_TRACE(fmt::format("{} {}", integrator.name, turn.text));
+      Scene scene = cosine_of(turn);
+      add_spinning_wheel(scene);
+      Settings settings = dynamics(GetParam(), turn.end / std::round(turn.end / 2e-3), turn.end, turn.end);
+      settings.integrator = integrator.name;
+      const Recorded r = run(scene, settings);
+      if (!r.outcome.status.ok()) continue;
+      ++went_on;
+      const Matrix3& A = r.samples.back().bodies[0].A;
+      EXPECT_NEAR(std::atan2(A(1, 0), A(0, 0)), turn.angle(turn.end), 1e-3);
+    }
+    Scene scene = cosine_of({"(1 - t)^3", [](double t) { return std::pow(1 - t, 3); }, 2});
+    add_spinning_wheel(scene);
+    Settings settings = dynamics(GetParam(), 5e-3, 2, 2);
+    settings.integrator = integrator.name;
+    const Recorded r = run(scene, settings);
+    if (!r.outcome.status.ok()) continue;
+    EXPECT_THAT(r.outcome.notices, ::testing::Contains(::testing::HasSubstr("either way"))) << integrator.name;
+    ++went_on;
+  }
+  EXPECT_GE(went_on, 12);
+}
+
 TEST_P(RestInSingular, IsNotSaidToBeBarred) {
   for (const Turn& turn : kTurns) {
     Settings settings = kinematics(GetParam(), turn.end / 100, turn.end);

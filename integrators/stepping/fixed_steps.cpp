@@ -37,6 +37,7 @@ FixedSteps::FixedSteps(const Run& run)
       singular_ends_(run.problem, run.settings),
       passed_(run.problem.model(), run.settings.end, run.tell),
       turned_(run.problem.model(), run.tell),
+      struck_(run.problem.model(), run.tell),
       jumps_(run.problem.model()),
       sides_(jumps_.sides()),
       sides_before_(sides_),
@@ -109,6 +110,7 @@ Status FixedSteps::reach(double t, bool sampled) {
   branch_.follow();
   if (integrates() && passed_.due(h_)) passed_.look(last_seen(), x_, h_);
   if (integrates() && turned_.due(h_)) turned_.look(last_seen(), x_, h_);
+  if (integrates() && struck_.due(x_.v, v_n_)) struck_.look(last_seen(), x_, q_n_, v_n_, h_);
   if (integrates() && !jumps_.none()) look_for_jumps();
   start_ = settled ? Start::limit : led_ ? Start::rewritten : Start::usual;
   rows_asked_ = false;

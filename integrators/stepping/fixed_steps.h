@@ -22,6 +22,7 @@
 #include "integrators/stepping/rest_watch.h"
 #include "integrators/stepping/singular_ends.h"
 #include "integrators/stepping/still_watch.h"
+#include "integrators/stepping/struck_in_steps.h"
 #include "integrators/stepping/time_grid.h"
 #include "integrators/stepping/turned_in_steps.h"
 #include "integrators/stepping/vectors.h"
@@ -170,6 +171,7 @@ class FixedSteps {
   SingularEnds singular_ends_;
   PassedInSteps passed_;
   TurnedInSteps turned_;
+  StruckInSteps struck_;
   LawJumps jumps_;
   LawJumps::Sides sides_, sides_before_;  // of jumps, at the last look and the one before
   bool over_jumps_ = false;               // the step under way was led over some
