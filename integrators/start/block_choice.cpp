@@ -26,6 +26,7 @@ constexpr double kSooner = 1.6, kStays = 2.5;
 constexpr double kLeastTurn = 0.05;  // rad, between two looks
 constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
+constexpr double kBalanced = 1e-5;  // of a null vector: what steps leave of rows set aside, and no more
 constexpr double kGain = 2;         // times better is a choice of clearest rows that is worth an exchange
 constexpr double kForgotten = 0.8;  // of how fast a choice has worn before
 constexpr double kGrowth = 1.5;     // of a worn choice that is the best one found: then others are looked for again
@@ -207,11 +208,24 @@ void BlockChoice::carry_over(const RowSpace& space, std::span<double> lambda) {
     at(kept_[k]) += shares[static_cast<Eigen::Index>(k)] / length(kept_[k]);
 }
 
+bool BlockChoice::has_null_vectors() const {
+  return watched_ && left_out_.size() <= kMostNull && has_coefficients();
+}
+
+// Coefficients are those of least squares, whether or not the row left out is a combination of those kept.
+bool BlockChoice::balances(const SparseEntries& z) const {
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(rows_.variables());
+  for (const auto& [k, value] : z) rows_.add(value, k, load);
+  return load.cwiseAbs().maxCoeff() <= kBalanced * largest(z);
+}
+
 void BlockChoice::add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors) {
-  if (!watched_ || left_out_.size() > kMostNull || !has_coefficients()) return;
+  if (!has_null_vectors()) return;
   rows_.stand(space);
   if (small() ? !find_small(1) : !sparse_->factor(rows_)) return;
-  for (SparseEntries& z : unit_null_vectors(1)) {
+  std::vector<SparseEntries> found = unit_null_vectors(1);
+  if (!std::ranges::all_of(found, [&](const SparseEntries& z) { return balances(z); })) return;
+  for (SparseEntries& z : found) {
     for (auto& [k, value] : z) {
       value /= space.lengths()[index(rows_.place_in_space(k))];
       k = row_of(space, k);

@@ -59,7 +59,10 @@ class BlockChoice {
   // After renew() has chosen others. λ, by row of the model: of rows kept before ← that of those kept now, which are
   // the same forces.
   void carry_over(const RowSpace& space, std::span<double> lambda);
-  // Null vectors of Gᵀ by row of the model are added: one for each row set aside, or none.
+  // Whether there are few enough rows for null vectors.
+  bool has_null_vectors() const;
+  // Null vectors of Gᵀ by row of the model are added: one for each row set aside, or none; none, too, where one of them
+  // leaves a body out of balance.
   void add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors);
 
  private:
@@ -76,6 +79,7 @@ class BlockChoice {
   bool choose_clearest(const RowSpace& space);
   bool take(const std::vector<int>& chosen, double limit);
   std::vector<SparseEntries> unit_null_vectors(int refinements) const;
+  bool balances(const SparseEntries& z) const;
 
   BlockRows rows_;  // all that follow by their places here
   bool watched_;

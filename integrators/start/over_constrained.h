@@ -32,6 +32,8 @@ class OverConstrained final : public Problem {
     return kept_->clone_without(dropped);
   }
   int revision() const override { return choice_->revision; }
+  // Whether of its reactions the least can be told (reactions.h).
+  bool has_least_reactions() const { return choice_->rows.has_null_vectors(); }
 
   std::string_view formulation() const override { return kept_->formulation(); }
   const Model& model() const override { return kept_->model(); }

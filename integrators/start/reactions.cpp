@@ -37,6 +37,7 @@ void Reactions::update(const Sample& sample) {
   const std::vector<int>& rows = problem_->model_rows();
   for (std::size_t k = 0; k < rows.size(); ++k) lambda_[index(rows[k])] = sample.lambda[k];
   const std::vector<SparseEntries> null_vectors = choice_->null_vectors(sample.t, states_);
+  least_ = null_vectors.size() == choice_->aside().size();
   if (null_vectors.empty()) return;  // as they are
   make_least(null_vectors);
 }

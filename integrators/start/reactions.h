@@ -12,7 +12,8 @@
 //
 // Where no null vector loads a joint its reaction is the only one (integrators/start/rank.h says which). The cost grows
 // linearly with the mechanism for a given number of redundant rows in a loop; of loops that hang together with more
-// than BlockChoice::kMostNull of them the reactions of the rows kept are given.
+// than BlockChoice::kMostNull of them the reactions of the rows kept are given, and so where a null vector would leave
+// a body out of balance: given are reactions in balance, and least() says whether they are the least.
 #pragma once
 
 #include <memory>
@@ -31,6 +32,8 @@ class Reactions {
 
   void update(const Sample& sample);
   double lambda(int model_row) const { return lambda_[static_cast<std::size_t>(model_row)]; }
+  // Of all that are in balance, those given.
+  bool least() const { return least_; }
   // Force (N, global) and moment about the group's point (N m, global) on body j.
   void of_group(int group, Vector3& force, Vector3& moment) const;
 
@@ -43,6 +46,7 @@ class Reactions {
   std::vector<double> q_, v_;        // where it stands
   std::vector<BodyState> states_;
   const Problem* problem_ = nullptr;
+  bool least_ = true;
   std::vector<double> lambda_;
 };
 

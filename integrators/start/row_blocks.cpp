@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/index.h"
+#include "integrators/start/grounded_rows.h"
 
 namespace poinsot {
 namespace {
@@ -11,12 +12,19 @@ namespace {
 class Biconnected {
  public:
   Biconnected(const Model& model, std::span<const int> rows)
-      : vertices_(static_cast<int>(model.bodies.size()) + 1), state_(index(vertices_)), part_(rows.size(), -1) {
+      : vertices_(static_cast<int>(model.bodies.size()) + 1), rows_(rows.size()), state_(index(vertices_)) {
     const int ground = vertices_ - 1;
     for (const int k : rows) {
       const Row& row = model.rows[index(k)];
       ends_.push_back({row.i == kGround ? ground : row.i, row.j == kGround ? ground : row.j});
     }
+    // Such a row's two more edges close a triangle with its own, and what is on a triangle is of one part.
+    for (const int k : grounded_rows(model, rows)) {
+      const Ends ends = ends_[index(k)];
+      ends_.push_back({ends.i, ground});
+      ends_.push_back({ends.j, ground});
+    }
+    part_.assign(ends_.size(), -1);
     edges_ = Lists::collect(vertices_, [&](auto&& emit) {
       for (int k = 0; k < static_cast<int>(ends_.size()); ++k)
         for (const int v : {ends_[index(k)].i, ends_[index(k)].j}) emit(v, k);
@@ -27,7 +35,7 @@ class Biconnected {
     for (int v = 0; v < vertices_; ++v)
       if (state_[index(v)].number < 0) search(v);
     return Lists::collect(count_, [&](auto&& emit) {
-      for (int k = 0; k < static_cast<int>(part_.size()); ++k) emit(part_[index(k)], k);
+      for (std::size_t k = 0; k < rows_; ++k) emit(part_[k], static_cast<int>(k));
     });
   }
 
@@ -84,7 +92,8 @@ class Biconnected {
 
   static constexpr int kOpen = -2;
   int vertices_;
-  std::vector<Ends> ends_;  // by edge
+  std::size_t rows_;
+  std::vector<Ends> ends_;  // by edge, those of rows first
   Lists edges_;             // by vertex
   std::vector<State> state_;
   std::vector<int> part_;  // by edge

@@ -62,6 +62,10 @@ double RowChoice::size_of(int row) const {
   return space_.size_of_row(k) * space_.lengths()[k];
 }
 
+bool RowChoice::has_null_vectors() const {
+  return std::ranges::all_of(blocks_, &BlockChoice::has_null_vectors);
+}
+
 std::vector<SparseEntries> RowChoice::null_vectors(double t, std::span<const BodyState> states) {
   space_.stand(t, states);
   std::vector<SparseEntries> vectors;

@@ -32,8 +32,11 @@ class RowChoice {
   void carry_over(std::span<double> lambda);
   // What Φ of a row is where the bodies are off it by their own size, at the position last looked at.
   double size_of(int row) const;
-  // Null vectors of Gᵀ by row of the model: one for each row set aside, but for loops that hang together and have more
-  // than BlockChoice::kMostNull of them, and where the kept rows are not independent.
+  // Whether there are null vectors for all rows set aside: no loops hang together that have more than
+  // BlockChoice::kMostNull of them.
+  bool has_null_vectors() const;
+  // Null vectors of Gᵀ by row of the model: one for each row set aside, but for loops that have none, and where the
+  // kept rows are not independent or those set aside no combinations of them.
   std::vector<SparseEntries> null_vectors(double t, std::span<const BodyState> states);
 
  private:
