@@ -126,9 +126,17 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   if (!outcome.status.ok()) return outcome;
 
   std::unique_ptr<Problem> problem = formulation.make(model, start.rank.aside);
-  if (!start.rank.aside.empty())
-    problem =
+  if (!start.rank.aside.empty()) {
+    auto kept =
         std::make_unique<OverConstrained>(std::move(problem), model, start.rank, start.bodies, steps_of(settings));
+    if ((settings.reactions || settings.signals) && !kept->has_least_reactions())
+      notice(
+          fmt::format("too many redundant rows hang together, more than {} or in very long loops, to find the least of "
+                      "the reactions that they leave open: given there are those of the rows that are kept, in balance "
+                      "but not the least ones",
+                      BlockChoice::kMostNull));
+    problem = std::move(kept);
+  }
   if (settings.analysis == Analysis::kinematics) refuse_free_motion(*problem);
   State state(*problem);
   outcome.status = find_first_state(start, settings, *problem, state, notice);

@@ -3,12 +3,15 @@
 // (integrators/start/few_groups.h).
 #include <gmock/gmock.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "integrators/start/loop_rows.h"
 #include "integrators/start/rank.h"
+#include "integrators/start/reactions.h"
 #include "integrators/start/row_blocks.h"
 #include "integrators/start/row_choice.h"
 #include "integrators/start/row_space.h"
@@ -148,6 +151,27 @@ TEST(RowChoice, NullVectorsLoadNoBody) {
         EXPECT_LT(load.cwiseAbs().maxCoeff(), 1e-11 * largest);
       }
     }
+}
+
+// Reactions of very many rows are in balance, but not the least ones: a run that is asked for them says so, once.
+TEST(Reactions, OfMoreThanCanBeTheLeastAreSaidNotToBe) {
+  const auto said = [](const Scene& scene, bool asked) {
+    Settings settings = dynamics("rA", 1e-3, 2e-3);
+    settings.reactions = asked;
+    std::optional<Reactions> reactions;
+    const Outcome outcome = simulate(scene, settings, [&](const Sample& sample) {
+      if (!reactions) reactions.emplace(sample.problem);
+      reactions->update(sample);
+    });
+    EXPECT_TRUE(outcome.status.ok()) << outcome.status.message;
+    const auto notices = std::ranges::count_if(
+        outcome.notices, [](const std::string& notice) { return notice.find("not the least") != std::string::npos; });
+    return std::pair(notices, reactions->least());
+  };
+  EXPECT_EQ(said(Carried::ladder(67, true), true), std::pair(1L, false));  // 201 redundant rows
+  EXPECT_EQ(said(Carried::ladder(67, true), false), std::pair(0L, false));
+  EXPECT_EQ(said(Carried::ladder(66, true), true), std::pair(0L, true));
+  EXPECT_EQ(said(Carried::four_bars(67, true), true), std::pair(0L, true));  // each loop by itself
 }
 
 // Loops that share a body are apart, those that share two are not; a joint outside of loops is alone.
