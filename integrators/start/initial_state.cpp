@@ -66,7 +66,8 @@ class Assembler {
       return std::move(result_);
     }
     if (settings_.analysis == Analysis::dynamics) {
-      if (result_.status = refuse_motion_free_of_inertia(model_, given_); !result_.status.ok()) return std::move(result_);
+      if (result_.status = refuse_motion_free_of_inertia(model_, given_); !result_.status.ok())
+        return std::move(result_);
     }
     result_.status = project();
     if (result_.status.failure == Failure::inconsistent_state) {

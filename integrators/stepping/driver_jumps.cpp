@@ -9,9 +9,9 @@
 namespace poinsot {
 namespace {
 
-constexpr double kShortest = 1e-10;  // of the run, as switches are resolved (switch_times.h)
-constexpr double kLeastJump = 1e-9;  // relative, or of 1
-constexpr double kNoChange = 1e-6;   // in the shortest stretch: no jump
+constexpr double kLeastStretch = 1e-10;  // of the run, as switches are resolved (switch_times.h)
+constexpr double kLeastJump = 1e-9;      // relative, or of 1
+constexpr double kNoChange = 1e-6;       // in the shortest stretch: no jump
 
 double least_jump(double f) {
   return kLeastJump * std::max(1.0, std::abs(f));
@@ -19,7 +19,7 @@ double least_jump(double f) {
 
 }  // namespace
 
-DriverJumps::DriverJumps(const Model& model, double end) : model_(model), shortest_(kShortest * end) {
+DriverJumps::DriverJumps(const Model& model, double end) : model_(model), shortest_(kLeastStretch * end) {
   const auto add = [&](const Expression& f, std::size_t row) {
     if (f.is_constant() || f.is_function()) return;
     const Jet2<Bounds> over = f.range({{0, end}, Bounds::unknown(), Bounds::unknown()});

@@ -45,7 +45,8 @@ SwitchTimes::Switch SwitchTimes::first(double t, double to) {
     // Others so near that no step leads from one to the next are crossed with it.
     if (first)
       for (Switching& of : switching_)
-        if (&of != first) found_.after = std::max(found_.after, last_after(of, found_.after, found_.after + resolution_));
+        if (&of != first)
+          found_.after = std::max(found_.after, last_after(of, found_.after, found_.after + resolution_));
     clear_to_ = std::min(to, found_.before);
   }
   return found_.before <= to ? found_ : Switch{};
@@ -90,7 +91,7 @@ SwitchTimes::Switch SwitchTimes::between(const Switching& of, double from, doubl
     (beyond(middle) ? to : from) = middle;
   if (computed_side(of, to) == Side::on) to = std::nextafter(to, HUGE_VAL);  // neither: one further is beyond
   if (to <= begin) return {};                                                // behind
-  if (from - begin < kLeastStep * resolution_) from = begin;  // no step leads there
+  if (from - begin < kLeastStep * resolution_) from = begin;                 // no step leads there
   return {from, to};
 }
 
