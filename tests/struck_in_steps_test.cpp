@@ -36,7 +36,7 @@ Recorded fall(const Scene& scene, std::string_view integrator, double step) {
   return run(scene, settings);
 }
 
-std::vector<std::string> stepping_methods() {
+std::vector<std::string> methods_of_fixed_steps() {
   std::vector<std::string> all;
   for (const IntegratorEntry& entry : integrators())
     if (entry.analysis == Analysis::dynamics && !entry.controls_error) all.emplace_back(entry.name);
@@ -44,7 +44,7 @@ std::vector<std::string> stepping_methods() {
 }
 
 TEST(StruckInSteps, AreToldWithAStepThatGivesBackWhatWasTaken) {
-  for (const std::string& integrator : stepping_methods())
+  for (const std::string& integrator : methods_of_fixed_steps())
     for (const char* law : {"1e7*min(0, x)", "1e6*min(0, x) - 10*step(-x)*v", "-1e9*max(0, -x)^1.5", "-exp(-1000*x)"}) {
       SCOPED_TRACE(integrator + " " + law);
       const Recorded coarse = fall(dropped(law), integrator, 1e-3);
@@ -64,7 +64,7 @@ TEST(StruckInSteps, AreToldWithAStepThatGivesBackWhatWasTaken) {
 }
 
 TEST(StruckInSteps, AreNotWhereStepsResolveThem) {
-  for (const std::string& integrator : stepping_methods())
+  for (const std::string& integrator : methods_of_fixed_steps())
     for (const char* law : {"1e4*min(0, x)", "100*x + 50*x^3", "-10*tanh(100*v)", "-20*exp(-20*x)"}) {
       const Recorded r = fall(dropped(law), integrator, 1e-3);
       EXPECT_THAT(r.outcome.notices, Not(Contains(HasSubstr("is made by the step")))) << integrator << ' ' << law;
