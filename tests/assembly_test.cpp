@@ -16,7 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::MatchesRegex;
 
-InitialState assemble(const Scene& scene, Assembly assembly = Assembly::small) {
+InitialState assemble_scene(const Scene& scene, Assembly assembly = Assembly::small) {
   Settings settings;
   settings.assembly = assembly;
   return find_initial_state(std::make_shared<const Model>(compile(scene)), settings);
@@ -24,7 +24,7 @@ InitialState assemble(const Scene& scene, Assembly assembly = Assembly::small) {
 
 std::string refusal(const Scene& scene, Assembly assembly = Assembly::small) {
   try {
-    const InitialState start = assemble(scene, assembly);
+    const InitialState start = assemble_scene(scene, assembly);
     ADD_FAILURE() << "accepted: " << start.status.message;
   } catch (const InputError& error) {
     return error.what();
@@ -63,7 +63,7 @@ TEST(Assembly, LeavesConsistentStatesToTheLastBit) {
                             "simple_pendulum", "free_body", "knife_edge", "double_four_bar"}) {
     const Scene scene = scene_of(model);
     for (Assembly assembly : {Assembly::small, Assembly::always, Assembly::never}) {
-      const InitialState start = assemble(scene, assembly);
+      const InitialState start = assemble_scene(scene, assembly);
       EXPECT_TRUE(start.status.ok()) << start.status.message;
       expect_untouched(scene, start.bodies);
       for (const std::string& notice : start.notices) EXPECT_THAT(notice, Not(::testing::HasSubstr("assembled")));
@@ -79,17 +79,17 @@ TEST(Assembly, TheRunBeginsThere) {
 TEST(Assembly, ProjectedStatesAreLeftThen) {
   for (const char* model : {"single_pendulum", "four_link", "slider_crank"}) {
     const Scene scene = scene_of(model);
-    const InitialState start = assemble(scene);
+    const InitialState start = assemble_scene(scene);
     ASSERT_TRUE(start.status.ok()) << start.status.message;
     const Scene projected = with_state(scene, start.bodies);
-    const InitialState again = assemble(projected);
+    const InitialState again = assemble_scene(projected);
     expect_untouched(projected, again.bodies);
     EXPECT_THAT(again.notices, IsEmpty());
   }
 }
 
 InitialState expect_reference_state(const char* model) {
-  const InitialState start = assemble(scene_of(model));
+  const InitialState start = assemble_scene(scene_of(model));
   EXPECT_TRUE(start.status.ok()) << start.status.message;
   std::vector<Snapshot> reference = reference_motion(std::string("kin_") + model);
   reference.resize(1);
@@ -131,7 +131,7 @@ TEST(Assembly, MovesHeavyBodiesLess) {
   rod.i = 0, rod.j = 1;
   rod.f = Expression(1);
   scene.constraints = {rod};
-  const InitialState start = assemble(scene);
+  const InitialState start = assemble_scene(scene);
   EXPECT_NEAR(start.bodies[0].r.x(), 0.003, 1e-12);
   EXPECT_NEAR(start.bodies[1].r.x(), 1.003, 1e-12);
   EXPECT_THAT(
@@ -152,7 +152,7 @@ TEST(Assembly, RefusesPosesFarFromTheConstraints) {
             "the initial pose violates constraint 'revJoint_CD_1' by 0.25 m, more than the 0.0141 m that is put right "
             "unasked; correct the scene, or have it projected onto the constraints with `poinsot run --assemble`, "
             "whose --save-state keeps it");
-  const InitialState start = assemble(scene, Assembly::always);
+  const InitialState start = assemble_scene(scene, Assembly::always);
   ASSERT_TRUE(start.status.ok()) << start.status.message;
   EXPECT_LT(violation(std::make_shared<const Model>(compile(scene)), start.bodies).position, 1e-12);
 }

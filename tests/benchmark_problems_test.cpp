@@ -43,7 +43,7 @@ class BenchmarkProblems : public ::testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(All, BenchmarkProblems, ::testing::ValuesIn(formulation_names()),
                          [](const auto& test) { return test.param; });
 
-double turned(const BodyState& state, const Vec4<double>& p) {
+double turn_of(const BodyState& state, const Vec4<double>& p) {
   return (state.A - rotation_from_parameters<double>(p.normalized())).norm();
 }
 
@@ -72,7 +72,7 @@ TEST_P(BenchmarkProblems, HeavyTop) {
   EXPECT_NEAR(wd.z(), 0, 1e-8 * 661);
   const Vec4<double> p = heavy_top(0.02, 10000).head<4>();
   expect_order_one("heavy_top", 0.02, {500, 1000, 2000, 4000, 8000},
-                   [&](const auto& bodies) { return Errors{turned(bodies[0], p)}; });
+                   [&](const auto& bodies) { return Errors{turn_of(bodies[0], p)}; });
 }
 
 TEST_P(BenchmarkProblems, Andrews) {
@@ -99,7 +99,7 @@ TEST_P(BenchmarkProblems, SimplePendulum) {
 TEST_P(BenchmarkProblems, FreeBody) {
   expect_order_one("free_body", 10, {1000, 2000, 4000, 8000, 16000}, [](const auto& bodies) {
     return Errors{(bodies[0].w - Vector3(-0.11732638371977, 0.99309391282156, 0.06774333993528)).norm(),
-                  turned(bodies[0], {0.2831520338891, 0.0137111148475, -0.9572258061688, -0.0579282922125})};
+                  turn_of(bodies[0], {0.2831520338891, 0.0137111148475, -0.9572258061688, -0.0579282922125})};
   });
 }
 

@@ -11,7 +11,7 @@
 namespace poinsot::test {
 namespace {
 
-void expect_solved(const SampleSystem& s, block::Schur& schur, std::mt19937_64& random) {
+void expect_solved_by_schur(const SampleSystem& s, block::Schur& schur, std::mt19937_64& random) {
   const std::vector<double> x = random_vector(s.pattern.n, random);
   const std::vector<long double> exact = s.times(x);
   std::vector<double> b(exact.begin(), exact.end());
@@ -34,11 +34,11 @@ TEST(BodiesFirst, AreEliminatedWhereTheyAndTheirConstraintsAreFew) {
       write(s, schur);
       ASSERT_TRUE(schur.choose(ones));
       EXPECT_TRUE(schur.factor(10));
-      expect_solved(s, schur, random);
+      expect_solved_by_schur(s, schur, random);
       for (double& value : s.values) value *= 1.25;  // every pivot with them
       write(s, schur);
       EXPECT_TRUE(schur.factor(1.5));
-      expect_solved(s, schur, random);
+      expect_solved_by_schur(s, schur, random);
       EXPECT_FALSE(schur.factor(1.2));
       s.values.back() = std::numeric_limits<double>::quiet_NaN();
       write(s, schur);

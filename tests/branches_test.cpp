@@ -52,7 +52,7 @@ int add_bar(Scene& scene, const std::string& name, const Vector3& from, const Ve
   return static_cast<int>(scene.bodies.size()) - 1;
 }
 
-void add_joint(Scene& scene, JointType type, int i, int j, const Vector3& point) {
+void join_at(Scene& scene, JointType type, int i, int j, const Vector3& point) {
   Joint joint;
   joint.type = type, joint.i = i, joint.j = j, joint.point = point;
   if (type != JointType::spherical) joint.axis = {0, 0, 1};
@@ -63,9 +63,9 @@ void add_joint(Scene& scene, JointType type, int i, int j, const Vector3& point)
 void add_dyad(Scene& scene, int crank, const FourBar& of, double angle, const Vector3& at) {
   const Vector3 A = of.A(angle), B = of.B(angle), D(of.d, 0, 0);
   const int coupler = add_bar(scene, "coupler", A + at, B + at), rocker = add_bar(scene, "rocker", D + at, B + at);
-  add_joint(scene, JointType::revolute, crank, coupler, A + at);
-  add_joint(scene, JointType::spherical, coupler, rocker, B + at);
-  add_joint(scene, JointType::cylindrical, kGround, rocker, D + at);
+  join_at(scene, JointType::revolute, crank, coupler, A + at);
+  join_at(scene, JointType::spherical, coupler, rocker, B + at);
+  join_at(scene, JointType::cylindrical, kGround, rocker, D + at);
   scene.bodies.back().name = "rocker" + std::to_string(scene.bodies.size());
   scene.bodies[scene.bodies.size() - 2].name = "coupler" + std::to_string(scene.bodies.size());
 }
@@ -73,7 +73,7 @@ void add_dyad(Scene& scene, int crank, const FourBar& of, double angle, const Ve
 Scene four_bar(const FourBar& of, double angle, const char* turn = "t") {
   Scene scene;
   const int crank = add_bar(scene, "crank", Vector3::Zero(), of.A(angle));
-  add_joint(scene, JointType::revolute, kGround, crank, Vector3::Zero());
+  join_at(scene, JointType::revolute, kGround, crank, Vector3::Zero());
   add_dyad(scene, crank, of, angle, Vector3::Zero());
   Driver motor;
   motor.name = "motor", motor.i = kGround, motor.j = crank, motor.axis = {0, 0, 1},
@@ -152,7 +152,7 @@ TEST_P(Branches, a_direction_driven_past_its_turning_point) {
   Body rod;
   rod.name = "rod", rod.mass = 1, rod.inertia = Matrix3::Identity(), rod.angular_velocity = {0, 0, 1};
   bare.bodies.push_back(rod);
-  add_joint(bare, JointType::revolute, kGround, 0, Vector3::Zero());
+  join_at(bare, JointType::revolute, kGround, 0, Vector3::Zero());
   Constraint cosine;
   cosine.name = "cosine", cosine.type = ConstraintType::DP1, cosine.i = kGround, cosine.j = 0;
   cosine.a_i = {0, 1, 0}, cosine.a_j = {1, 0, 0}, cosine.f = Expression::parse("sin(t)");
@@ -177,7 +177,7 @@ TEST_P(Branches, a_direction_driven_to_its_turning_point_by_a_step) {
   Body rod;
   rod.name = "rod", rod.mass = 1, rod.inertia = Matrix3::Identity(), rod.angular_velocity = {0, 0, 1};
   scene.bodies.push_back(rod);
-  add_joint(scene, JointType::revolute, kGround, 0, Vector3::Zero());
+  join_at(scene, JointType::revolute, kGround, 0, Vector3::Zero());
   Constraint sine;
   sine.type = ConstraintType::DP1, sine.j = 0;
   sine.a_i = {0, 1, 0}, sine.a_j = {1, 0, 0}, sine.f = Expression::parse("sin(t)");
@@ -229,7 +229,7 @@ TEST_P(Branches, drivers_that_ask_for_the_pose_half_a_turn_off_or_a_negative_len
   sled.drivers.push_back(length);
   Scene crank;
   add_bar(crank, "crank", Vector3::Zero(), {1, 0, 0});
-  add_joint(crank, JointType::revolute, kGround, 0, Vector3::Zero());
+  join_at(crank, JointType::revolute, kGround, 0, Vector3::Zero());
   Driver motor;
   motor.name = "motor", motor.i = kGround, motor.j = 0, motor.axis = {0, 0, 1};
   motor.value = Expression::parse("pi + t");

@@ -42,7 +42,7 @@ std::vector<ColumnDependency> in_order(const Sparse& A) {
   return found;
 }
 
-void expect_same(const Sparse& A) {
+void expect_same_as_dense(const Sparse& A) {
   const ColumnDependencies found = column_dependencies(A, kTolerance);
   const std::vector<ColumnDependency> expected = in_order(A);
   EXPECT_TRUE(found.named);
@@ -88,7 +88,7 @@ TEST(ColumnDependencies, OfRandomMatrices) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(static_cast<unsigned>(seed));
     const Sparse A = random_matrix(random, 5 + seed % 30, 4 + seed % 41, 1 + seed % 7);
-    expect_same(A);
+    expect_same_as_dense(A);
   }
 }
 
@@ -104,7 +104,7 @@ TEST(ColumnDependencies, WithRowsThatReachEverything) {
     }
     for (int k = 50; k < 310; k += 50) A.col(k) = A.col(k - 3) - 2 * A.col(k - 41);
     A.colwise().normalize();
-    expect_same(A.sparseView());
+    expect_same_as_dense(A.sparseView());
   }
 }
 

@@ -25,7 +25,7 @@ std::vector<Settings> ways(double end) {
   }
   return all;
 }
-double allowed(const Settings& settings) {
+double allowed_off(const Settings& settings) {
   return integrators().require(settings.integrator).controls_error ? 1e-7 : 1e-5;
 }
 std::string named(const Settings& settings) {
@@ -112,7 +112,8 @@ TEST(Gallery, APendulumSwingsThroughGimbalLock) {
   for (const Settings& settings : ways(2)) {
     for (const Snapshot& sample : motion(scene_of("gimbal_pendulum"), settings)) {
       const double angle = stability::swing(w, 1, sample.t).angle;
-      EXPECT_LT((sample.bodies[0].r - Vector3(0, std::sin(angle) / 2, -std::cos(angle) / 2)).norm(), allowed(settings))
+      EXPECT_LT((sample.bodies[0].r - Vector3(0, std::sin(angle) / 2, -std::cos(angle) / 2)).norm(),
+                allowed_off(settings))
           << named(settings) << " at " << sample.t;
     }
   }
@@ -154,7 +155,7 @@ TEST(Gallery, A04MovesWhereCountingLeavesNoFreedom) {
     settings.signals = true;
     settings.every = 0.1;
     const Columns c = signals_of(scene, settings);
-    for (const double energy : c.at("energy")) EXPECT_NEAR(energy, c.at("energy").front(), 10 * allowed(settings));
+    for (const double energy : c.at("energy")) EXPECT_NEAR(energy, c.at("energy").front(), 10 * allowed_off(settings));
     double lowest = 0, highest = -2;
     for (const Snapshot& sample : motion(scene, settings)) {
       const BodyState &second = sample.bodies[1], &third = sample.bodies[2], &last = sample.bodies[4];

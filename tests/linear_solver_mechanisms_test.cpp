@@ -49,7 +49,7 @@ SampleSystem matrix_of(const std::string& name, const FormulationEntry& formulat
 }
 
 // Largest residual of a solve by rows, each relative to the sizes that meet in it.
-double backward_error(const SampleSystem& system, std::span<const double> x, std::span<const double> b) {
+double error_behind(const SampleSystem& system, std::span<const double> x, std::span<const double> b) {
   SampleSystem sizes = system;
   for (double& value : sizes.values) value = std::abs(value);
   std::vector<double> x_sizes(x.begin(), x.end());
@@ -102,7 +102,7 @@ TEST_P(OnMechanisms, SolveStepsOfAnyLengthAndOtherValuesOnTheSamePattern) {
             for (std::size_t k = 0; k < b.size(); ++k) b[k] = std::cos(static_cast<double>(k));
             std::vector<double> x = b;
             ASSERT_TRUE(solver->solve(x).ok()) << system.name;
-            EXPECT_LT(backward_error(system, x, b), 1e-13) << system.name << ", h = " << h;
+            EXPECT_LT(error_behind(system, x, b), 1e-13) << system.name << ", h = " << h;
           }
         }
       }
@@ -122,7 +122,7 @@ TEST_P(OnMechanisms, SolveKinematics) {
       ASSERT_TRUE(solver->factor().ok()) << system.name;
       std::vector<double> b(static_cast<std::size_t>(system.pattern.n), 1.0), x = b;
       ASSERT_TRUE(solver->solve(x).ok()) << system.name;
-      EXPECT_LT(backward_error(system, x, b), 1e-13) << system.name;
+      EXPECT_LT(error_behind(system, x, b), 1e-13) << system.name;
     }
   }
 }

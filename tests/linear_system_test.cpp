@@ -119,7 +119,7 @@ void write(const SampleSystem& system, LinearSystem& linear) {
       for (int i = 0; i < b.rows; ++i) linear.values()[index(linear.slots()[c] + i)] += system.values[v++];
 }
 
-void expect_solves(LinearSystem& linear, const SampleSystem& system) {
+void expect_linear_solves(LinearSystem& linear, const SampleSystem& system) {
   write(system, linear);
   ASSERT_TRUE(linear.factor().ok());
   EXPECT_TRUE(linear.factored());
@@ -137,11 +137,11 @@ TEST(LinearSystem, ValuesThatAreNotSymmetricTakeTheWholeMatrix) {
     LinearSystem& linear = systems.add();
     ASSERT_TRUE(linear.analyze(square(0).pattern).ok());
     EXPECT_FALSE(linear.factored());
-    expect_solves(linear, square(0));
+    expect_linear_solves(linear, square(0));
     ASSERT_EQ(systems.work().size(), 1);
     EXPECT_EQ(systems.work()[0].system, "G");
-    expect_solves(linear, square(0.5));
-    expect_solves(linear, square(0));
+    expect_linear_solves(linear, square(0.5));
+    expect_linear_solves(linear, square(0));
     ASSERT_EQ(systems.work().size(), 2);
     EXPECT_EQ(systems.work()[0].system, "G");
     EXPECT_EQ(systems.work()[1].system, "whole");
@@ -159,16 +159,16 @@ TEST(LinearSystem, AnalyzedForTheSamePlacesKeepsItsPivots) {
       LinearSystems systems({std::string(entry.name), std::string(system)});
       LinearSystem& linear = systems.add();
       ASSERT_TRUE(linear.analyze(square(0).pattern).ok());
-      expect_solves(linear, square(0));
+      expect_linear_solves(linear, square(0));
       ASSERT_TRUE(linear.analyze(other.pattern).ok());
       EXPECT_FALSE(linear.factored());
-      expect_solves(linear, other);
+      expect_linear_solves(linear, other);
       ASSERT_EQ(systems.work().size(), 1);
       EXPECT_EQ(systems.work()[0].factorizations + systems.work()[0].refactorizations, 2);
       EXPECT_EQ(linear.statistics().analyses, 1);
       systems.let_go();
       ASSERT_TRUE(linear.analyze(other.pattern).ok());
-      expect_solves(linear, other);
+      expect_linear_solves(linear, other);
     }
   }
 }

@@ -1,6 +1,7 @@
 """What a source file keeps to itself (in an unnamed namespace, outside of classes and functions) has a name that no other
 source file of the same folder takes: files are compiled together, and which ones differs between builds, so that a name
-taken twice breaks one build and not another. Functions may overload each other. Prints every name taken twice."""
+taken twice breaks one build and not another. Functions may overload each other. Nor do tests take the name of a function
+of their support, which it would hide from the others. Prints every name taken twice."""
 
 import collections
 import pathlib
@@ -12,6 +13,7 @@ FOLDERS = ["core", "linsolve", "formulations", "integrators", "app", "bench/stud
 FUNCTION = re.compile(r"^(?!return|using|template)[\w:<>,*& ]+?[ *&](\w+)\(([^()]*(?:\([^()]*\)[^()]*)*)\)[^;]*\{")
 CONSTANT = re.compile(r"^(?:inline |static )*(?:constexpr|const) [\w:<>,*& ]+?[ *&](\w+)(?:\[\w*\])? ?[={]")
 NEXT_CONSTANT = re.compile(r", (k\w+) = ")
+SHARED = re.compile(r"^(?:inline|template <.*>) ?[\w:<>,*& ]*?[ *&](\w+)\(", re.MULTILINE)
 TYPE = re.compile(r"^(?:struct|class|enum|enum class) (\w+)\b[^;]*\{?$")
 
 
@@ -71,12 +73,24 @@ def taken_twice(root):
                 yield f"{name}: {', '.join(where)}"
 
 
+def hiding_support(root):
+    shared = collections.defaultdict(list)
+    for path in sorted((root / "tests/support").glob("*.h")):
+        for name in SHARED.findall(path.read_text(encoding="utf-8")):
+            shared[name].append(path.relative_to(root).as_posix())
+    for path in sorted((root / "tests").glob("*.cpp")):
+        for name, of, line in local_names(path.read_text(encoding="utf-8")):
+            if of is not None and name in shared:
+                yield f"{name}: {path.relative_to(root).as_posix()}:{line} hides that of {shared[name][0]}"
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
     sample = "namespace {\n\nconstexpr double kOne = 1;\nstruct A {\n  int kInner = 2;\n};\n" \
              "double f(const A& a,\n         int b) {\n}\n}  // namespace\nvoid g() {\n}\n"
     assert [name[:2] for name in local_names(sample)] == [("kOne", None), ("A", None), ("f", ("const A&", "int"))]
-    found = list(taken_twice(root))
+    assert SHARED.findall("inline Settings controlled(int a) {\n") == ["controlled"]
+    found = list(taken_twice(root)) + list(hiding_support(root))
     for line in found:
         print(line)
     sys.exit(bool(found))

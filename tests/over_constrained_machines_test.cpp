@@ -167,7 +167,7 @@ void each_integrator(const std::string& formulation, double end, const F& f) {
 // Fixed steps: the same solution of the same equations, but for what generalized-alpha has to begin anew where rows are
 // exchanged, which costs of order step² and less than its own error. Error control: the tolerance, grown over the
 // motion.
-double allowed(const IntegratorEntry& integrator, int exchanges) {
+double allowed_apart(const IntegratorEntry& integrator, int exchanges) {
   if (integrator.controls_error) return integrator.name == "ida" ? 5e-6 : 1e-6;
   if (!integrator.name.starts_with("generalized_alpha")) return 1e-7;
   return exchanges == 0 ? 1e-6 : integrator.name == "generalized_alpha" ? 1e-4 : 2e-3;
@@ -182,7 +182,7 @@ Compared compare(const IntegratorEntry& integrator, const Settings& settings, co
   const Statistics &a = pair.with.outcome.statistics, &b = pair.without.outcome.statistics;
   EXPECT_TRUE(pair.with.outcome.status.ok()) << pair.with.outcome.status.message;
   EXPECT_TRUE(pair.without.outcome.status.ok()) << pair.without.outcome.status.message;
-  EXPECT_LT(motions_apart(pair.with, pair.without), allowed(integrator, pair.with.exchanges));
+  EXPECT_LT(motions_apart(pair.with, pair.without), allowed_apart(integrator, pair.with.exchanges));
   EXPECT_EQ(pair.without.exchanges, 0);
   EXPECT_LT(a.violation.position, 1e-8);
   // IDA, whose order moves up and down by little, rejects some steps more and takes fewer.

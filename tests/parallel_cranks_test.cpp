@@ -25,7 +25,7 @@ Scene turning_cranks(Frames frames, double w) {
   return scene;
 }
 
-double turned(const Scene& scene, const Snapshot& at, std::size_t body) {
+double turn_in_plane(const Scene& scene, const Snapshot& at, std::size_t body) {
   const Matrix3 A = at.bodies[body].A * scene.bodies[body].orientation.transpose();
   return std::atan2(A(1, 0), A(0, 0));
 }
@@ -44,9 +44,9 @@ TEST(ParallelCranks, TurnEvenlyOverTheChangePointsOfEveryTwo) {
       const bool fixed = !integrator.controls_error;
       double off = 0;
       for (const Snapshot& sample : course.samples) {
-        off = std::max(off, std::abs(turned(scene, sample, 0)));
+        off = std::max(off, std::abs(turn_in_plane(scene, sample, 0)));
         for (const std::size_t crank : {1u, 2u, 3u})
-          off = std::max(off, std::abs(turned(scene, sample, crank) - sample.t));
+          off = std::max(off, std::abs(turn_in_plane(scene, sample, crank) - sample.t));
       }
       EXPECT_LT(off, fixed && integrator.order == 1 ? 5e-3 : 1e-5);
       if (!fixed) return;  // whose steps are as long as the way between two change points
@@ -74,7 +74,7 @@ TEST(ParallelCranks, AreDrivenOverTheChangePointsOfEveryTwo) {
         const Course course = move(scene, kinematics(formulation.name, step, kTo - kFrom));
         ASSERT_TRUE(course.outcome.status.ok()) << course.outcome.status.message;
         for (const Snapshot& sample : course.samples)
-          for (const std::size_t crank : {1u, 2u, 3u}) EXPECT_NEAR(turned(scene, sample, crank), sample.t, 1e-9);
+          for (const std::size_t crank : {1u, 2u, 3u}) EXPECT_NEAR(turn_in_plane(scene, sample, crank), sample.t, 1e-9);
       }
     }
   }

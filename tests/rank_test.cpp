@@ -159,7 +159,7 @@ TEST(Rank, Grounded) {
 
 // Planar parallelogram: ground pivots (0, 0) and (2, 0), links of 1 m at the angle, coupler of 2 m. In space the plane
 // is given thrice too often by four revolutes.
-Scene parallelogram(double angle) {
+Scene planar_parallelogram(double angle) {
   Scene scene = free_bodies(3);
   const Vector3 link(std::cos(angle), std::sin(angle), 0), along(2, 0, 0), z = Vector3::UnitZ();
   scene.bodies[0].position = link / 2;
@@ -172,12 +172,12 @@ Scene parallelogram(double angle) {
 }
 
 TEST(Rank, ParallelogramLyingFlatIsASingularPosition) {
-  const RankAnalysis regular = analyze(parallelogram(1));
+  const RankAnalysis regular = analyze(planar_parallelogram(1));
   EXPECT_EQ(regular.degrees_of_freedom(), 1);
   EXPECT_EQ(regular.dependent.size(), 3u);
   EXPECT_FALSE(regular.singular_position());
 
-  const RankAnalysis flat = analyze(parallelogram(0));
+  const RankAnalysis flat = analyze(planar_parallelogram(0));
   EXPECT_EQ(flat.rank_here, 16);
   EXPECT_EQ(flat.rank, 17);
   EXPECT_EQ(flat.degrees_of_freedom(), 1);

@@ -47,7 +47,7 @@ Scene on_a_hinge(double length) {
   return scene;
 }
 
-Settings controlled(const char* integrator, double rtol) {
+Settings to_tolerance(const char* integrator, double rtol) {
   Settings settings = dynamics("rp", 1e-3, 2, 0.1);
   settings.integrator = integrator, settings.rtol = rtol;
   return settings;
@@ -64,11 +64,11 @@ double error(const Recorded& run, double length, const std::vector<Snapshot>& ex
 TEST(SmallMechanisms, are_told_where_atol_swallows_them) {
   int told = 0, silent = 0;
   for (const auto& scene_of_length : {on_a_spring, on_a_rod, on_a_hinge}) {
-    const std::vector<Snapshot> exact = motion(scene_of_length(1), controlled("dop853", 1e-13));
+    const std::vector<Snapshot> exact = motion(scene_of_length(1), to_tolerance("dop853", 1e-13));
     for (const char* integrator : {"dop853", "radau5", "dopri5", "ida"})
       for (const double length : {1.0, 1e-3, 1e-4, 1e-6, 1e-9}) {
         SCOPED_TRACE(fmt::format("{} {}", integrator, length));
-        Settings settings = controlled(integrator, 1e-8);
+        Settings settings = to_tolerance(integrator, 1e-8);
         const Recorded coarse = run(scene_of_length(length), settings);
         ASSERT_TRUE(coarse.outcome.status.ok()) << coarse.outcome.status.message;
         const double off = error(coarse, length, exact);
@@ -105,7 +105,7 @@ TEST(SmallMechanisms, are_let_be_where_they_go_far) {
   Scene far = on_a_spring(1e-6);
   far.bodies[0].position.y() = 1, std::get<Spring>(far.forces[0]).s_i = {0, 1, 0};
   for (const Scene& scene : {thrown, heavy, fast, far})
-    EXPECT_THAT(run(scene, controlled("dop853", 1e-8)).outcome.notices, IsEmpty());
+    EXPECT_THAT(run(scene, to_tolerance("dop853", 1e-8)).outcome.notices, IsEmpty());
   Settings fixed = dynamics("rA", 1e-3, 0.1);
   fixed.integrator = "rattle";
   EXPECT_THAT(run(on_a_spring(1e-6), fixed).outcome.notices, IsEmpty());
@@ -120,7 +120,7 @@ TEST(SmallMechanisms, are_sent_to_a_scene_of_their_own) {
   Spring spring = std::get<Spring>(large.forces[0]);
   spring.j = 1;
   scene.forces.push_back(spring);
-  const std::vector<std::string> notices = run(scene, controlled("dop853", 1e-8)).outcome.notices;
+  const std::vector<std::string> notices = run(scene, to_tolerance("dop853", 1e-8)).outcome.notices;
   ASSERT_FALSE(notices.empty());
   EXPECT_THAT(notices.back(), ::testing::HasSubstr("; in a scene of its own --atol 2e-19 serves it"));
 }
