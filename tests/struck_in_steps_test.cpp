@@ -1,7 +1,5 @@
 // Contacts that steps of a fixed length do not resolve are told; with the step that is offered they give back what they
 // took.
-#include "integrators/stepping/struck_in_steps.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
