@@ -63,7 +63,8 @@ TEST(StruckInSteps, AreToldWithAStepThatGivesBackWhatWasTaken) {
 
 TEST(StruckInSteps, AreNotWhereStepsResolveThem) {
   for (const std::string& integrator : methods_of_fixed_steps())
-    for (const char* law : {"1e4*min(0, x)", "100*x + 50*x^3", "-10*tanh(100*v)", "-20*exp(-20*x)"}) {
+    for (const char* law :
+         {"1e4*min(0, x)", "100*x + 50*x^3", "-10*tanh(100*v)", "-20*exp(-20*x)", "1e4*sin(3000*t)"}) {
       const Recorded r = fall(dropped(law), integrator, 1e-3);
       EXPECT_THAT(r.outcome.notices, Not(Contains(HasSubstr("is made by the step")))) << integrator << ' ' << law;
     }

@@ -47,8 +47,8 @@ void StruckInSteps::look(Problem& problem, const State& at, const Eigen::VectorX
     Law& law = laws_[k];
     const End after = end(law, problem, at.t);
     law.fastest = std::max({law.fastest, after.rate, before_[k].rate});
-    const auto force = [&](const End& end) {  // friction turns round with the rate, and makes no energy
-      return law.of.F->law(Arguments<double>{end.at.t, end.at.x, before_[k].at.v}).F;
+    const auto force = [&](const End& end) {  // friction turns round with the rate, and makes no energy; nor does time
+      return law.of.F->law(Arguments<double>{before_[k].at.t, end.at.x, before_[k].at.v}).F;
     };
     const double change = std::abs(force(after) - force(before_[k]));
     const double struck = h * change / (law.of.inertia * law.fastest);
