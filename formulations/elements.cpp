@@ -13,7 +13,7 @@ namespace {
 
 // Of a spring or torsion spring of the model, which stays.
 template <class Spring>
-SpringLaw law_of(const Spring& s) {
+ElementLaw law_of(const Spring& s) {
   if (s.law) return {0, 0, s.law->depends_on_rate(), &*s.law};
   return {s.stiffness, s.damping, s.damping != 0, nullptr};
 }

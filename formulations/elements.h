@@ -73,16 +73,16 @@ struct AlternateRow {
 };
 
 // Tension or torque of a spring: stiffness x + damping v, or law(x, v, t) (formulations/spring_law.h).
-struct SpringLaw {
+struct ElementLaw {
   double stiffness, damping;
   bool damped;            // it depends on v
   const Expression* law;  // of the model; null of a linear spring
 };
-struct SpringElement : SpringLaw {
+struct SpringElement : ElementLaw {
   int i, j, p, q;
   double length;
 };
-struct TorsionSpringElement : SpringLaw {
+struct TorsionSpringElement : ElementLaw {
   int i, j, a, b, c;
   double angle;
 };

@@ -21,7 +21,7 @@ std::string first_fault(const Configuration<F, double>& c) {
   const Elements& e = *c.elements;
   if (std::string of_time = fault_of_functions(*e.model, c.time); !of_time.empty()) return of_time;
   // Where the state is not finite itself, a law is not what made it so.
-  const auto of_law = [&](const SpringLaw& s, const std::string& name, double x, double v) -> std::string {
+  const auto of_law = [&](const ElementLaw& s, const std::string& name, double x, double v) -> std::string {
     if (!s.law || !std::isfinite(x) || !std::isfinite(v)) return {};
     const std::string what = s.law->law_fault({c.time, x, v});
     return what.empty() ? what : fault_sentence(c.time, fmt::format("force '{}'", name), what);

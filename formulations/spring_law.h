@@ -22,7 +22,7 @@ LawValue<Dual<T>> law_value(const Expression& law, const Arguments<Dual<T>>& at)
 }
 
 template <class T>
-LawValue<T> spring_force(const SpringLaw& k, const T& x, const T& v, const T& t) {
+LawValue<T> spring_force(const ElementLaw& k, const T& x, const T& v, const T& t) {
   if (k.law) return law_value(*k.law, Arguments<T>{t, x, v});
   T F = T(k.stiffness) * x;
   if (k.damped) F += T(k.damping) * v;
@@ -44,7 +44,7 @@ Dual<T> law_energy(const Expression& law, const Dual<T>& x, const Dual<T>& t) {
 
 // The energy stored at x; of a law F(x, v, t) that of F(x, 0, t).
 template <class T>
-T potential(const SpringLaw& k, const T& x, const T& t) {
+T potential(const ElementLaw& k, const T& x, const T& t) {
   return k.law ? law_energy(*k.law, x, t) : T(0.5 * k.stiffness) * x * x;
 }
 

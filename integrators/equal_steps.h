@@ -52,7 +52,7 @@ struct EqualSteps {
       const State& at = stepper->state();
       problem->set_position(at.t, span(at.q));
       problem->set_velocity(span(at.v));
-      observe({at.t, *problem, span(at.q), span(at.v), at.a(), at.lambda()});
+      observe({at.t, at.t, *problem, span(at.q), span(at.v), at.a(), at.lambda()});
     }
     return {};
   }

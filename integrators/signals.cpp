@@ -188,7 +188,7 @@ void Signals::add_rows() {
     if (group.kind != GroupKind::driver && !tension) continue;
     const double lambda = reactions_->lambda(group.first_row);
     if (group.kind == GroupKind::driver) {
-      const Jet2<double> f = row.f.at(sample_->t);
+      const Jet2<double> f = row.f.at(sample_->instant);
       double effort = -2 * f.f * lambda;  // λ ∂Φ/∂f
       if (row.type == RowType::angle) {
         const Vector3 ahead = direction(bodies_, row.i, std::cos(f.f) * row.a_i + std::sin(f.f) * row.b_i).x;
@@ -210,7 +210,7 @@ void Signals::add_springs() {
     const double rate = length > 0 ? d.x.dot(d.rate) / length : 0;
     add(length);
     add(rate);
-    add(length > 0 ? spring_effort(s, length - s.length, rate, sample_->t)
+    add(length > 0 ? spring_effort(s, length - s.length, rate, sample_->instant)
                    : 0);  // of no length, it pulls in no direction
   }
   for (std::size_t k = 0; k < model.torsions.size(); ++k) {
@@ -220,7 +220,7 @@ void Signals::add_springs() {
                                    direction(bodies_, t.spring.j, t.c_j));
     add(angle);
     add(rate);
-    add(spring_effort(t.spring, angle - t.spring.angle, rate, sample_->t));
+    add(spring_effort(t.spring, angle - t.spring.angle, rate, sample_->instant));
   }
 }
 

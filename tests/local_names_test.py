@@ -1,7 +1,8 @@
 """What a source file keeps to itself (in an unnamed namespace, outside of classes and functions) has a name that no other
 source file of the same folder takes: files are compiled together, and which ones differs between builds, so that a name
 taken twice breaks one build and not another. Functions may overload each other. Nor do tests take the name of a function
-of their support, which it would hide from the others. Prints every name taken twice."""
+of their support, which it would hide from the others, nor two headers the same name for a type, of which the linker would
+keep the functions of one. Prints every name taken twice."""
 
 import collections
 import pathlib
@@ -84,13 +85,31 @@ def hiding_support(root):
                 yield f"{name}: {path.relative_to(root).as_posix()}:{line} hides that of {shared[name][0]}"
 
 
+def types_of_headers(root):
+    places = collections.defaultdict(list)
+    for folder in FOLDERS:
+        for path in sorted((root / folder).rglob("*.h")):
+            within = []
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                if opened := re.match(r"namespace ([\w:]+) \{", line):
+                    within.append(opened[1])
+                elif line.startswith("}  // namespace"):
+                    within.pop()
+                elif (found := TYPE.match(line)) and "{" in line:
+                    name = "::".join([*within, found[1]])
+                    places[name].append(f"{path.relative_to(root).as_posix()}:{number}")
+    for name, where in sorted(places.items()):
+        if len(where) > 1:
+            yield f"{name}: {', '.join(where)}"
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
     sample = "namespace {\n\nconstexpr double kOne = 1;\nstruct A {\n  int kInner = 2;\n};\n" \
              "double f(const A& a,\n         int b) {\n}\n}  // namespace\nvoid g() {\n}\n"
     assert [name[:2] for name in local_names(sample)] == [("kOne", None), ("A", None), ("f", ("const A&", "int"))]
     assert SHARED.findall("inline Settings controlled(int a) {\n") == ["controlled"]
-    found = list(taken_twice(root)) + list(hiding_support(root))
+    found = list(taken_twice(root)) + list(hiding_support(root)) + list(types_of_headers(root))
     for line in found:
         print(line)
     sys.exit(bool(found))

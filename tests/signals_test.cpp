@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 
+#include "tests/support/controlled_ways.h"
 #include "tests/support/signals.h"
 
 namespace poinsot::test {
@@ -52,6 +53,30 @@ TEST(Signals, KinematicsFindsTheSameEffort) {
   for (std::size_t n = 0; n < c["t"].size(); ++n) {
     const double t = c["t"][n];
     EXPECT_NEAR(c["angle1.effort"][n], 4 * 8 + 3 * 9.81 * std::cos(4 * t * t), 1e-9) << t;
+  }
+}
+
+// At a sample where ḟ or a law of time jumps, all is of the side that the state is of, which comes after.
+TEST(Signals, AtAKinkAreThoseOfOneSide) {
+  const Scene driven =
+      scene_from(R"json("bodies": [{"name": "wheel", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]}],
+    "joints": [{"type": "revolute", "bodies": ["ground", "wheel"], "axis": [0, 0, 1], "point": [0, 0, 0]}],
+    "drivers": [{"type": "angle", "name": "motor", "bodies": ["ground", "wheel"], "axis": [0, 0, 1],
+                 "angle": "t + max(0, t - 0.5)"}],
+    "forces": [{"type": "linear_drag", "body": "wheel", "rotational": 2}])json");
+  const Scene pulled =
+      scene_from(R"json("bodies": [{"name": "block", "mass": 1, "inertia": [1, 1, 1], "position": [1, 0, 0]}],
+    "joints": [{"type": "translational", "bodies": ["ground", "block"], "axis": [1, 0, 0], "point": [0, 0, 0]}],
+    "forces": [{"type": "spring", "name": "s", "bodies": ["ground", "block"], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "length": 0, "law": "3*sign(t - 0.5)"}])json");
+  for (const ControlledWay& way : controlled_ways()) {
+    SCOPED_TRACE(way.integrator + " " + way.formulation);
+    Columns c = signals_of(driven, controlled(way.integrator, way.formulation, 1e-8, 1, 0.25));
+    EXPECT_DOUBLE_EQ(c["t"][2], 0.5);
+    EXPECT_NEAR(c["motor.effort"][2], 4, 1e-6);
+    EXPECT_NEAR(c["motor.power"][2], 8, 1e-6);
+    c = signals_of(pulled, controlled(way.integrator, way.formulation, 1e-8, 1, 0.25));
+    EXPECT_DOUBLE_EQ(c["t"][2], 0.5);
+    EXPECT_DOUBLE_EQ(c["s.force"][2], 3);
   }
 }
 

@@ -41,7 +41,7 @@ Beside::Beside(const std::shared_ptr<const Model>& model, std::span<const BodySt
 
 Trial Beside::begin(const std::vector<int>& without, int directions) const {
   Trial trial(without, intrinsic_formulation().make(unit_, without));
-  Place& start = trial.start;
+  PlaceBeside& start = trial.start;
   start.q.resize(index(trial.problem->nq())), start.v.resize(index(trial.problem->nv()));
   trial.problem->from_bodies(states_, start.q, start.v);
   trial.regular = trial.put_back(start);
@@ -89,26 +89,26 @@ double Beside::distance(std::span<const double> q, std::span<const double> from)
   return extent(difference);
 }
 
-std::optional<Place> Beside::along_velocities(Trial& trial) {
-  const Place& start = trial.start;
+std::optional<PlaceBeside> Beside::along_velocities(Trial& trial) {
+  const PlaceBeside& start = trial.start;
   const double speed = extent(start.v);
   const bool driven = std::ranges::any_of(model_->rows, [](const Row& row) { return !row.f.is_constant(); });
   if (speed == 0 && !driven) return {};
-  Place place = start;
+  PlaceBeside place = start;
   place.t = speed > 0 ? std::min(kMove / speed, 1.0) : kShortWhile;
   std::vector<double> dq = start.v;
   for (double& x : dq) x *= place.t;
   return settle(trial, std::move(place), dq, speed > 0 && kMove / speed <= 1.0);
 }
 
-std::optional<Place> Beside::at_random(Trial& trial, int direction) {
+std::optional<PlaceBeside> Beside::at_random(Trial& trial, int direction) {
   const std::vector<double>& move = trial.random[index(direction)];
   return move.empty() ? std::nullopt : settle(trial, trial.start, move, true);
 }
 
 // Moves by dq, puts the mechanism back onto the problem's rows, and looks at all of them.
-std::optional<Place> Beside::settle(Trial& trial, Place place, std::span<const double> dq, bool must_move) {
-  const Place& start = trial.start;
+std::optional<PlaceBeside> Beside::settle(Trial& trial, PlaceBeside place, std::span<const double> dq, bool must_move) {
+  const PlaceBeside& start = trial.start;
   trial.problem->retract(start.q, dq, place.q);
   const double moved = distance(place.q, start.q);
   if (!trial.put_back(place)) return {};
@@ -117,7 +117,7 @@ std::optional<Place> Beside::settle(Trial& trial, Place place, std::span<const d
   return place;
 }
 
-void Beside::stand(Problem& problem, const Place& place) {
+void Beside::stand(Problem& problem, const PlaceBeside& place) {
   std::vector<BodyState> states(states_.size());
   problem.set_position(place.t, place.q);
   problem.set_velocity(place.v);
@@ -157,7 +157,7 @@ bool Beside::all_follow(Trial& trial, double t) const {
   return true;
 }
 
-void Beside::look(Trial& trial, Place& place) {
+void Beside::look(Trial& trial, PlaceBeside& place) {
   stand(*trial.problem, place);
   if (trial.without.size() == suspects_ && all_follow(trial, place.t)) {
     place.dependent = suspects_;
@@ -181,7 +181,7 @@ void Beside::look(Trial& trial, Place& place) {
 
 // Velocity rows have no place to be off: later on they hold where the velocities that the rows kept lead to satisfy
 // them.
-void Beside::look_at_rates(Trial& trial, Place& place) {
+void Beside::look_at_rates(Trial& trial, PlaceBeside& place) {
   const std::size_t rows = space_.rows().size();
   bool any = false;
   for (std::size_t k = 0; k < rows && !any; ++k) any = space_.is_velocity_row(k);
@@ -204,9 +204,9 @@ void Beside::look_at_rates(Trial& trial, Place& place) {
   }
 }
 
-bool Beside::leads_on(const Place& start, const Place& along, const std::vector<int>& without) {
+bool Beside::leads_on(const PlaceBeside& start, const PlaceBeside& along, const std::vector<int>& without) {
   if (extent(start.v) == 0) return false;
-  Place place = along;
+  PlaceBeside place = along;
   if (!along.holds) {
     Trial trial(without, intrinsic_formulation().make(unit_, without));
     if (!trial.put_back(place)) return false;

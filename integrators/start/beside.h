@@ -27,7 +27,7 @@ inline constexpr double kFreeBeside = 3e-5;
 inline constexpr double kHolds = 1e-9;
 inline constexpr double kContradicts = 1e-6;  // of a body's size, or of its speed: by what the scene says
 
-struct Place {
+struct PlaceBeside {
   double t = 0;
   std::vector<double> q, v;
   Eigen::SparseMatrix<double> columns;  // where fewer are dependent than suspected
@@ -43,7 +43,7 @@ struct Trial {
   std::vector<int> without;  // rows of the model
   std::unique_ptr<Problem> problem;
   std::unique_ptr<Consistent> consistent;
-  Place start;
+  PlaceBeside start;
   std::vector<std::vector<double>> random;  // moves along directions that the constraints leave free at the start
   bool regular = false;                     // it could be put there
 
@@ -51,7 +51,7 @@ struct Trial {
       : without(std::move(left_out)),
         problem(std::move(of)),
         consistent(std::make_unique<Consistent>(*problem, LinearChoice{})) {}
-  bool put_back(Place& place) { return consistent->project_position(place.t, place.q).ok(); }
+  bool put_back(PlaceBeside& place) { return consistent->project_position(place.t, place.q).ok(); }
 };
 
 class Beside {
@@ -65,20 +65,20 @@ class Beside {
   // Makes the trial's start the one from which `holds` is judged: m that each row of the space is off there.
   std::span<const double> measure_start(Trial& trial);
   // Nothing where it does not move, or the projection pulls it back.
-  std::optional<Place> along_velocities(Trial& trial);
-  std::optional<Place> at_random(Trial& trial, int direction);
+  std::optional<PlaceBeside> along_velocities(Trial& trial);
+  std::optional<PlaceBeside> at_random(Trial& trial, int direction);
   // Whether the mechanism, moved on along its velocities, comes to a position where all rows hold and are independent
   // but those left out.
-  bool leads_on(const Place& start, const Place& along, const std::vector<int>& without);
+  bool leads_on(const PlaceBeside& start, const PlaceBeside& along, const std::vector<int>& without);
 
   double extent(std::span<const double> dq) const;  // largest move of a body by dq, in its size
 
  private:
   bool free_direction(Trial& trial, int seed, std::vector<double>& move) const;
-  std::optional<Place> settle(Trial& trial, Place place, std::span<const double> dq, bool must_move);
-  void stand(Problem& problem, const Place& place);
-  void look(Trial& trial, Place& place);
-  void look_at_rates(Trial& trial, Place& place);
+  std::optional<PlaceBeside> settle(Trial& trial, PlaceBeside place, std::span<const double> dq, bool must_move);
+  void stand(Problem& problem, const PlaceBeside& place);
+  void look(Trial& trial, PlaceBeside& place);
+  void look_at_rates(Trial& trial, PlaceBeside& place);
   bool all_follow(Trial& trial, double t) const;
   double distance(std::span<const double> q, std::span<const double> from) const;
 

@@ -88,13 +88,13 @@ class Examination {
       if (other.regular) find_conflicts(other, without);
       if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
     }
-    const Place& start = trial.start;
-    std::optional<Place> best, along;
+    const PlaceBeside& start = trial.start;
+    std::optional<PlaceBeside> best, along;
     if (trial.regular && result_.conflicts.empty()) {
       along = beside_->along_velocities(trial);
       best = along;
       for (int k = 0; k < directions && (!best || best->dependent > 0); ++k) {
-        std::optional<Place> place = beside_->at_random(trial, k);
+        std::optional<PlaceBeside> place = beside_->at_random(trial, k);
         if (place && (!best || place->dependent < best->dependent)) best = std::move(place);
       }
     }
@@ -108,7 +108,7 @@ class Examination {
       tell_redundant(columns, kDependent, surely_);
       if (along && !along->holds && surely.size() == suspects) {
         Trial other = beside_->begin(by_order());
-        std::optional<Place> place;
+        std::optional<PlaceBeside> place;
         if (other.regular) place = beside_->along_velocities(other);
         if (!place || place->holds) place = along;
         const auto level = place->by_rate ? Conflict::Level::later_velocity : Conflict::Level::later;
@@ -119,7 +119,7 @@ class Examination {
 
   // The rows left out, where the others hold.
   void find_conflicts(Trial& trial, const std::vector<int>& without) {
-    const Place& start = trial.start;
+    const PlaceBeside& start = trial.start;
     const std::span<const double> off = beside_->measure_start(trial);
     std::vector<double> rate(off.size()), nu(off.size());
     space_->rates(start.v, rate, nu);

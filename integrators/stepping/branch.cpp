@@ -17,22 +17,22 @@ struct Most {
 
 // Of a mechanism; `of`: number k of a velocity.
 template <class Velocity>
-Most most(const Problem& problem, const Parts& parts, std::size_t part, Velocity&& of) {
-  const Eigen::Index per_body = problem.nv() / problem.bodies();
+Most most(const Parts& parts, std::size_t part, Velocity&& of) {
   double way = 0, turn = 0;
   parts.for_each_run(part, [&](Eigen::Index first, Eigen::Index count) {
-    for (Eigen::Index b = first; b < first + count; b += per_body) {
-      double squares[2] = {0, 0};
-      for (Eigen::Index k = 0; k < per_body; ++k) squares[k > 2] += of(b + k) * of(b + k);
-      way = std::max(way, squares[0]);
-      turn = std::max(turn, squares[1]);
+    const auto square = [&](Eigen::Index k) { return of(k) * of(k); };
+    for (Eigen::Index b = first; b < first + count; b += parts.per_body()) {
+      way = std::max(way, square(b) + square(b + 1) + square(b + 2));
+      double turns = square(b + 3) + square(b + 4) + square(b + 5);
+      for (Eigen::Index k = 6; k < parts.per_body(); ++k) turns += square(b + k);
+      turn = std::max(turn, turns);
     }
   });
   return {std::sqrt(way), std::sqrt(turn)};
 }
 
-Most most(const Problem& problem, const Parts& parts, std::size_t part, const Eigen::VectorXd& v) {
-  return most(problem, parts, part, [&](Eigen::Index k) { return v[k]; });
+Most most(const Parts& parts, std::size_t part, const Eigen::VectorXd& v) {
+  return most(parts, part, [&](Eigen::Index k) { return v[k]; });
 }
 
 // The larger of two velocities, of which points and turns are no less than a part of the other: where centres of mass
@@ -46,27 +46,30 @@ Most larger(double length, const Most& a, const Most& b) {
 }  // namespace
 
 BranchWatch::BranchWatch(const Problem& problem)
-    : parts_(problem), changes_(parts_.count()), length_(longest_arm(problem.model())) {}
+    : constrained_(!problem.model_rows().empty()),
+      parts_(problem),
+      changes_(parts_.count()),
+      length_(longest_arm(problem.model())) {}
 
-void BranchWatch::begin(const Problem& problem, std::span<const double> a) {
+void BranchWatch::begin(std::span<const double> a) {
   for (std::size_t part = 0; part < parts_.count(); ++part) {
-    const Most change = most(problem, parts_, part, [&](Eigen::Index k) { return a[index(k)]; });
+    const Most change = most(parts_, part, [&](Eigen::Index k) { return a[index(k)]; });
     changes_[part].usual_way = change.way, changes_[part].usual_turn = change.turn;
   }
 }
 
-double BranchWatch::jump(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h) {
+double BranchWatch::jump(const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h) {
   constexpr double kUnusual = 4, kMoved = 0.1;
-  if (problem.model_rows().empty()) return 0;  // no constraints, no branches
+  if (!constrained_) return 0;  // no branches
   double most_changed = 0, fastest = -1;
   for (std::size_t n = 0; n < parts_.count(); ++n) {
-    const Most change = most(problem, parts_, n, [&](Eigen::Index k) { return v[k] - v_n[k]; });
+    const Most change = most(parts_, n, [&](Eigen::Index k) { return v[k] - v_n[k]; });
     Changes& of = changes_[n];
     of.way = change.way / h, of.turn = change.turn / h;
     if (!(of.way > kUnusual * of.usual_way || of.turn > kUnusual * of.usual_turn)) continue;
     if (fastest < 0) fastest = largest(span(v));
     if (parts_.rests(parts_.largest(n, span(v)), fastest)) continue;
-    const Most before = most(problem, parts_, n, v_n), after = most(problem, parts_, n, v);
+    const Most before = most(parts_, n, v_n), after = most(parts_, n, v);
     const Most size = larger(length_, before, after);
     const auto part = [&](double Most::*which) {  // of no start from rest, which has no branch to leave
       return before.*which > kMoved * after.*which ? change.*which / size.*which : 0;
@@ -112,8 +115,7 @@ Departure departure(Problem& problem, const LinearChoice& choice, const StepEnd&
   const double length = longest_arm(problem.model());
   double largest = 0;
   for (std::size_t n = 0; n < parts.count(); ++n) {
-    const Most delta = most(problem, parts, n, rhs),
-               size = larger(length, most(problem, parts, n, from.v), most(problem, parts, n, to.v));
+    const Most delta = most(parts, n, rhs), size = larger(length, most(parts, n, from.v), most(parts, n, to.v));
     for (double Most::*of : {&Most::way, &Most::turn})
       if (size.*of > 0) largest = std::max(largest, delta.*of / size.*of);
   }

@@ -26,10 +26,10 @@ class BranchWatch {
   explicit BranchWatch(const Problem& problem);
 
   // The first step begins with velocities that change by a per second.
-  void begin(const Problem& problem, std::span<const double> a);
+  void begin(std::span<const double> a);
   // The part of the velocities that changes in a step of length h from v_n to v, where that is several times what steps
   // before lead to expect; else 0. The largest of a mechanism.
-  double jump(const Problem& problem, const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h);
+  double jump(const Eigen::VectorXd& v_n, const Eigen::VectorXd& v, double h);
   // The last step that was looked at stands.
   void follow();
 
@@ -38,6 +38,7 @@ class BranchWatch {
     double way = 0, turn = 0, usual_way = 0, usual_turn = 0;
   };
 
+  const bool constrained_;
   const Parts parts_;
   std::vector<Changes> changes_;  // by mechanism
   bool begun_ = false;

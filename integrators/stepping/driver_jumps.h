@@ -22,6 +22,7 @@ class DriverJumps {
   // Of the expressions of the model, which has to live as long, up to a time `end`.
   DriverJumps(const Model& model, double end);
 
+  bool none() const { return functions_.empty(); }  // that may
   // From the time looked up to before, first 0, to this one; fails where a prescribed position jumps.
   Status look(double to);
 

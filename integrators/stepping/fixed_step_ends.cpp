@@ -30,12 +30,12 @@ Status FixedSteps::examine_end(bool& settled) {
   // Part of its velocities that a step changes unusually: from there on it is asked whether its end is a singular
   // position, and whether it is on its branch.
   constexpr double kSingular = 0.02, kLeft = 0.2;
-  double jump = integrates() ? branch_.jump(problem_, v_n_, x_.v, h_) : 0;
+  double jump = integrates() ? branch_.jump(v_n_, x_.v, h_) : 0;
   if (settles_ && (singular_ends_.grow(last_seen(), x_.lambda()) || jump > kSingular)) {
     // It may be that of the rows kept alone, where others are set aside.
     if (chooses_ && !rows_asked_) return {Failure::singular_position, x_.t, {}};
     if (Status status = settle_end(settled); !status.ok()) return status;
-    if (settled) jump = branch_.jump(problem_, v_n_, x_.v, h_);
+    if (settled) jump = branch_.jump(v_n_, x_.v, h_);
   }
   if (Status status = measure_rotation(last_seen(), x_.t); !status.ok()) return status;
   return jump > kLeft ? check_branch(last_seen()) : Status{};

@@ -48,7 +48,7 @@ Status FixedSteps::march() {
   Status status = begin();
   if (status.ok()) status = measure_rotation(problem_, 0);
   settles_ = settings_.retry && integrates();
-  branch_.begin(problem_, x_.a());
+  branch_.begin(x_.a());
   if (integrates() && passed_.due(h_)) passed_.look(problem_, x_, h_);
   if (integrates() && turned_.due(h_)) turned_.look(problem_, x_, h_);
   jumps_.look(problem_, x_, sides_);
@@ -64,7 +64,8 @@ Status FixedSteps::march() {
       status = jump_of_positions(run_.jumps_after);
       break;
     }
-    if (status = driver_jumps_.look(grid_.time(n)); !status.ok()) break;
+    if (!driver_jumps_.none()) status = driver_jumps_.look(grid_.time(n));
+    if (!status.ok()) break;
     const bool sampled = grid_.sampled(n);
     const std::int64_t before = run_.statistics.steps;
     status = advance(grid_.time(n), sampled);
@@ -110,7 +111,7 @@ Status FixedSteps::reach(double t, bool sampled) {
   branch_.follow();
   if (integrates() && passed_.due(h_)) passed_.look(last_seen(), x_, h_);
   if (integrates() && turned_.due(h_)) turned_.look(last_seen(), x_, h_);
-  if (integrates() && struck_.due(x_.v, v_n_)) struck_.look(last_seen(), x_, q_n_, v_n_, h_);
+  if (!struck_.none() && integrates() && struck_.due(x_.v, v_n_)) struck_.look(last_seen(), x_, q_n_, v_n_, h_);
   if (integrates() && !jumps_.none()) look_for_jumps();
   start_ = settled ? Start::limit : led_ ? Start::rewritten : Start::usual;
   rows_asked_ = false;

@@ -25,7 +25,7 @@ inline void sample(const Observer& observe, const Problem& problem, const State&
   const Problem::LeftOut left_out = problem.left_out();
   statistics.violation.position = std::max(statistics.violation.position, left_out.position);
   statistics.violation.velocity = std::max(statistics.violation.velocity, left_out.velocity);
-  if (observe) observe({t, problem, span(at.q), span(at.v), at.a(), at.lambda()});
+  if (observe) observe({t, at.t, problem, span(at.q), span(at.v), at.a(), at.lambda()});
 }
 
 inline void sample(const Observer& observe, const Problem& problem, const State& at, Statistics& statistics) {

@@ -18,20 +18,22 @@ namespace poinsot {
 
 class Parts {
  public:
-  explicit Parts(const Problem& problem) : mechanism_(mechanisms(problem.model())) {
-    runs_.resize(mechanism_count(mechanism_));
-    const Eigen::Index per_body = problem.bodies() > 0 ? problem.nv() / problem.bodies() : 0;
+  explicit Parts(const Problem& problem)
+      : mechanism_(mechanisms(problem.model())),
+        per_body_(problem.bodies() > 0 ? problem.nv() / problem.bodies() : 0),
+        runs_(mechanism_count(mechanism_)) {
     for (std::size_t b = 0; b < mechanism_.size(); ++b) {
       std::vector<Run>& runs = runs_[index(mechanism_[b])];
-      const auto first = static_cast<Eigen::Index>(b) * per_body;
+      const auto first = static_cast<Eigen::Index>(b) * per_body_;
       if (!runs.empty() && runs.back().first + runs.back().count == first)
-        runs.back().count += per_body;
+        runs.back().count += per_body_;
       else
-        runs.push_back({first, per_body});
+        runs.push_back({first, per_body_});
     }
   }
 
   std::size_t count() const { return runs_.size(); }
+  Eigen::Index per_body() const { return per_body_; }  // components of a velocity
   std::size_t of_body(int body) const { return index(mechanism_[index(body)]); }
   // Row k of the problem, rp's normalizations behind the scene's.
   std::size_t of_row(const Problem& problem, std::size_t k) const {
@@ -80,10 +82,9 @@ class Parts {
   double fastest_turn(std::size_t part, const Problem& problem) const {
     if (count() == 1) return problem.fastest_turn();
     double most = 0;
-    const Eigen::Index per_body = problem.nv() / problem.bodies();
     for_each_run(part, [&](Eigen::Index first, Eigen::Index count) {
-      for (Eigen::Index b = first; b < first + count; b += per_body)
-        most = std::max(most, problem.turn(static_cast<int>(b / per_body)));
+      for (Eigen::Index b = first; b < first + count; b += per_body_)
+        most = std::max(most, problem.turn(static_cast<int>(b / per_body_)));
     });
     return most;
   }
@@ -92,7 +93,8 @@ class Parts {
   struct Run {
     Eigen::Index first, count;
   };
-  std::vector<int> mechanism_;          // of each body
+  std::vector<int> mechanism_;  // of each body
+  Eigen::Index per_body_;
   std::vector<std::vector<Run>> runs_;  // by mechanism
 };
 

@@ -27,10 +27,11 @@ void StillWatch::look(const Problem& problem, const State& at) {
   shares_known_ = false;
   const bool first = std::exchange(t_, at.t) < 0;
   for (std::size_t part = 0; part < parts_.count() && !told_; ++part) {
+    const double speed = parts_.count() == 1 ? fastest_ : parts_.largest(part, span(v_));
     if (first)
-      of_[part].speed = parts_.largest(part, span(v_));
+      of_[part].speed = speed;
     else
-      look(problem, at, part, since);
+      look(problem, at, part, since, speed);
   }
 }
 
@@ -46,13 +47,12 @@ double StillWatch::least_share(const Problem& problem, const State& at, std::siz
   return least;
 }
 
-void StillWatch::look(const Problem& problem, const State& at, std::size_t part, double since) {
+void StillWatch::look(const Problem& problem, const State& at, std::size_t part, double since, double speed) {
   constexpr double kStill = 0.1, kMoves = 0.25;
   constexpr double kFades = 0.05;    // in the time that the motion takes to change
   constexpr double kFarLess = 0.05;  // as independent as elsewhere
   Part& of = of_[part];
   const double acceleration = parts_.largest(part, span(change_)) / since;
-  double speed = parts_.largest(part, span(v_));
   const bool rests = parts_.rests(speed, fastest_);
   if (rests) speed = 0;
   if (rests || (speed <= kStill * of.speed && acceleration <= kStill * of.acceleration)) {

@@ -30,7 +30,7 @@ class StillWatch {
     double speed = 0, acceleration = 0;         // usual ones: the largest so far, those long ago forgotten
     double t_rest = 0, slowest = 0, share = 1;  // of the last rest
   };
-  void look(const Problem& problem, const State& at, std::size_t part, double since);
+  void look(const Problem& problem, const State& at, std::size_t part, double since, double speed);
   double least_share(const Problem& problem, const State& at, std::size_t part);
 
   const Parts parts_;

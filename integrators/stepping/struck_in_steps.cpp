@@ -16,7 +16,6 @@ StruckInSteps::StruckInSteps(const Model& model, Tell tell) : model_(model), tel
 }
 
 bool StruckInSteps::due(const Eigen::VectorXd& v, const Eigen::VectorXd& v_n) {
-  if (laws_.empty()) return false;
   const auto per_body = v.size() / static_cast<Eigen::Index>(bodies_.size());
   for (Eigen::Index b = 0; b < v.size(); b += per_body) {
     for (const auto& [first, count] : {std::pair<Eigen::Index, Eigen::Index>{0, 3}, {3, per_body - 3}}) {

@@ -19,6 +19,7 @@ class StruckInSteps {
   // Of the expressions of the model, which has to live as long.
   StruckInSteps(const Model& model, Tell tell);
 
+  bool none() const { return laws_.empty(); }
   // Whether a step from v_n to v is to be looked at.
   bool due(const Eigen::VectorXd& v, const Eigen::VectorXd& v_n);
   // The step of h from (q_n, v_n) to `at`, where the problem stands, before and after.
