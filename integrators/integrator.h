@@ -59,8 +59,8 @@ struct Statistics {
   std::vector<MethodWork> methods;  // of an integrator that picks among the others: which it picked, in turn
 };
 
-// A point of the trajectory. The problem stands at (t, q, v); where a function of time has a kink or jumps at t, what is
-// given is of its side at `instant`, a last digit beside t.
+// A point of the trajectory. The problem stands at (t, q, v); where a function of time has a kink or jumps at t, what
+// is given is of its side at `instant`, a last digit beside t.
 struct Sample {
   double t;
   double instant;

@@ -15,7 +15,7 @@ FUNCTION = re.compile(r"^(?!return|using|template)[\w:<>,*& ]+?[ *&](\w+)\(([^()
 CONSTANT = re.compile(r"^(?:inline |static )*(?:constexpr|const) [\w:<>,*& ]+?[ *&](\w+)(?:\[\w*\])? ?[={]")
 NEXT_CONSTANT = re.compile(r", (k\w+) = ")
 SHARED = re.compile(r"^(?:inline|template <.*>) ?[\w:<>,*& ]*?[ *&](\w+)\(", re.MULTILINE)
-TYPE = re.compile(r"^(?:struct|class|enum|enum class) (\w+)\b[^;]*\{?$")
+TYPE = re.compile(r"^(?:struct|class|enum class|enum) (\w+)\b[^;]*\{?$")
 
 
 def parameters(text):
