@@ -13,6 +13,7 @@
 #include "bench/records/run_files.h"
 #include "bench/records/run_record.h"
 #include "bench/records/run_summary.h"
+#include "bench/study/tried_settings.h"
 #include "bench/study/verification.h"
 #include "bench/study/verification_text.h"
 #include "core/input_error.h"
@@ -68,6 +69,7 @@ Outcome simulate_file(const RunOptions& options, const Scene& scene, const Setti
       tell(notices.back());
     });
     outcome.notices = std::move(notices);
+    try_settings(scene, settings, outcome);
     outcome.status.message = placed(outcome.status.message);
     return outcome;
   } catch (const InputError& refused) {

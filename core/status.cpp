@@ -31,4 +31,19 @@ Status with_remedy(Failure failure, double time, std::string message, std::strin
   return status;
 }
 
+Status with_settings(Status status, std::string_view settings) {
+  const bool alone = status.remedy == 0;
+  status.settings = status.message.size();
+  if (alone) status.remedy = status.settings;
+  status.message.append(alone ? "; " : ", or ").append(settings);
+  return status;
+}
+
+void Status::explain(std::string_view why) {
+  const std::size_t at = remedy > 0 ? remedy : message.size();
+  message.insert(at, std::string("; ").append(why));
+  if (remedy > 0) remedy += why.size() + 2;
+  if (settings > 0) settings += why.size() + 2;
+}
+
 }  // namespace poinsot

@@ -27,17 +27,24 @@ std::string_view name(Failure failure);
 
 struct [[nodiscard]] Status {
   Failure failure = Failure::none;
-  double time = 0;         // s, where it happened
-  std::string message;     // what, which body or constraint, what to try; empty when ok
-  std::size_t remedy = 0;  // where in it what to try begins; 0 where nothing is known to help
+  double time = 0;           // s, where it happened
+  std::string message;       // what, which body or constraint, what to try; empty when ok
+  std::size_t remedy = 0;    // where in it what to try begins; 0 where nothing is known to help
+  std::size_t settings = 0;  // where in that begins what are other settings, up to the end; 0: none
+  double step = 0;           // s, the longest of them that may serve, where it is known
 
   bool ok() const { return failure == Failure::none; }
   void withdraw_remedy() {
     if (remedy > 0) message.resize(std::exchange(remedy, 0));
+    settings = 0;
   }
+  // Why it came to that, before what to try.
+  void explain(std::string_view why);
 };
 
-// A failure and what to try: "try a smaller step".
+// A failure and what to try: "end before it".
 Status with_remedy(Failure failure, double time, std::string message, std::string_view remedy);
+// The same, where other settings may help: "try a smaller step". After a remedy of another kind: "..., or ...".
+Status with_settings(Status status, std::string_view settings);
 
 }  // namespace poinsot

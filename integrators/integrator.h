@@ -100,8 +100,6 @@ struct Run {
   // s: where the state is in a singular position, after which its velocities have led away; else 0. The state's a and λ
   // are limits there, which [M Gᵀ; G 0] does not give.
   double singular_for = 0;
-  // s: the last time before a prescribed position jumps, up to which steps of fixed length go.
-  double jumps_after = std::numeric_limits<double>::infinity();
 };
 
 class Integrator {

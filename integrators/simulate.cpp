@@ -150,15 +150,13 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   tell_of_switches(*model, integrator, settings, notice);
   tell_of_redundant_pulses(*model, start.rank, settings, notice);
   if (chooses_steps(settings)) tell_small_mechanisms(*model, settings.rtol, settings.absolute_tolerance(), notice);
-  const double jumps_after =
-      integrator.controls_error ? std::numeric_limits<double>::infinity() : first_jump(*model, settings.end);
   const Eigen::VectorXd q_start = state.q;
   const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
   {
     const FlushSubnormals flush;
-    outcome.status = integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, notice,
-                                             rotation.senseless,
-                                             start.rank.singular_position() ? start.rank.time_beside : 0, jumps_after});
+    outcome.status =
+        integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, notice,
+                                rotation.senseless, start.rank.singular_position() ? start.rank.time_beside : 0});
   }
   const bool explained = explain_by_functions(outcome.status, *problem, settings);
   const double largest = outcome.statistics.largest_rotation;
@@ -190,11 +188,11 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   return outcome;
 }
 
-// Key paths beside the names in its message; the remedy begins so much later.
+// Key paths beside the names in its message; what to try begins so much later.
 void name_places(Status& status, const Scene& scene) {
-  const std::size_t before = with_key_paths(std::string_view(status.message).substr(0, status.remedy), scene).size();
+  for (std::size_t* const begins : {&status.remedy, &status.settings})
+    *begins = with_key_paths(std::string_view(status.message).substr(0, *begins), scene).size();
   status.message = with_key_paths(status.message, scene);
-  if (status.remedy > 0) status.remedy = before;
 }
 
 }  // namespace

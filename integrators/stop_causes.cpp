@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "core/model_faults.h"
 #include "core/scene_doubts.h"
@@ -60,18 +61,23 @@ void explain_by_position(Status& status, Problem& problem, const Settings& setti
   if (why.empty()) why = sticking_law(problem, settings.linear(), state, instant);
   if (why.empty()) why = resting_law(problem, settings.linear(), state, instant);
   if (why.empty()) why = vanished_gradient(problem, state);
-  if (!why.empty()) status.withdraw_remedy();  // nothing helps but to change what these say
-  if (why.empty()) {
+  bool barred = !why.empty();  // nothing helps but to change what these say
+  if (!barred) {
     const NearSingular near = near_singular_position(problem, rows, span(q_start), status.time, span(state.q));
     if (unexplained || near.barred)
       why = near.sentence;
     else if (near.driven)
       why = kMayBeBarred;
-    if (near.barred) status.withdraw_remedy();
+    barred = near.barred;
   }
-  if (why.empty() && failure == Failure::step_size_too_small && status.remedy == 0)
-    why = growing_motion(problem, state);
-  if (!why.empty()) status.message += "; " + why;
+  if (barred) status.withdraw_remedy();
+  if (!why.empty()) status.explain(why);
+  if (barred || failure != Failure::step_size_too_small || status.remedy > 0) return;
+  if (const std::string growing = why.empty() ? growing_motion(problem, state) : ""; !growing.empty()) {
+    status.explain(growing);
+    status = with_remedy(failure, status.time, std::move(status.message), "end before it");
+  }
+  status = with_settings(std::move(status), "try larger tolerances or an implicit integrator with a fixed step");
 }
 
 }  // namespace poinsot

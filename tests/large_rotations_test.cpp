@@ -124,7 +124,7 @@ TEST(LargeRotations, beyond_what_makes_sense_stop_the_run) {
 
 TEST(TorsionSprings, are_counted_right_by_error_control_whatever_its_steps) {
   const double rate = 1000;
-  for (const char* integrator : {"dopri5", "dop853", "radau5", "ida"})
+  for (const char* integrator : {"auto", "dopri5", "dop853", "radau5", "ida"})
     for (const char* formulation : kAllFormulations) {
       if (refusal_of(integrators().require(integrator), formulation)) continue;
       Settings s = controlled(integrator, formulation, 1e-6, 0.5, 0.1);
@@ -155,7 +155,8 @@ TEST(LargeRotations, a_step_onto_another_branch_stops_the_run) {
   Joint hinge;
   hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
   scene.joints.push_back(hinge);
-  for (const char* integrator : {"implicit_euler", "half_implicit", "rattle", "generalized_alpha"})
+  for (const char* integrator :
+       {"implicit_euler", "half_implicit", "rattle", "generalized_alpha", "generalized_alpha_i2"})
     for (const char* formulation : kAllFormulations) {
       const Recorded r = run(scene, with(integrator, formulation, 0.5, 10));
       EXPECT_FALSE(r.outcome.status.ok()) << integrator << ' ' << formulation;

@@ -140,7 +140,7 @@ TEST_P(Newton, SpendsItsIterationsInKinematics) {
       MatchesRegex(
           "at t = 0.01 s the position did not converge: after 1 iteration the correction is .*, the "
           "tolerance 1e-12; body '.*' \\(/bodies/.\\) moves most; the mechanism may be locked here or the driver ask "
-          "for more than it can reach; else try more iterations or a larger tolerance"));
+          "for more than it can reach; try more iterations or a larger tolerance"));
   expect_kept(r, 1e-2, 1e-2);
 }
 

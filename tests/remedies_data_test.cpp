@@ -144,7 +144,6 @@ TEST_P(RemediesOfData, OfKinematicsThatAsksForTooMuchAreAnEndBeforeOrAnotherFunc
 
 TEST_P(RemediesOfData, OfAPositionThatJumpsNameWhatJumps) {
   by_every_method(GetParam(), 1e-2, 1, [&](const Settings& settings) {
-    if (!integrators().require(settings.integrator).controls_error) return;
     const Recorded r = run(driven_crank("0.1*t + 0.2*step(t - 0.5)"), settings);
     expect_stopped(r, Failure::inconsistent_state, "driver 'motor'", "a jump of positions, which no motion follows");
     EXPECT_EQ(remedy_of(r), "; let it pass through the values between");

@@ -214,10 +214,10 @@ class Kinematics final : public FixedSteps {
                                                           problem_.describe_unknown(problem_.nv() + found.row));
     const std::string where = fmt::format("at t = {:.9g} s the mechanism comes to a singular position{}", t, which);
     if (found.barred) return {Failure::singular_position, t, fmt::format("{}: {}", where, kBarred)};
-    return with_remedy(
-        Failure::singular_position, t, where + ": its motion can go on in more than one way, or not at all",
-        "end before it, or start beyond it on the branch that is meant, or let analysis dynamics pass it "
-        "by integrator dop853");
+    return with_settings(
+        with_remedy(Failure::singular_position, t, where + ": its motion can go on in more than one way, or not at all",
+                    "end before it, or start beyond it on the branch that is meant"),
+        "let analysis dynamics pass it by integrator dop853");
   }
 
   PrescribedState solver_;

@@ -103,14 +103,14 @@ Status PrescribedState::find_position(double t, double tolerance, bool carefully
   }
   Eigen::Index largest = 0;
   delta_.cwiseAbs().maxCoeff(&largest);
-  return with_remedy(
-      Failure::not_converged, t,
-      fmt::format(
-          "at t = {:.9g} s the position did not converge: after {} the correction is {:.3g}, the tolerance "
-          "{:.3g}; {} moves most; the mechanism may be locked here or the driver ask for more than it can reach",
-          t, counted(settings_.max_iterations, "iteration"), last_, settings_.tolerance,
-          problem_.describe_unknown(static_cast<int>(largest))),
-      "else try more iterations or a larger tolerance");
+  return with_settings(
+      {Failure::not_converged, t,
+       fmt::format(
+           "at t = {:.9g} s the position did not converge: after {} the correction is {:.3g}, the tolerance "
+           "{:.3g}; {} moves most; the mechanism may be locked here or the driver ask for more than it can reach",
+           t, counted(settings_.max_iterations, "iteration"), last_, settings_.tolerance,
+           problem_.describe_unknown(static_cast<int>(largest)))},
+      "try more iterations or a larger tolerance");
 }
 
 // Of a body, by a correction.

@@ -262,12 +262,13 @@ class Assembler {
   }
   Status open_to_kinematics() const {
     const RankAnalysis& rank = result_.rank;
-    return with_remedy(
-        Failure::singular_position, 0,
-        fmt::format("the initial pose is a singular position of the mechanism, where its drivers alone do not say "
-                    "how it moves on: singular here: {}",
-                    rank.singular_position() ? names(rank.singular) : describe_row(*model_, rank.doubtful)),
-        "start beside it, or with analysis dynamics, which follows the branch that the initial velocities lead to");
+    return with_settings(
+        with_remedy(Failure::singular_position, 0,
+                    fmt::format("the initial pose is a singular position of the mechanism, where its drivers alone do "
+                                "not say how it moves on: singular here: {}",
+                                rank.singular_position() ? names(rank.singular) : describe_row(*model_, rank.doubtful)),
+                    "start beside it"),
+        "with analysis dynamics, which follows the branch that the initial velocities lead to");
   }
 
   // Redundant rows must hold where the others do.

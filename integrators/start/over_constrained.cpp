@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "integrators/start/violation.h"
 
 namespace poinsot {
 namespace {
@@ -95,12 +96,13 @@ Status OverConstrained::measure(double t, std::span<const double> a) {
     if (const double part = std::abs(residual[k]) * by_allowed_[k]; part > most) most = part, worst = k;
   if (most <= 1 || (to_tolerance_ && std::abs(residual[worst]) <= kAsKept * kept_off()))
     return rates_aside_ ? measure_rates(t, a) : Status{};
-  return with_remedy(
-      Failure::constraint_lost, t,
-      fmt::format("at t = {:.9g} s {} is violated by {:.3g}: it followed from the other constraints where the run "
-                  "began and was set aside, and does not hold with them any more; the constraints contradict one "
-                  "another from here on, and one of them has to go, or the steps leave them",
-                  t, describe_row(model(), aside_->rows()[worst]), std::abs(residual[worst])),
+  return with_settings(
+      {Failure::constraint_lost, t,
+       fmt::format("at t = {:.9g} s {} is violated by {}: it followed from the other constraints where the run "
+                   "began and was set aside, and does not hold with them any more; the constraints contradict one "
+                   "another from here on, and one of them has to go, or the steps leave them",
+                   t, describe_row(model(), aside_->rows()[worst]),
+                   describe_residual(model(), aside_->rows()[worst], std::abs(residual[worst]), 0))},
       "try smaller steps or a smaller tolerance");
 }
 

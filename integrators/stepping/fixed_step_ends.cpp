@@ -103,11 +103,11 @@ Status FixedSteps::check_branch(Problem& problem) {
   const bool fine = rotation_ <= kFine, left = fine && share > kReversed;
   if (left || (fine && share > kComparable + kTurns * rotation_ && repeats_ && on_branch_ != OnBranch::granted)) {
     on_branch_ = left ? OnBranch::asked : OnBranch::doubted;
-    return with_remedy(
-        Failure::singular_position, t,
-        fmt::format("at t = {:.9g} s, beside a singular position of the constraints, the step ends on another "
-                    "branch than its velocities lead to, by {} most of all",
-                    t, problem.describe_unknown(row)),
+    return with_settings(
+        {Failure::singular_position, t,
+         fmt::format("at t = {:.9g} s, beside a singular position of the constraints, the step ends on another "
+                     "branch than its velocities lead to, by {} most of all",
+                     t, problem.describe_unknown(row))},
         "try another step or dop853");
   }
   if (share > kComparable && !std::exchange(doubted_, true)) {

@@ -6,7 +6,6 @@
 
 #include "core/interruption.h"
 #include "integrators/stepping/accept.h"
-#include "integrators/stepping/switch_times.h"
 
 namespace poinsot {
 namespace {
@@ -30,6 +29,7 @@ FixedSteps::FixedSteps(const Run& run)
       has_alternates_(has_alternates(run.problem.model())),
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
       branch_(run.problem),
+      jump_(first_jump(run.problem.model(), run.settings.end)),
       driver_jumps_(run.problem.model(), run.settings.end),
       rests_(run.problem),
       still_(run.problem, run.tell),
@@ -60,8 +60,8 @@ Status FixedSteps::march() {
       status = interrupted(x_.t);
       break;
     }
-    if (grid_.time(n) > run_.jumps_after) {
-      status = jump_of_positions(run_.jumps_after);
+    if (grid_.time(n) > jump_.after) {
+      status = jump_of_positions(jump_.after, describe_row(problem_.model(), jump_.row));
       break;
     }
     if (!driver_jumps_.none()) status = driver_jumps_.look(grid_.time(n));

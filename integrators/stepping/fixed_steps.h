@@ -23,6 +23,7 @@
 #include "integrators/stepping/singular_ends.h"
 #include "integrators/stepping/still_watch.h"
 #include "integrators/stepping/struck_in_steps.h"
+#include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/time_grid.h"
 #include "integrators/stepping/turned_in_steps.h"
 #include "integrators/stepping/vectors.h"
@@ -164,6 +165,7 @@ class FixedSteps {
   double rotation_ = 0;          // of the last step, the largest of a body
   Vector change_;
   BranchWatch branch_;
+  const PositionJump jump_;  // up to which steps go
   DriverJumps driver_jumps_;
   RestWatch rests_;
   StillWatch still_;

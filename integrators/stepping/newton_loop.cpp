@@ -107,20 +107,21 @@ Status NewtonLoop::not_converged(double t, double correction, double position, d
   const auto by_size = [](double x) { return std::isfinite(x) ? std::abs(x) : HUGE_VAL; };
   const auto largest = std::ranges::max_element(delta_, {}, by_size) - delta_.begin();
   if (!std::isfinite(correction)) {
-    return with_remedy(Failure::not_finite, t,
-                       fmt::format("at t = {:.9g} s Newton's correction of {} is not finite", t,
-                                   problem_.describe_unknown(static_cast<int>(largest))),
-                       try_first);
+    return with_settings({Failure::not_finite, t,
+                          fmt::format("at t = {:.9g} s Newton's correction of {} is not finite", t,
+                                      problem_.describe_unknown(static_cast<int>(largest)))},
+                         try_first);
   }
   if (correction <= settings_.tolerance) {  // beside accelerations that have grown
     const bool moves = moved_ * position > kFar * arm_;
-    return with_remedy(
-        Failure::not_converged, t,
-        fmt::format("at t = {:.9g} s Newton's method did not converge: after {} it still {} {:.3g}{}, small as that is "
-                    "beside the accelerations it has come to; the largest correction is that of {}",
-                    t, counted(settings_.max_iterations, "iteration"),
-                    moves ? "moves a body by" : "leaves constraints off by up to", (moves ? moved_ : off) * position,
-                    moves ? " m" : "", problem_.describe_unknown(static_cast<int>(largest))),
+    return with_settings(
+        {Failure::not_converged, t,
+         fmt::format(
+             "at t = {:.9g} s Newton's method did not converge: after {} it still {} {:.3g}{}, small as that is "
+             "beside the accelerations it has come to; the largest correction is that of {}",
+             t, counted(settings_.max_iterations, "iteration"),
+             moves ? "moves a body by" : "leaves constraints off by up to", (moves ? moved_ : off) * position,
+             moves ? " m" : "", problem_.describe_unknown(static_cast<int>(largest)))},
         try_first);
   }
   // Corrections that do not come near ask for another step or matrix, whatever they are compared with.
@@ -131,12 +132,13 @@ Status NewtonLoop::not_converged(double t, double correction, double position, d
   const bool near = correction < kNear * settings_.tolerance &&
                     (stopping_ == Stopping::correction || correction < std::max(kClose, settings_.tolerance));
   if (settings_.max_iterations < kFew || near) others += ", more iterations or a larger tolerance";
-  return with_remedy(Failure::not_converged, t,
-                     fmt::format("at t = {:.9g} s Newton's method did not converge: after {} the correction is {:.3g}, "
-                                 "the tolerance {:.3g}; the largest correction is that of {}",
-                                 t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
-                                 problem_.describe_unknown(static_cast<int>(largest))),
-                     try_first + others);
+  return with_settings(
+      {Failure::not_converged, t,
+       fmt::format("at t = {:.9g} s Newton's method did not converge: after {} the correction is {:.3g}, "
+                   "the tolerance {:.3g}; the largest correction is that of {}",
+                   t, counted(settings_.max_iterations, "iteration"), correction, settings_.tolerance,
+                   problem_.describe_unknown(static_cast<int>(largest)))},
+      try_first + others);
 }
 
 }  // namespace poinsot

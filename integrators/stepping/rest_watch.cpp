@@ -10,11 +10,11 @@
 namespace poinsot {
 
 Status other_branch_after_rest(double t, double since) {
-  return with_remedy(
-      Failure::singular_position, t,
-      fmt::format("at t = {:.9g} s the motion, which had come to rest in a singular position of the constraints "
-                  "after {:.9g} s, goes on along another branch than its accelerations led to",
-                  t, since),
+  return with_settings(
+      {Failure::singular_position, t,
+       fmt::format("at t = {:.9g} s the motion, which had come to rest in a singular position of the constraints "
+                   "after {:.9g} s, goes on along another branch than its accelerations led to",
+                   t, since)},
       "try another step or dop853");
 }
 

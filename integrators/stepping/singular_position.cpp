@@ -135,9 +135,7 @@ NearSingular near_singular_position(Problem& problem, int rows, std::span<const 
       problem.describe_unknown(problem.nv() + static_cast<int>(row)), now[row], before[row]);
   if (bars(problem, here, row, t, q)) return {where + "; " + (now[row] < kThere ? kBarred : kSeemsBarred), true, true};
   const bool driven = std::ranges::any_of(problem.model().rows, [](const Row& r) { return !r.f.is_constant(); });
-  return {where + "; dopri5 and dop853 step over most of such positions at larger tolerances, fixed steps may" +
-              (driven ? std::string("; ") + kMayBeBarred : ""),
-          false, driven};
+  return {where + (driven ? std::string("; ") + kMayBeBarred : ""), false, driven};
 }
 
 Status never_beyond(const Problem& problem, const State& at, double limit) {
@@ -154,9 +152,8 @@ std::string growing_motion(const Problem& problem, const State& state) {
   if (problem.bodies() == 0) return {};
   return most_accelerated(problem, state) +
          ": the mechanism comes to a singular position, near which accelerations are lost to rounding, or the "
-         "tolerances ask for more than the arithmetic has (where a body is at rest, atol alone does), and larger "
-         "tolerances or an implicit integrator with a fixed step may pass; or the motion jumps or grows without bound "
-         "here: end before it";
+         "tolerances ask for more than the arithmetic has (where a body is at rest, atol alone does); or the motion "
+         "jumps or grows without bound here";
 }
 
 std::string vanished_gradient(Problem& problem, const State& state) {

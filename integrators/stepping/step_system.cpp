@@ -65,23 +65,23 @@ Status TimedSystem::explained(double t, LinearStatus status) const {
 
 Status explain(const Problem& problem, double t, const LinearStatus& status) {
   if (status.failure == LinearFailure::not_finite) {
-    return with_remedy(
-        Failure::not_finite, t,
-        fmt::format("at t = {:.9g} s the matrix or the solution is not finite{}", t, of_fastest(problem)),
+    return with_settings(
+        {Failure::not_finite, t,
+         fmt::format("at t = {:.9g} s the matrix or the solution is not finite{}", t, of_fastest(problem))},
         "try a smaller step, or an integrator with error control");
   }
   std::string where;
   if (status.unknown >= 0) where = fmt::format(" near {}", problem.describe_unknown(status.unknown));
   if (status.failure == LinearFailure::refused || status.failure == LinearFailure::out_of_memory) {
-    return with_remedy(Failure::refused, t,
-                       fmt::format("at t = {:.9g} s the linear solver refuses{}: {}", t, where, status.message),
-                       "try another one, as auto");
+    return with_settings(
+        {Failure::refused, t, fmt::format("at t = {:.9g} s the linear solver refuses{}: {}", t, where, status.message)},
+        "try another one, as auto");
   }
-  return with_remedy(
-      Failure::singular_matrix, t,
-      fmt::format("at t = {:.9g} s the linear system is singular{} ({}); a singular position of the mechanism, "
-                  "dependent constraints or a body without inertia: `poinsot check` names them",
-                  t, where, status.message),
+  return with_settings(
+      {Failure::singular_matrix, t,
+       fmt::format("at t = {:.9g} s the linear system is singular{} ({}); a singular position of the mechanism, "
+                   "dependent constraints or a body without inertia: `poinsot check` names them",
+                   t, where, status.message)},
       "a smaller step may pass a singular position");
 }
 

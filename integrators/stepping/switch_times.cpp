@@ -123,23 +123,28 @@ bool may_jump(const Expression& f) {
   return false;
 }
 
-double first_jump(const Model& model, double end) {
+PositionJump first_jump(const Model& model, double end) {
   constexpr double kJump = 1e-9;  // relative, or of 1: more than rounding of a time leads to
-  std::vector<const Expression*> prescribed;
-  for (const Row& row : model.rows) {
+  struct Prescribed {
+    const Expression* f;
+    int row;
+  };
+  std::vector<Prescribed> prescribed;
+  for (std::size_t k = 0; k < model.rows.size(); ++k) {
+    const Row& row = model.rows[k];
     if (row.type == RowType::pfaffian) continue;
-    if (may_jump(row.f)) prescribed.push_back(&row.f);
-    if (row.alternate && may_jump(row.alternate->f)) prescribed.push_back(&row.alternate->f);
+    if (may_jump(row.f)) prescribed.push_back({&row.f, static_cast<int>(k)});
+    if (row.alternate && may_jump(row.alternate->f)) prescribed.push_back({&row.alternate->f, static_cast<int>(k)});
   }
-  if (prescribed.empty()) return std::numeric_limits<double>::infinity();
+  if (prescribed.empty()) return {};
   SwitchTimes times(model, end);
   for (SwitchTimes::Switch at = times.first(0, end); at.before < end; at = times.first(at.after, end)) {
-    for (const Expression* f : prescribed) {
+    for (const auto& [f, row] : prescribed) {
       const double before = f->at(at.before).f, after = f->at(at.after).f;
-      if (at.before > 0 && std::abs(after - before) > kJump * std::max(1.0, std::abs(before))) return at.before;
+      if (at.before > 0 && std::abs(after - before) > kJump * std::max(1.0, std::abs(before))) return {at.before, row};
     }
   }
-  return std::numeric_limits<double>::infinity();
+  return {};
 }
 
 Status jump_of_positions(double t, std::string_view what) {

@@ -61,9 +61,14 @@ class SwitchTimes {
 // Whether it has a sign or a step.
 bool may_jump(const Expression& f);
 
-// The last time before a prescribed position jumps, past the start and before `end`; none: infinity.
-double first_jump(const Model& model, double end);
+// A prescribed position that jumps, past the start: the last time before, and the row of the model that prescribes it.
+struct PositionJump {
+  double after = std::numeric_limits<double>::infinity();
+  int row = -1;
+};
+// The first one before `end`, if there is one.
+PositionJump first_jump(const Model& model, double end);
 // The stop where it does, by `what`.
-Status jump_of_positions(double t, std::string_view what = "a driver or a constraint");
+Status jump_of_positions(double t, std::string_view what);
 
 }  // namespace poinsot

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "core/index.h"
@@ -27,8 +28,11 @@ std::string name_of(const Model& model, const CountedTurn& turn) {
                           : describe_group(model, model.followed[index(turn.followed)].group);
 }
 
-std::string at_most(double step) {
-  return fmt::format("try a step of at most {:.2g} s", step);
+Status too_long_a_step(double t, std::string what, double serves) {
+  Status status = with_settings({Failure::rotation_too_large, t, std::move(what)},
+                                fmt::format("try a step of at most {:.2g} s", serves));
+  status.step = serves;
+  return status;
 }
 
 }  // namespace
@@ -47,44 +51,44 @@ Status turned_too_far(const Problem& problem, double t, double h) {
   if (const std::string undefined = undefined_angle(problem); !undefined.empty())
     return {Failure::rotation_too_large, t, fmt::format("at t = {:.9g} s {}", t, undefined)};
   const CountedTurn turn = problem.counted_turn();
-  return with_remedy(
-      Failure::rotation_too_large, t,
+  return too_long_a_step(
+      t,
       fmt::format("at t = {:.9g} s {} turns at {:.4g} rad/s, by {:.3g} rad in a step: beyond half a turn its turns "
                   "cannot be counted",
                   t, name_of(problem.model(), turn), turn.rate, h * turn.rate),
-      at_most(0.3 * kMostCounted / turn.rate));
+      0.3 * kMostCounted / turn.rate);
 }
 
 Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most,
                        double serves) {
   const auto [name, rate] = fastest(problem, a);
-  return with_remedy(
-      Failure::rotation_too_large, t,
+  return too_long_a_step(
+      t,
       fmt::format("at t = {:.9g} s body '{}' turns by {:.3g} rad in a step; in formulation {} the integrator makes "
                   "no sense beyond {:.2g}: rotation is lost or invented",
                   t, name, h * rate, problem.formulation(), most),
-      at_most(serves));
+      serves);
 }
 
 Status turned_unexpectedly(const Problem& problem, std::span<const double> a, double t, double h, double unexpected,
                            double serves) {
   const auto [name, rate] = fastest(problem, a);
-  return with_remedy(
-      Failure::rotation_too_large, t,
+  return too_long_a_step(
+      t,
       fmt::format("at t = {:.9g} s the step may have ended on another branch than the motion leads to: body '{}' "
                   "turns by {:.3g} rad in it, a body by {:.3g} rad more or less than in the step before",
                   t, name, h * rate, unexpected),
-      at_most(serves));
+      serves);
 }
 
 Status leads_too_far(const Problem& problem, std::span<const double> a, double t, int parts, double serves) {
   const auto [name, rate] = fastest(problem, a);
-  return with_remedy(
-      Failure::rotation_too_large, t,
+  return too_long_a_step(
+      t,
       fmt::format("at t = {:.9g} s a step goes further than {} parts of it can follow: body '{}' turns at {:.3g} "
                   "rad/s",
                   t, parts, name, rate),
-      at_most(serves));
+      serves);
 }
 
 }  // namespace poinsot

@@ -1,0 +1,167 @@
+#include "bench/study/tried_settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/input_error.h"
+#include "integrators/settings_table.h"
+
+namespace poinsot::study {
+namespace {
+
+constexpr double kMostWork = 3e5;  // steps of a body in one trial, a second or some
+
+struct Candidate {
+  std::string named;  // as on the command line
+  Settings settings;
+};
+
+// A step not above `most`, and not below 2/5 of it, of which output times are multiples by a round number.
+double step_at_most(double most, const Settings& settings) {
+  const double whole = settings.every > 0 ? settings.every : settings.end, steps = whole / most * (1 - 1e-12);
+  double tens = 1;
+  while (10 * tens < steps) tens *= 10;
+  for (const double by : {1, 2, 4, 5, 8})
+    if (by * tens >= steps) return whole / (by * tens);
+  return whole / (10 * tens);
+}
+
+std::vector<Candidate> candidates(const Settings& given, const Status& status) {
+  std::vector<Candidate> all;
+  const auto add = [&](std::string named, auto change) {
+    Settings settings = given;
+    change(settings);
+    all.push_back({std::move(named), std::move(settings)});
+  };
+  const auto add_integrator = [&](const char* name) {
+    if (given.integrator != name) add(fmt::format("--integrator {}", name), [&](Settings& s) { s.integrator = name; });
+  };
+  const auto add_tolerances = [&](double by) {
+    const double rtol = by * given.rtol;
+    if (rtol < kLeastRtol || rtol > 1e-2) return;
+    const double atol = by * given.absolute_tolerance();
+    add(given.atol ? fmt::format("--rtol {:g} --atol {:g}", rtol, atol) : fmt::format("--rtol {:g}", rtol),
+        [&](Settings& s) {
+          s.rtol = rtol;
+          if (given.atol) s.atol = atol;
+        });
+  };
+  if (status.failure == Failure::refused) {
+    if (given.linear_solver != "auto") add("--linear-solver auto", [](Settings& s) { s.linear_solver = "auto"; });
+    return all;
+  }
+  const bool dynamics = given.analysis == Analysis::dynamics, controls = chooses_steps(given);
+  if (given.jacobian != "exact" && !controls) add("--jacobian exact", [](Settings& s) { s.jacobian = "exact"; });
+  if (!controls) {
+    const double step = status.step > 0 ? step_at_most(std::min(status.step, given.step), given) : given.step / 4;
+    add(fmt::format("--step {}", step), [&](Settings& s) { s.step = step; });
+  }
+  if (status.failure == Failure::not_converged && !controls) {
+    const int iterations = 5 * given.max_iterations;
+    add(fmt::format("--max-iterations {}", iterations), [&](Settings& s) { s.max_iterations = iterations; });
+  }
+  if (status.failure == Failure::constraint_lost && !controls) {
+    const double tolerance = 1e-3 * given.tolerance;
+    add(fmt::format("--tolerance {:g}", tolerance), [&](Settings& s) { s.tolerance = tolerance; });
+  }
+  if (controls) {
+    add_tolerances(1e-2);
+    add_tolerances(1e2);
+  }
+  if (dynamics) {
+    add_integrator("auto");
+    if (controls)
+      for (const char* other : {"dop853", "radau5", "rattle"}) add_integrator(other);
+    if (given.formulation != "rA") add("--formulation rA", [](Settings& s) { s.formulation = "rA"; });
+  } else if (status.failure == Failure::singular_position) {
+    add("--analysis dynamics --integrator dop853", [](Settings& s) {
+      s.analysis = Analysis::dynamics;
+      s.integrator = "dop853";
+    });
+  }
+  return all;
+}
+
+struct TooLong {};
+
+// To where a run that stopped is tried again.
+double tried_end(const Settings& settings, const Status& stopped) {
+  constexpr double kBeyond = 0.1, kOfRun = 0.01, kSteps = 20;
+  double beyond = std::max(kBeyond * stopped.time, kOfRun * settings.end);
+  if (!chooses_steps(settings)) beyond = std::max(beyond, kSteps * settings.step);
+  return std::min(settings.end, stopped.time + beyond);
+}
+
+enum class Trial { leads_on, stops, given_up };
+Trial tried(const Scene& scene, Settings settings, double end, double most_steps) {
+  settings.end = end;
+  const bool fixed = !chooses_steps(settings);
+  if (fixed) {
+    const double steps = std::ceil(end / settings.step);
+    if (steps > most_steps) return Trial::given_up;
+    settings.end = steps * settings.step;
+  }
+  settings.every = fixed ? settings.end : 0;
+  double taken = 0;
+  try {
+    const Outcome outcome = simulate(scene, settings, [&](const Sample&) {
+      if (++taken > most_steps) throw TooLong();
+    });
+    if (outcome.status.failure == Failure::interrupted) return Trial::given_up;
+    return outcome.status.ok() ? Trial::leads_on : Trial::stops;
+  } catch (const InputError&) {  // as a method refuses a formulation
+    return Trial::stops;
+  } catch (const TooLong&) {
+    return Trial::given_up;
+  }
+}
+
+}  // namespace
+
+void try_settings(const Scene& scene, const Settings& settings, Outcome& outcome) {
+  Status& status = outcome.status;
+  if (status.ok() || status.settings == 0) return;
+  const double end = tried_end(settings, status);
+  const double most_steps = kMostWork / static_cast<double>(std::max<std::size_t>(1, scene.bodies.size()));
+  const bool alone = status.settings == status.remedy;
+  const auto put = [&](const std::string& text) {
+    status.message.resize(std::exchange(status.settings, 0));
+    if (alone) status.remedy = 0;
+    if (text.empty()) return;
+    if (alone) status.remedy = status.message.size();
+    status.message += text;
+  };
+  std::vector<std::string> stopped;
+  bool all = true;
+  for (const Candidate& candidate : candidates(settings, status)) {
+    switch (tried(scene, candidate.settings, end, most_steps)) {
+      case Trial::leads_on:
+        put(fmt::format("{} with {} it goes on, as was tried up to t = {:.4g} s", alone ? ";" : ", or", candidate.named,
+                        end));
+        return;
+      case Trial::stops:
+        stopped.push_back(candidate.named);
+        break;
+      case Trial::given_up:
+        all = false;
+        break;
+    }
+  }
+  if (!all) {
+    status.message += " (not tried)";
+    return;
+  }
+  const std::string none = fmt::format("tried without success: {}", fmt::join(stopped, ", "));
+  if (stopped.empty())
+    put("");
+  else
+    put(alone ? "; " + none : " (" + none + ")");
+}
+
+}  // namespace poinsot::study

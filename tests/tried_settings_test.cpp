@@ -1,0 +1,115 @@
+// Other settings that a stop offers have been tried: with what is offered the run gets on, and what does not help is
+// said to.
+#include "bench/study/tried_settings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "command_line.h"
+#include "tests/support/passages.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::EndsWith;
+
+// A pendulum of 1 m, released level, whose hinge a motor may turn.
+Scene hinged_rod() {
+  Scene scene;
+  scene.gravity = {0, 0, -9.81};
+  Body& rod = scene.bodies.emplace_back();
+  rod.name = "rod", rod.mass = 1, rod.inertia = 0.1 * Matrix3::Identity(), rod.position = {1, 0, 0};
+  Joint& hinge = scene.joints.emplace_back();
+  hinge.name = "hinge", hinge.type = JointType::revolute, hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 1, 0};
+  return scene;
+}
+
+// As `poinsot run` has it.
+std::string told(const Scene& scene, const Settings& settings) {
+  Outcome outcome = run(scene, settings).outcome;
+  EXPECT_FALSE(outcome.status.ok());
+  study::try_settings(scene, settings, outcome);
+  EXPECT_EQ(outcome.status.settings, 0u);
+  return outcome.status.message;
+}
+
+// A driver of the posts' first crank.
+Scene driven(Scene scene, const char* angle) {
+  Driver& motor = scene.drivers.emplace_back();
+  motor.name = "motor", motor.i = kGround, motor.j = 0, motor.axis = {0, 0, 1};
+  motor.value = Expression::parse(angle);
+  for (Body& body : scene.bodies) body.velocity.setZero(), body.angular_velocity.setZero();
+  return scene;
+}
+
+TEST(TriedSettings, AreAStepThatIsKnownToServe) {
+  Settings settings = dynamics("rA", 0.5, 5, 0);
+  settings.integrator = "implicit_euler";
+  const std::string message = told(hinged_rod(), settings);
+  std::smatch offered;
+  ASSERT_TRUE(std::regex_search(message, offered,
+                                std::regex("; with --step ([0-9.e-]+) it goes on, as was tried up to t = 5 s$")))
+      << message;
+  settings.step = std::stod(offered[1]);
+  EXPECT_TRUE(run(hinged_rod(), settings).outcome.status.ok());
+}
+
+TEST(TriedSettings, AreWhatHelpsOfMoreThanOne) {
+  Settings settings = kinematics("rA", 0.1, 1);
+  settings.max_iterations = 1;
+  EXPECT_THAT(told(driven(posts(1, 0.5, 0, false), "t"), settings),
+              EndsWith("; with --max-iterations 5 it goes on, as was tried up to t = 1 s"));
+}
+
+TEST(TriedSettings, StandBesideWhatElseHelps) {
+  EXPECT_THAT(told(driven(posts(1, 0.3, 0, false), "-t"), kinematics("rA", 0.05, 1)),
+              EndsWith("; end before it, or start beyond it on the branch that is meant, or with --analysis dynamics "
+                       "--integrator dop853 it goes on, as was tried up to t = 1 s"));
+}
+
+TEST(TriedSettings, ThatDoNotHelpAreSaidNotTo) {
+  Scene scene = hinged_rod();  // whose end is to be further away than it is long
+  Driver& ram = scene.drivers.emplace_back();
+  ram.name = "ram", ram.type = DriverType::distance, ram.i = kGround, ram.j = 0;
+  ram.s_i = {0, 0, 1}, ram.value = Expression::parse("sqrt(2) + t");
+  Outcome outcome;
+  outcome.status = with_settings({Failure::not_converged, 0.58, "at t = 0.58 s it stops"}, "try a smaller step");
+  study::try_settings(scene, kinematics("rA", 0.01, 1), outcome);
+  EXPECT_EQ(outcome.status.message,
+            "at t = 0.58 s it stops; tried without success: --step 0.0025, --max-iterations 100");
+}
+
+TEST(TriedSettings, OfALongRunAreNotTried) {
+  const Settings settings = kinematics("rA", 1e-7, 1);
+  Outcome outcome;
+  outcome.status = with_settings({Failure::not_converged, 0.5, "at t = 0.5 s it stops"}, "try more iterations");
+  study::try_settings(driven(posts(1, 0.3, 0, false), "t"), settings, outcome);
+  EXPECT_EQ(outcome.status.message, "at t = 0.5 s it stops; try more iterations (not tried)");
+}
+
+TEST(TriedSettings, AreNotLookedForWhereTheSceneHasToChange) {
+  Outcome outcome;
+  outcome.status = with_remedy(Failure::singular_position, 0.5, "at t = 0.5 s it stops", "end before it");
+  study::try_settings(hinged_rod(), dynamics("rA", 0.1, 1, 0), outcome);
+  EXPECT_EQ(outcome.status.message, "at t = 0.5 s it stops; end before it");
+}
+
+class TriedSettingsOnTheCommandLine : public CommandLineWithPendulum {};
+
+TEST_F(TriedSettingsOnTheCommandLine, AreOptionsThatLeadOn) {
+  const std::vector<std::string> given{
+      "run", "pendulum.json", "--integrator", "implicit_euler", "--step", "0.5", "--end", "5", "--out", "o.csv"};
+  const Result stopped = poinsot(given);
+  EXPECT_EQ(stopped.status, 3) << stopped.err;
+  std::smatch offered;
+  ASSERT_TRUE(std::regex_search(stopped.err, offered, std::regex("with --step (\\S+) it goes on"))) << stopped.err;
+  std::vector<std::string> helped = given;
+  helped[5] = offered[1];
+  EXPECT_EQ(poinsot(helped).status, 0);
+}
+
+}  // namespace
+}  // namespace poinsot::test
