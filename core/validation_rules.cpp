@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/json_value.h"
@@ -38,7 +39,9 @@ void finite(const Place& at, std::string_view key, const Expression& f) {
 
 void positive(const Place& at, std::string_view key, double x) {
   finite(at, key, x);
+  constexpr double kLeast = std::numeric_limits<double>::min();  // less is zero within a run (core/flush_subnormals.h)
   if (!(x > 0)) at.fail(key, fmt::format("found {}, expected a positive number", x));
+  if (x < kLeast) at.fail(key, fmt::format("found {}, expected a number of at least {:.3g}", x, kLeast));
 }
 
 void direction(const Place& at, std::string_view key, const Vector3& x) {

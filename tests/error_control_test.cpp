@@ -232,6 +232,21 @@ TEST_P(ErrorControl, StopsWhereAForceGrowsWithoutBound) {
   EXPECT_TRUE(run(scene, settings(1e-8, 0.45)).outcome.status.ok());
 }
 
+// What nothing holds comes to no singular position.
+TEST_P(ErrorControl, StopsAFreeBodyWhoseForceGrowsWithoutBound) {
+  Scene scene;
+  Body& ball = scene.bodies.emplace_back();
+  ball.name = "ball", ball.mass = 1, ball.inertia = Matrix3::Identity();
+  PointForce push;
+  push.body = 0, push.force[0] = Expression::parse("1/(0.5 - t)^2");
+  scene.forces.emplace_back(push);
+  const Recorded r = run(scene, settings(1e-8, 1));
+  EXPECT_EQ(r.outcome.status.failure, Failure::step_size_too_small);
+  EXPECT_NEAR(r.outcome.status.time, 0.5, 0.01);
+  EXPECT_THAT(r.outcome.status.message, HasSubstr("grows without bound"));
+  EXPECT_THAT(r.outcome.status.message, ::testing::Not(HasSubstr("singular")));
+}
+
 // With nothing but a relative tolerance no step resolves the rounding of a body at rest, which rp has in plane motion.
 TEST_P(ErrorControl, SaysThatTheTolerancesAskForTooMuch) {
   Settings s = settings(1e-14, 0.5);

@@ -76,6 +76,8 @@ const std::vector<Case>& refused_cases() {
        "/bodies/1/mass", "1 - 2"},
       {[](Scene& s) { s.bodies[1].mass = 0; }, "/bodies/1/mass: found 0, expected a positive number", "/bodies/1/mass",
        0},
+      {[](Scene& s) { s.bodies[1].mass = 1e-320; },
+       "/bodies/1/mass: found 1e-320, expected a number of at least 2.23e-308", "/bodies/1/mass", 1e-320},
       {[](Scene& s) { s.bodies[1].mass = kInf; }, "/bodies/1/mass: found inf, expected a finite number"},
       {[](Scene& s) { s.bodies[1].mass = kNan; }, "/bodies/1/mass: found nan, expected a finite number"},
       {[](Scene& s) { s.bodies[0].inertia(1, 1) = -2; },

@@ -150,9 +150,12 @@ Status never_beyond(const Problem& problem, const State& at, double limit) {
 
 std::string growing_motion(const Problem& problem, const State& state) {
   if (problem.bodies() == 0) return {};
-  return most_accelerated(problem, state) +
-         ": the mechanism comes to a singular position, near which accelerations are lost to rounding, or the "
-         "tolerances ask for more than the arithmetic has (where a body is at rest, atol alone does); or the motion "
+  return most_accelerated(problem, state) + ": " +
+         (problem.model_rows().empty() ? ""
+                                       : "the mechanism comes to a singular position, near which accelerations are "
+                                         "lost to rounding, or ") +
+         "the tolerances ask for more than the arithmetic has (where a body is at rest, atol alone does), or the "
+         "motion "
          "jumps or grows without bound here";
 }
 
