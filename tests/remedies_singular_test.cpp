@@ -20,15 +20,6 @@ class SingularRemedies : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(All, SingularRemedies, ::testing::ValuesIn(formulation_names()),
                          [](const auto& test) { return test.param; });
 
-// Its first post driven from where it stands.
-Scene with_motor(Scene scene, const char* angle) {
-  Driver& motor = scene.drivers.emplace_back();
-  motor.name = "motor", motor.i = kGround, motor.j = 0, motor.axis = {0, 0, 1};
-  motor.value = Expression::parse(angle);
-  for (Body& body : scene.bodies) body.velocity.setZero(), body.angular_velocity.setZero();
-  return scene;
-}
-
 TEST_P(SingularRemedies, OfKinematicsAreToEndBeforeOrToStartBeyond) {
   for (const bool redundant : {false, true}) {
     SCOPED_TRACE(redundant);

@@ -8,7 +8,7 @@
 #include <regex>
 
 #include "command_line.h"
-#include "tests/support/passages.h"
+#include "tests/support/loops.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -36,15 +36,6 @@ std::string told(const Scene& scene, const Settings& settings) {
   return outcome.status.message;
 }
 
-// A driver of the posts' first crank.
-Scene driven(Scene scene, const char* angle) {
-  Driver& motor = scene.drivers.emplace_back();
-  motor.name = "motor", motor.i = kGround, motor.j = 0, motor.axis = {0, 0, 1};
-  motor.value = Expression::parse(angle);
-  for (Body& body : scene.bodies) body.velocity.setZero(), body.angular_velocity.setZero();
-  return scene;
-}
-
 TEST(TriedSettings, AreAStepThatIsKnownToServe) {
   Settings settings = dynamics("rA", 0.5, 5, 0);
   settings.integrator = "implicit_euler";
@@ -60,12 +51,12 @@ TEST(TriedSettings, AreAStepThatIsKnownToServe) {
 TEST(TriedSettings, AreWhatHelpsOfMoreThanOne) {
   Settings settings = kinematics("rA", 0.1, 1);
   settings.max_iterations = 1;
-  EXPECT_THAT(told(driven(posts(1, 0.5, 0, false), "t"), settings),
+  EXPECT_THAT(told(with_motor(posts(1, 0.5, 0, false), "t"), settings),
               EndsWith("; with --max-iterations 5 it goes on, as was tried up to t = 1 s"));
 }
 
 TEST(TriedSettings, StandBesideWhatElseHelps) {
-  EXPECT_THAT(told(driven(posts(1, 0.3, 0, false), "-t"), kinematics("rA", 0.05, 1)),
+  EXPECT_THAT(told(with_motor(posts(1, 0.3, 0, false), "-t"), kinematics("rA", 0.05, 1)),
               EndsWith("; end before it, or start beyond it on the branch that is meant, or with --analysis dynamics "
                        "--integrator dop853 it goes on, as was tried up to t = 1 s"));
 }
@@ -80,13 +71,18 @@ TEST(TriedSettings, ThatDoNotHelpAreSaidNotTo) {
   study::try_settings(scene, kinematics("rA", 0.01, 1), outcome);
   EXPECT_EQ(outcome.status.message,
             "at t = 0.58 s it stops; tried without success: --step 0.0025, --max-iterations 100");
+  // Of finer steps a quarter takes too long.
+  outcome.status = with_settings({Failure::not_converged, 0.58, "at t = 0.58 s it stops"}, "try a smaller step");
+  study::try_settings(scene, kinematics("rA", 4e-6, 1), outcome);
+  EXPECT_EQ(outcome.status.message,
+            "at t = 0.58 s it stops; try a smaller step (not all tried; without success: --max-iterations 100)");
 }
 
 TEST(TriedSettings, OfALongRunAreNotTried) {
   const Settings settings = kinematics("rA", 1e-7, 1);
   Outcome outcome;
   outcome.status = with_settings({Failure::not_converged, 0.5, "at t = 0.5 s it stops"}, "try more iterations");
-  study::try_settings(driven(posts(1, 0.3, 0, false), "t"), settings, outcome);
+  study::try_settings(with_motor(posts(1, 0.3, 0, false), "t"), settings, outcome);
   EXPECT_EQ(outcome.status.message, "at t = 0.5 s it stops; try more iterations (not tried)");
 }
 

@@ -154,7 +154,8 @@ void try_settings(const Scene& scene, const Settings& settings, Outcome& outcome
     }
   }
   if (!all) {
-    status.message += " (not tried)";
+    status.message += stopped.empty() ? std::string(" (not tried)")
+                                      : fmt::format(" (not all tried; without success: {})", fmt::join(stopped, ", "));
     return;
   }
   const std::string none = fmt::format("tried without success: {}", fmt::join(stopped, ", "));

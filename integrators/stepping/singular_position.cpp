@@ -154,9 +154,8 @@ std::string growing_motion(const Problem& problem, const State& state) {
          (problem.model_rows().empty() ? ""
                                        : "the mechanism comes to a singular position, near which accelerations are "
                                          "lost to rounding, or ") +
-         "the tolerances ask for more than the arithmetic has (where a body is at rest, atol alone does), or the "
-         "motion "
-         "jumps or grows without bound here";
+         "the tolerances ask for more than the arithmetic has (where a body is at rest, atol alone does), or "
+         "the motion jumps or grows without bound here";
 }
 
 std::string vanished_gradient(Problem& problem, const State& state) {

@@ -136,6 +136,15 @@ inline Scene posts(int N, double angle, double w, bool redundant) {
   return scene;
 }
 
+// Its first post driven from where it stands.
+inline Scene with_motor(Scene scene, const char* angle) {
+  Driver& motor = scene.drivers.emplace_back();
+  motor.name = "motor", motor.i = kGround, motor.j = 0, motor.axis = {0, 0, 1};
+  motor.value = Expression::parse(angle);
+  for (Body& body : scene.bodies) body.velocity.setZero(), body.angular_velocity.setZero();
+  return scene;
+}
+
 // A crank of length 1 that turns at 3 rad/s, a rod as long, a slider on the x axis, no row too many: `before` rad
 // before the slider passes the crank's hinge, where it could stay there as well, crank and rod turning on together.
 inline Scene folding_crank(double before) {
