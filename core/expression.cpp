@@ -23,7 +23,10 @@ Expression::Expression(std::string_view text, ParsedTape parsed) {
   } else {
     kept->switches =
         static_cast<int>(std::ranges::count_if(parsed.tape, [](const TapeInstruction& i) { return has_switch(i.op); }));
-    kept->with_rate = std::ranges::find(parsed.tape, TapeOp::rate, &TapeInstruction::op) != parsed.tape.end();
+    const auto has = [&](TapeOp op) {
+      return std::ranges::find(parsed.tape, op, &TapeInstruction::op) != parsed.tape.end();
+    };
+    kept->with_rate = has(TapeOp::rate), kept->with_time = has(TapeOp::time);
     kept->tape = std::move(parsed.tape);
     kept->tables = std::move(parsed.tables);
   }

@@ -94,6 +94,7 @@ class Expression {
     return {F.f, F.fd, run_tape<T>(parsed_->tape, {t, {at.x, T(0), T(0)}, {at.v, T(1), T(0)}}).fd};
   }
   bool depends_on_rate() const { return !constant_ && parsed_->with_rate; }
+  bool depends_on_time() const { return !constant_ && parsed_->with_time; }
 
   // The values whose change of sign marks a kink or a jump of f: x of abs(x), sign(x) and step(x), x − y of min(x, y)
   // and max(x, y), in the order they are computed. Constant parts have none, and neither have tables.
@@ -134,7 +135,7 @@ class Expression {
     std::vector<std::shared_ptr<const Spline>> tables;
     std::function<Jet2<double>(double)> function;  // in the place of the tape
     int switches = 0;
-    bool with_rate = false;
+    bool with_rate = false, with_time = false;
   };
   Expression(std::string_view text, ParsedTape parsed);
   template <class T>

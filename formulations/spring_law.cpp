@@ -73,13 +73,17 @@ class LawIntegral {
 
 }  // namespace
 
+double law_work(const Expression& law, double from, double to, double t) {
+  return LawIntegral(law, t).over(from, to);
+}
+
 double law_potential(const Expression& law, double x, double t) {
   constexpr double kBeside = 0x1p-40;
   const double side = std::copysign(1.0, x);
   const Bounds zero{std::min(0.0, kBeside * side), std::max(0.0, kBeside * side)};
   const bool bounded =
       law.is_constant() || law.is_function() || std::isfinite(law.range({{t, t}, zero, {0, 0}}).f.size());
-  return LawIntegral(law, t).over(bounded ? 0 : side, x);
+  return law_work(law, bounded ? 0 : side, x, t);
 }
 
 }  // namespace poinsot

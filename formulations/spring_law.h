@@ -29,7 +29,9 @@ LawValue<T> spring_force(const ElementLaw& k, const T& x, const T& v, const T& t
   return {F, T(k.stiffness), T(k.damping)};
 }
 
-// ∫ F(s, 0, t) ds from 0 to x, J or its equal, to rounding; of a law without bounds at 0, as c/x^2, from 1 or −1 on the
+// ∫ F(s, 0, t) ds between two x, J, to rounding.
+double law_work(const Expression& law, double from, double to, double t);
+// The same from 0 to x, to rounding; of a law without bounds at 0, as c/x^2, from 1 or −1 on the
 // side of x.
 double law_potential(const Expression& law, double x, double t);
 

@@ -54,7 +54,10 @@ struct Statistics {
     double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
   } violation;
   std::optional<AccelerationError> acceleration_error;  // of methods that solve at index 3
-  double largest_rotation = 0;                          // rad, of a body in an accepted step: h |ω| at its end
+  // |T + V at the end − at the start| over the largest T, of mechanisms that nothing drives or damps: the largest. None
+  // where there are none, or they rest.
+  std::optional<double> energy_change;
+  double largest_rotation = 0;      // rad, of a body in an accepted step: h |ω| at its end
   std::vector<LinearWork> linear;   // which linear solvers factored which systems; the busiest first
   std::vector<MethodWork> methods;  // of an integrator that picks among the others: which it picked, in turn
 };
@@ -87,6 +90,8 @@ struct Rotations {
   }
 };
 
+class EnergyBalance;  // integrators/stepping/energy_balance.h
+
 // What an integrator is given: the problem, how to solve it, and where what it finds goes.
 struct Run {
   Problem& problem;
@@ -100,6 +105,7 @@ struct Run {
   // s: where the state is in a singular position, after which its velocities have led away; else 0. The state's a and λ
   // are limits there, which [M Gᵀ; G 0] does not give.
   double singular_for = 0;
+  EnergyBalance* energy = nullptr;  // where something is to keep it; looked at after every step
 };
 
 class Integrator {

@@ -21,6 +21,7 @@
 #include "integrators/start/initial_state.h"
 #include "integrators/start/over_constrained.h"
 #include "integrators/start/small_mechanisms.h"
+#include "integrators/stepping/energy_balance.h"
 #include "integrators/stepping/pulses.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
@@ -121,8 +122,10 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   for (const std::string& sentence : scene.notices) notice(sentence);
   for (const std::string& sentence : scene_doubts(*model)) notice(sentence);
   for (const std::string& sentence : start.notices) notice(sentence);
-  for (const int group : start.rank.undetermined)
-    outcome.undetermined_reactions.push_back(model->groups[index(group)].name);
+  for (const Undetermined& reaction : start.rank.undetermined) {
+    outcome.undetermined_reactions.push_back(model->groups[index(reaction.group)].name);
+    outcome.undetermined_components.push_back(reaction.components(*model));
+  }
   if (!outcome.status.ok()) return outcome;
 
   std::unique_ptr<Problem> problem = formulation.make(model, start.rank.aside);
@@ -152,12 +155,33 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   if (chooses_steps(settings)) tell_small_mechanisms(*model, settings.rtol, settings.absolute_tolerance(), notice);
   const Eigen::VectorXd q_start = state.q;
   const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
+  EnergyBalance energy(*problem);
+  const Observer at_ends = [&](const Sample& sample) {
+    if (sample.t == 0) energy.begin(sample);
+    if (sample.t >= settings.end) energy.end(sample);
+    if (observe) observe(sample);
+  };
+  const bool keeps_energy = settings.analysis == Analysis::dynamics && !energy.none();
+  const Run run{*problem,
+                systems,
+                settings,
+                state,
+                keeps_energy ? at_ends : observe,
+                outcome.statistics,
+                notice,
+                rotation.senseless,
+                start.rank.singular_position() ? start.rank.time_beside : 0,
+                keeps_energy ? &energy : nullptr};
   {
     const FlushSubnormals flush;
-    outcome.status =
-        integrator.make()->run({*problem, systems, settings, state, observe, outcome.statistics, notice,
-                                rotation.senseless, start.rank.singular_position() ? start.rank.time_beside : 0});
+    outcome.status = integrator.make()->run(run);
   }
+  if (keeps_energy && !outcome.status.ok() && state.t > 0 && model->torsions.empty()) {  // their turns are the method's
+    problem->set_position(state.t, span(state.q));
+    problem->set_velocity(span(state.v));
+    energy.end({state.t, state.t, *problem, span(state.q), span(state.v), state.a(), state.lambda()});
+  }
+  if (keeps_energy) energy.conclude(run, integrator);
   const bool explained = explain_by_functions(outcome.status, *problem, settings);
   const double largest = outcome.statistics.largest_rotation;
   if (outcome.status.ok() && largest > rotation.wrong) {

@@ -33,6 +33,8 @@ struct Outcome {
   std::vector<std::string> notices;  // what the user should know of: projections, dependent rows, singular starts
   // Constraints, joints and drivers whose reactions redundant rows leave undetermined: those given are the least.
   std::vector<std::string> undetermined_reactions;
+  // Of each of these its components that are, at the start ("fz", "nx"); the others are unique. None of constraints.
+  std::vector<std::vector<std::string>> undetermined_components;
 };
 
 // Throws InputError where settings or scene break a rule, or do not fit together (unknown name, kinematics with free

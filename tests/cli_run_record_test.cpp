@@ -18,6 +18,10 @@ TEST_F(RunRecord, TheRecordSaysWhichReactionsAreNotDetermined) {
   const nlohmann::json record = read_json("door.run.json");
   EXPECT_EQ(record["reactions_undetermined"], true);
   EXPECT_EQ(record["undetermined_reactions"], (std::vector<std::string>{"lower", "middle", "upper"}));
+  // No hinge takes a moment about its axis.
+  for (const char* hinge : {"lower", "middle", "upper"})
+    EXPECT_EQ(record["undetermined_components"][hinge], (std::vector<std::string>{"fx", "fy", "fz", "nx", "ny"}))
+        << hinge;
 }
 
 TEST_F(RunRecord, TheRecordSaysWhereTheNumbersComeFrom) {

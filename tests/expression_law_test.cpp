@@ -79,6 +79,8 @@ TEST(ExpressionLaw, has_the_partial_derivatives_of_its_function) {
   }
   EXPECT_TRUE(Expression::parse_law("x + v").depends_on_rate());
   EXPECT_FALSE(Expression::parse_law("x + t").depends_on_rate());
+  EXPECT_TRUE(Expression::parse_law("x + t").depends_on_time());
+  EXPECT_FALSE(Expression::parse_law("x + v").depends_on_time());
   EXPECT_EQ(Expression::parse_law("x + 2*v + 4*t").law<double>({1, 2, 3}).F, 12);
 }
 

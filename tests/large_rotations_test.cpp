@@ -66,7 +66,11 @@ TEST(LargeRotations, are_measured_and_warned_of_where_the_pair_is_wrong) {
         for (const Snapshot& at : r.samples) largest = std::max(largest, part * wrong * at.bodies[0].w.norm());
         EXPECT_NEAR(r.outcome.statistics.largest_rotation, largest, 1e-2 * largest)
             << where;  // Newton saw it last before a correction
-        EXPECT_THAT(r.outcome.notices, testing::SizeIs(part > 1 ? 1 : 0)) << where;
+        EXPECT_EQ(std::ranges::count_if(
+                      r.outcome.notices,
+                      [](const std::string& notice) { return notice.find("rad in a step") != std::string::npos; }),
+                  part > 1 ? 1 : 0)
+            << where;
       }
     }
   }
@@ -108,7 +112,9 @@ TEST(LargeRotations, what_is_lost_at_the_default_step_is_said) {
   const Recorded r = run(scene, s);
   ASSERT_TRUE(r.outcome.status.ok());
   EXPECT_LT(energy_change(r, scene), -0.5);
-  EXPECT_THAT(r.outcome.notices, testing::ElementsAre(testing::HasSubstr("turns by up to 0.1 rad in a step")));
+  EXPECT_THAT(r.outcome.notices,
+              testing::ElementsAre(testing::HasSubstr("of the largest kinetic energy: nothing drives or damps it"),
+                                   testing::HasSubstr("turns by up to 0.1 rad in a step")));
 }
 
 TEST(LargeRotations, beyond_what_makes_sense_stop_the_run) {
@@ -137,10 +143,13 @@ TEST(TorsionSprings, are_counted_right_by_error_control_whatever_its_steps) {
 TEST(TorsionSprings, that_turn_too_far_in_a_fixed_step_stop_the_run) {
   for (const char* integrator :
        {"implicit_euler", "half_implicit", "rattle", "generalized_alpha", "generalized_alpha_i2"})
-    for (const char* formulation : {"rA", "reps"}) {
+    for (const char* formulation : kAllFormulations) {
       const Recorded r = run(torsional(100), with(integrator, formulation, 0.0305, 0.305));
       EXPECT_EQ(r.outcome.status.failure, Failure::rotation_too_large) << integrator << ' ' << formulation;
-      EXPECT_THAT(r.outcome.status.message, testing::HasSubstr("torsion spring 'soft'"));
+      // rp follows no body that far, with or without a spring on it.
+      if (std::string_view(formulation) != "rp") {
+        EXPECT_THAT(r.outcome.status.message, testing::HasSubstr("torsion spring 'soft'"));
+      }
     }
 }
 

@@ -166,6 +166,7 @@ TEST(RankSaid, ASingularRowIsNoRedundantOne) {
 }
 
 TEST(RankSaid, WhichReactionsAreUniqueIsSaidJointByJoint) {
+  // In the plane of the loop forces are unique, and the moment across it is nothing.
   Scene scene = loop({4, Frames::random, false, true});
   Body& pendulum = scene.bodies.emplace_back(scene.bodies[0]);
   pendulum.name = "pendulum";
@@ -176,8 +177,10 @@ TEST(RankSaid, WhichReactionsAreUniqueIsSaidJointByJoint) {
   hinge.point = {5, 1, 0};
   const study::SceneCheck found = study::check_scene(scene);
   EXPECT_THAT(study::check_text(found),
-              HasSubstr("reactions that redundant rows leave undetermined: joint 'joint1', joint 'joint2', joint "
-                        "'joint3', joint 'joint4'\n"));
+              HasSubstr("reactions that redundant rows leave undetermined: joint 'joint1' (fz nx ny), joint 'joint2' "
+                        "(fz nx ny), joint 'joint3' (fz nx ny), joint 'joint4' (fz nx ny)\n"));
+  for (const auto& components : study::check_json(found)["undetermined_components"])
+    EXPECT_THAT(components, ElementsAre("fz", "nx", "ny"));
   EXPECT_THAT(study::check_json(found)["undetermined_reactions"],
               ElementsAre("joint 'joint1'", "joint 'joint2'", "joint 'joint3'", "joint 'joint4'"));
 }

@@ -7,6 +7,7 @@
 
 #include "bench/study/motion.h"
 #include "bench/study/natural_end.h"
+#include "core/conserved_energy.h"
 #include "tests/support/rows_scene.h"
 #include "tests/support/simulation.h"
 
@@ -148,9 +149,9 @@ TEST(RunMotion, is_given_up_after_a_time) {
 }
 
 TEST(Energy, is_constant_where_nothing_drives_and_nothing_dissipates) {
-  EXPECT_TRUE(study::conserves_energy(compile(scene_of("double_pendulum"))));
-  EXPECT_FALSE(study::conserves_energy(compile(scene_of("four_link"))));  // driven
-  EXPECT_FALSE(study::conserves_energy(compile(rows_of_every_kind())));   // damped springs
+  EXPECT_TRUE(conserves_energy(compile(scene_of("double_pendulum"))));
+  EXPECT_FALSE(conserves_energy(compile(scene_of("four_link"))));  // driven
+  EXPECT_FALSE(conserves_energy(compile(rows_of_every_kind())));   // damped springs
   const study::MotionRun run = study::run_motion(scene_of("double_pendulum"), short_run());
   const double kinetic = study::kinetic_energy(run.motion, compile(scene_of("double_pendulum")));
   EXPECT_GT(kinetic, 1);

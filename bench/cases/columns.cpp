@@ -8,12 +8,11 @@
 #include "bench/view/trajectory_columns.h"
 #include "core/input_error.h"
 #include "core/printable.h"
+#include "core/reaction_components.h"
 #include "core/so3.h"
 
 namespace poinsot::cases {
 namespace {
-
-constexpr std::array<std::string_view, 6> kReactions{"fx", "fy", "fz", "nx", "ny", "nz"};
 
 double of_body(const BodyState& b, std::size_t component) {
   constexpr std::size_t kPosition = 3, kParameters = 4;
@@ -40,8 +39,8 @@ std::optional<Column> find_column(const Model& model, const std::string& name) {
       if (match(model.groups[g].name, "lambda")) found.push_back({Column::reaction, g, 0});
       continue;
     }
-    for (std::size_t k = 0; k < kReactions.size(); ++k)
-      if (match(model.groups[g].name, kReactions[k])) found.push_back({Column::reaction, g, k});
+    for (std::size_t k = 0; k < kReactionComponents.size(); ++k)
+      if (match(model.groups[g].name, kReactionComponents[k])) found.push_back({Column::reaction, g, k});
   }
   const std::vector<std::string> signals = Signals::names(model);
   if (const auto at = std::ranges::find(signals, name); at != signals.end())

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/conserved_energy.h"
+
 namespace poinsot::cases {
 namespace {
 
@@ -36,7 +38,7 @@ void Watch::observe_energy(const Sample& sample) {
   const Model& model = sample.problem.model();
   const double energy = sample.problem.energy();
   if (!began_) {
-    conservative_ = study::conserves_energy(model);
+    conservative_ = conserves_energy(model);
     energy_ = energy;
     bodies_.resize(model.bodies.size());
   }

@@ -1,5 +1,9 @@
 #include "bench/records/reactions_writer.h"
 
+#include <fmt/format.h>
+
+#include "core/reaction_components.h"
+
 namespace poinsot::records {
 namespace {
 
@@ -9,7 +13,8 @@ std::vector<std::string> columns_of(const Model& model) {
     if (group.kind == GroupKind::constraint)
       names.push_back(group.name + ".lambda");
     else
-      for (const char* column : {".fx", ".fy", ".fz", ".nx", ".ny", ".nz"}) names.push_back(group.name + column);
+      for (const std::string_view column : kReactionComponents)
+        names.push_back(fmt::format("{}.{}", group.name, column));
   }
   return names;
 }

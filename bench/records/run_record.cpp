@@ -55,6 +55,10 @@ std::string to_json(const RunRecord& record) {
   if (record.verification) json["verify"] = packed(*record.verification);
   json["reactions_undetermined"] = !record.outcome.undetermined_reactions.empty();
   json["undetermined_reactions"] = record.outcome.undetermined_reactions;
+  json["undetermined_components"] = Json::object();
+  for (std::size_t k = 0; k < record.outcome.undetermined_reactions.size(); ++k)
+    json["undetermined_components"][record.outcome.undetermined_reactions[k]] =
+        record.outcome.undetermined_components[k];
   auto linear = nlohmann::ordered_json::array();
   for (const LinearWork& w : s.linear) {
     linear.push_back({{"solver", w.solver},
@@ -92,6 +96,7 @@ std::string to_json(const RunRecord& record) {
     json["statistics"]["acceleration_error"] = {{"index", s.acceleration_error->index},
                                                 {"acceleration", s.acceleration_error->acceleration},
                                                 {"multiplier", s.acceleration_error->multiplier}};
+  if (s.energy_change) json["statistics"]["energy_change"] = *s.energy_change;
   add_origin(json);
   json["configuration"] = Json::parse(record.configuration);
   if (!record.scene.parameters.empty()) {

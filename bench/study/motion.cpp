@@ -37,10 +37,6 @@ void raise(double& largest, double x) {
   if (x > largest || std::isnan(x)) largest = x;
 }
 
-bool is_zero(const Expression& f) {
-  return f.is_constant() && f.at(0.0).f == 0;
-}
-
 }  // namespace
 
 void MotionRecorder::add(const Sample& sample) {
@@ -140,21 +136,6 @@ PerQuantity difference(const Motion& motion, const Motion& from, const Sizes& si
 
 double angle_between(const Matrix3& A, const Matrix3& B) {
   return 2 * std::asin(std::min(1.0, (A - B).norm() / (2 * std::numbers::sqrt2)));
-}
-
-bool conserves_energy(const Model& model) {
-  const auto still = [](const Row& row) {
-    if (row.type == RowType::pfaffian && !is_zero(row.f)) return false;
-    return row.f.is_constant() && (!row.alternate || row.alternate->f.is_constant());
-  };
-  const auto none = [](const auto& components) { return std::ranges::all_of(components, is_zero); };
-  // A law may vary with time: what its text hides is not looked into.
-  const auto undamped = [](const auto& spring) { return spring.damping == 0 && !spring.law; };
-  const auto idle = [](const LinearDrag& drag) { return drag.translational == 0 && drag.rotational == 0; };
-  return std::ranges::all_of(model.rows, still) && std::ranges::all_of(model.point_forces, none, &PointForce::force) &&
-         std::ranges::all_of(model.torques, none, &Torque::torque) && std::ranges::all_of(model.springs, undamped) &&
-         std::ranges::all_of(model.torsions, undamped, &TorsionElement::spring) &&
-         std::ranges::all_of(model.drags, idle) && model.callbacks.empty();
 }
 
 double kinetic_energy(const Motion& motion, const Model& model) {

@@ -77,8 +77,6 @@ BodyDifference body_difference(const Motion& motion, const Motion& from, const S
 // rad, of two orientations: 2 asin(|A − B|/(2√2)) with the Frobenius norm, good for small angles.
 double angle_between(const Matrix3& A, const Matrix3& B);
 
-// Whether the scene's energy is constant: nothing moves it from outside and nothing dissipates.
-bool conserves_energy(const Model& model);
 // Largest kinetic energy of the motion, J.
 double kinetic_energy(const Motion& motion, const Model& model);
 

@@ -10,6 +10,7 @@
 #include "bench/study/name_list.h"
 #include "core/counted.h"
 #include "core/printable.h"
+#include "core/reaction_components.h"
 #include "formulations/registry.h"
 
 namespace poinsot::study {
@@ -88,15 +89,21 @@ void add_constraints(std::string& text, const SceneCheck& found) {
 
 std::vector<int> undetermined_rows(const SceneCheck& found) {
   std::vector<int> rows;
-  for (const int group : found.rank.undetermined)
-    rows.push_back(found.model->groups[static_cast<std::size_t>(group)].first_row);
+  for (const Undetermined& reaction : found.rank.undetermined)
+    rows.push_back(found.model->groups[static_cast<std::size_t>(reaction.group)].first_row);
   return rows;
 }
 
+// Each with its components, where others of them are unique.
 void add_undetermined(std::string& text, const SceneCheck& found) {
   if (found.rank.undetermined.empty()) return;
-  text += fmt::format("reactions that redundant rows leave undetermined: {}\n",
-                      printable(groups_text(*found.model, undetermined_rows(found))));
+  std::vector<std::string> reactions = groups_of(*found.model, undetermined_rows(found));
+  for (std::size_t k = 0; k < reactions.size(); ++k) {
+    const std::vector<std::string> components = found.rank.undetermined[k].components(*found.model);
+    if (!components.empty() && components.size() < kReactionComponents.size())
+      reactions[k] += fmt::format(" ({})", fmt::join(components, " "));
+  }
+  text += fmt::format("reactions that redundant rows leave undetermined: {}\n", printable(listed(reactions)));
 }
 
 void add_doubt(std::string& text, const SceneCheck& found) {
@@ -183,6 +190,8 @@ nlohmann::ordered_json check_json(const SceneCheck& found) {
                      {"of", derivative.name},
                      {"what", derivative.what},
                      {"off_by", derivative.error}});
+  auto components = Ordered::array();
+  for (const Undetermined& reaction : rank.undetermined) components.push_back(reaction.components(model));
   return {{"scene", model.name},
           {"bodies", model.bodies.size()},
           {"rows", model.rows.size()},
@@ -196,6 +205,7 @@ nlohmann::ordered_json check_json(const SceneCheck& found) {
           {"redundant", dependencies(rank.dependent, false)},
           {"conflicting", dependencies(rank.dependent, true)},
           {"undetermined_reactions", groups_of(model, undetermined_rows(found))},
+          {"undetermined_components", components},
           {"violation", {{"position", found.violation.position}, {"velocity", found.violation.velocity}}},
           {"notices", notices},
           {"derivatives",

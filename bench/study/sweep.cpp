@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bench/study/measure.h"
+#include "core/conserved_energy.h"
 #include "core/input_error.h"
 #include "formulations/registry.h"
 

@@ -14,6 +14,7 @@
 // only (loop_rows.h). The cost grows with the number of rows (linsolve/column_dependencies.h).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -40,6 +41,16 @@ struct Conflict {
 
 std::string describe(const Conflict& conflict);  // "0.002 m (position)"
 
+// A group of the model whose reaction the equations of motion do not determine: a combination of multipliers that moves
+// nothing loads it.
+struct Undetermined {
+  int group;
+  std::array<bool, 6> loaded{};  // by kReactionComponents, where the mechanism stands
+
+  // Those loaded; of a constraint, which has a multiplier alone, none.
+  std::vector<std::string> components(const Model& model) const;
+};
+
 struct RankAnalysis {
   int variables = 0;                  // 6 per body
   int rank = 0;                       // of G but for singular positions: rows that are not redundant
@@ -51,9 +62,8 @@ struct RankAnalysis {
   std::vector<int> aside;
   // Rows that are singular here and rows to be set aside: without them G has full rank at the given position.
   std::vector<int> aside_here;
-  // Groups of the model whose reactions the equations of motion do not determine: a combination of multipliers that
-  // moves nothing loads them. Of all groups with redundant rows nearby where there are very many redundant rows.
-  std::vector<int> undetermined;
+  // By group. Where there are very many redundant rows, all groups with some nearby.
+  std::vector<Undetermined> undetermined;
   std::vector<Conflict> conflicts;  // by row
   bool named = true;                // false: too many to say what each depends on; `others` are empty
   bool moves_on = true;             // singular: whether the velocities lead away from the singular position

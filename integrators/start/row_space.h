@@ -51,6 +51,7 @@ class RowSpace {
   // G v − ν and ν in the rows' own units, where it stands, with velocities v of intrinsic_formulation().
   void rates(std::span<const double> v, std::span<double> residual, std::span<double> nu);
   double norm_of_row(std::size_t k) const { return is_velocity_row(k) ? lengths_[k] / kVelocityRow : lengths_[k]; }
+  double size_of_body(int body) const { return sizes_[index(body)]; }  // m
   // m: of the larger of its bodies.
   double size_of_row(std::size_t k) const;
 

@@ -10,6 +10,7 @@
 
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/driver_jumps.h"
+#include "integrators/stepping/energy_balance.h"
 #include "integrators/stepping/law_switches.h"
 #include "integrators/stepping/observe.h"
 #include "integrators/stepping/passed_laws.h"
@@ -71,6 +72,7 @@ class Course {
   Status follow(const State& at) {
     if (Status status = driver_jumps.look(at.t); !status.ok()) return status;
     still_.look(run_.problem, at);
+    if (run_.energy && run_.energy->due()) run_.energy->look(run_.problem, at.v);
     if (progress_.look(at.t)) {
       if (progress_.never_ends()) return never_beyond(run_.problem, at, progress_.limit());
       if (progress_.takes_long_for_a_rest())

@@ -6,6 +6,7 @@
 
 #include "core/interruption.h"
 #include "integrators/stepping/accept.h"
+#include "integrators/stepping/energy_balance.h"
 
 namespace poinsot {
 namespace {
@@ -71,6 +72,7 @@ Status FixedSteps::march() {
     status = advance(grid_.time(n), sampled);
     if (run_.statistics.steps > before + 1) ++run_.statistics.divided_steps;
     if (status.ok() && damps()) damping_.look(last_seen(), x_);
+    if (status.ok() && run_.energy && run_.energy->due()) run_.energy->look(last_seen(), x_.v);
     if (n % kStillSteps == 0 && status.ok() && integrates()) still_.look(problem_, x_);
     if (status.ok() && integrates() && rests_.due()) status = rests_.look(problem_, settings_.linear(), x_);
     if (status.ok() && sampled) status = give_out(*standing_);

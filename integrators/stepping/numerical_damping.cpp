@@ -9,6 +9,7 @@
 
 #include "core/index.h"
 #include "core/mechanisms.h"
+#include "integrators/stepping/energy_balance.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
@@ -34,6 +35,8 @@ NumericalDamping::NumericalDamping(const Run& run)
     if (row.i != kGround || row.j != kGround)
       --mechanisms_[index(mechanism_[index(row.i == kGround ? row.j : row.i)])].freedoms;
   }
+  for (std::size_t k = 0; run.energy && k < mechanisms_.size(); ++k)
+    if (run.energy->covers(k)) mechanisms_[k].freedoms = 0;  // what it lost is known
   moves_ = std::ranges::any_of(mechanisms_, [](const Mechanism& of) { return of.freedoms > 0; });
   if (!moves_) return;
   bodies_.resize(index(bodies));

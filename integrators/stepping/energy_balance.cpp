@@ -1,0 +1,133 @@
+#include "integrators/stepping/energy_balance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/conserved_energy.h"
+#include "core/index.h"
+#include "core/mechanisms.h"
+#include "formulations/spring_law.h"
+#include "integrators/stepping/vectors.h"
+
+namespace poinsot {
+namespace {
+
+Vector3 place(std::span<const BodyState> bodies, int body, const Vector3& s) {
+  if (body == kGround) return s;
+  const BodyState& at = bodies[index(body)];
+  return at.r + at.A * s;
+}
+
+}  // namespace
+
+EnergyBalance::EnergyBalance(const Problem& problem) : parts_(problem), of_(parts_.count()) {
+  const std::vector<int> mechanism = mechanisms(problem.model());
+  const std::vector<bool> conserves = conserving_mechanisms(problem.model(), mechanism);
+  for (std::size_t k = 0; k < of_.size(); ++k) of_[k].conserves = conserves[k];
+  none_ = std::ranges::none_of(of_, &Mechanism::conserves);
+  if (none_) return;
+  momentum_.resize(problem.nv());
+  bodies_.resize(problem.model().bodies.size());
+  x_first_.reserve(problem.model().springs.size() + problem.model().torsions.size());
+}
+
+void EnergyBalance::begin(const Sample& start) {
+  if (!none_) add_energies(start, &Mechanism::first);
+}
+
+void EnergyBalance::end(const Sample& end) {
+  if (none_) return;
+  add_energies(end, &Mechanism::last);
+  ended_ = true;
+}
+
+void EnergyBalance::look(const Problem& problem, const Eigen::VectorXd& v) {
+  problem.momentum(span(v), span(momentum_));
+  for (std::size_t k = 0; k < of_.size(); ++k)
+    if (of_[k].conserves) of_[k].most_kinetic = std::max(of_[k].most_kinetic, 0.5 * parts_.dot(k, v, momentum_));
+}
+
+void EnergyBalance::add_energies(const Sample& at, double Mechanism::*sum) {
+  constexpr double kRounding = 1e3 * std::numeric_limits<double>::epsilon();
+  const Model& model = at.problem.model();
+  at.problem.to_bodies(at.a, bodies_);
+  for (Mechanism& of : of_) of.*sum = of.loads = 0;
+  const auto add = [&](Mechanism& of, double energy, double load) {
+    of.*sum += energy;
+    of.loads += std::abs(load);
+    of.rounding += kRounding * std::abs(energy);
+  };
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Body& body = model.bodies[b];
+    const BodyState& state = bodies_[b];
+    Mechanism& of = of_[parts_.of_body(static_cast<int>(b))];
+    add(of, 0.5 * (body.mass * state.rd.squaredNorm() + state.w.dot(body.inertia * state.w)), 0);
+    add(of, -body.mass * model.gravity.dot(state.r), body.mass * model.gravity.norm());
+  }
+  std::size_t springs = 0;
+  const auto add_spring = [&](const auto& spring, double x) {
+    if (springs == x_first_.size()) x_first_.push_back(x);
+    const double from = x_first_[springs++];
+    if (spring.i == kGround && spring.j == kGround) return;
+    Mechanism& of = of_[parts_.of_body(spring.i == kGround ? spring.j : spring.i)];
+    if (!of.conserves) return;
+    if (spring.law)
+      add(of, law_work(*spring.law, from, x, at.t), spring.law->law(Arguments<double>{at.t, x, 0}).F);
+    else
+      add(of, 0.5 * spring.stiffness * x * x, spring.stiffness * x);
+  };
+  for (const Spring& spring : model.springs) {
+    const Vector3 d = place(bodies_, spring.j, spring.s_j) - place(bodies_, spring.i, spring.s_i);
+    add_spring(spring, d.norm() - spring.length);
+  }
+  for (std::size_t k = 0; k < model.torsions.size(); ++k) {
+    const TorsionSpring& spring = model.torsions[k].spring;
+    add_spring(spring, at.problem.twist(static_cast<int>(k)) - spring.angle);
+  }
+}
+
+// What would keep it.
+std::string EnergyBalance::remedy(const Settings& settings, const IntegratorEntry& integrator, double share) {
+  constexpr double kKnown = 0.5;  // up to there a step to offer follows from what was lost
+  if (integrator.controls_error) return fmt::format("rtol {:.0e} or less keeps more of it", settings.rtol / 100);
+  if (share > kKnown) return "of so much it cannot be told which step would keep it; error control does";
+  const double shorter = kTold * std::pow(1 - share, 2) / share;
+  return fmt::format("a step below {:.2g} s, or error control, keeps it to {:.0f} %",
+                     0.9 * settings.step * std::pow(shorter, 1.0 / integrator.order), 100 * kTold);
+}
+
+void EnergyBalance::conclude(const Run& run, const IntegratorEntry& integrator) const {
+  // A step of first order is half of one late: under a constant force from rest this makes 1/n of the energy in n
+  // steps, which is not lost.
+  constexpr double kLate = 2.5;
+  if (!ended_) return;
+  const Model& model = run.problem.model();
+  const double off = 10 * run.statistics.violation.position * std::max(1.0, longest_arm(model));  // m, or rad
+  double most = -1;
+  const Mechanism* told = nullptr;
+  for (const Mechanism& of : of_) {
+    const double noise = of.rounding + off * of.loads;
+    if (!of.conserves || !(of.most_kinetic > noise)) continue;
+    const double share = std::abs(of.last - of.first) / of.most_kinetic;
+    if (!(share > most)) continue;
+    most = share;
+    told = std::abs(of.last - of.first) > noise ? &of : nullptr;
+  }
+  if (most < 0) return;
+  run.statistics.energy_change = most;
+  const double late = integrator.order == 1 ? kLate / static_cast<double>(run.statistics.steps) : 0;
+  if (!told || most < kTold + late) return;
+  const bool lost = told->last < told->first;
+  const std::string whose = of_mechanism(model, mechanisms(model), static_cast<int>(told - of_.data()));
+  run.tell(fmt::format(
+      "{} has {} {:.3g} J {} the motion{}, {:.3g} % of {} largest kinetic energy: nothing drives or damps it, so its "
+      "energy should stay as it is; {}",
+      run.settings.integrator, lost ? "lost" : "invented", std::abs(told->last - told->first), lost ? "of" : "in",
+      whose, 100 * most, whose.empty() ? "the" : "its", remedy(run.settings, integrator, most)));
+}
+
+}  // namespace poinsot

@@ -1,0 +1,65 @@
+// Whether the motion keeps the energy of what nothing drives or damps (core/conserved_energy.h).
+//
+// What steps take from a motion or add to it, each so little that nothing shows, adds up over many of them. Where
+// T + V, V of gravity and springs, is constant, it shows at the end: there it is set beside that of the start, by
+// mechanism, and told where they differ by more than 6 % of the largest kinetic energy on the way, 3 % of speeds. Of
+// other mechanisms nothing is known in this way, and nothing is looked at.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "integrators/integrator.h"
+#include "integrators/stepping/parts.h"
+
+namespace poinsot {
+
+class EnergyBalance {
+ public:
+  explicit EnergyBalance(const Problem& problem);
+
+  bool none() const { return none_; }
+  // Whether it knows of a mechanism what was lost, so that nobody else needs to guess.
+  bool covers(std::size_t mechanism) const { return of_[mechanism].conserves; }
+
+  // The first sample.
+  void begin(const Sample& start);
+  // Whether the step that was done is looked at: swings that are followed do not hide their largest kinetic energy in
+  // between.
+  bool due() {
+    constexpr int kApart = 4;
+    if (++since_ < kApart) return false;
+    since_ = 0;
+    return true;
+  }
+  // Its end, where the problem stands. Allocates nothing.
+  void look(const Problem& problem, const Eigen::VectorXd& v);
+  // The last sample; or where a run ended before, and why may be that its motion had become another one.
+  void end(const Sample& end);
+  // By how much it differs, for the statistics, and said where it does too much.
+  void conclude(const Run& run, const IntegratorEntry& integrator) const;
+
+ private:
+  struct Mechanism {
+    bool conserves = false;
+    double first = 0, last = 0;  // J, T + V
+    double most_kinetic = 0;     // J
+    double loads = 0;            // N, of gravity and springs; or N m
+    double rounding = 0;         // J, of the energies' parts
+  };
+  static constexpr double kTold = 0.06;  // of the kinetic energy
+
+  void add_energies(const Sample& at, double Mechanism::*sum);
+  static std::string remedy(const Settings& settings, const IntegratorEntry& integrator, double share);
+
+  const Parts parts_;
+  std::vector<Mechanism> of_;
+  std::vector<double> x_first_;  // of springs and torsion springs, from where laws have done work
+  Eigen::VectorXd momentum_;
+  std::vector<BodyState> bodies_;
+  bool none_ = true, ended_ = false;
+  int since_ = 0;
+};
+
+}  // namespace poinsot

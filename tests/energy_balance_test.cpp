@@ -1,0 +1,285 @@
+// What a run has lost or invented of the energy of mechanisms that should keep it is told at its end as it is,
+// whichever the method; of others nothing is said.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+
+#include "core/conserved_energy.h"
+#include "core/mechanisms.h"
+#include "tests/support/every_way.h"
+#include "tests/support/loops.h"
+
+namespace poinsot::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr double kTold = 6;  // percent
+
+struct Kept {
+  bool ok = false;
+  double lost = 0, percent = 0;  // J; of the largest kinetic energy
+  bool told = false;             // of the energy
+  double told_percent = 0;       // as the notice has it
+  std::string said, remedy;
+};
+
+Kept kept(const Scene& scene, const Settings& settings) {
+  double first = 0, last = 0, most = 0;
+  const Outcome outcome = simulate(scene, settings, [&](const Sample& at) {
+    if (at.t == 0) first = at.problem.energy();
+    last = at.problem.energy();
+    std::vector<double> momentum(at.v.size());
+    at.problem.momentum(at.v, momentum);
+    double twice = 0;
+    for (std::size_t k = 0; k < momentum.size(); ++k) twice += at.v[k] * momentum[k];
+    most = std::max(most, twice / 2);
+  });
+  Kept result{outcome.status.ok(), first - last, 100 * (first - last) / most, false, 0, {}, {}};
+  const std::regex pattern(" has (lost|invented) ([0-9.e+-]+) J .*, ([0-9.e+]+) % of .*should stay as it is; (.*)");
+  for (const std::string& notice : outcome.notices) {
+    std::smatch found;
+    if (!std::regex_search(notice, found, pattern)) continue;
+    result.told = true, result.said = notice, result.remedy = found[4];
+    result.told_percent = (found[1] == "lost" ? 1 : -1) * std::stod(found[3]);
+  }
+  return result;
+}
+
+void expect_as_it_is(const Kept& of) {
+  constexpr double kBand = 0.3;  // percent: the largest kinetic energy is looked for at every fourth step
+  EXPECT_EQ(of.told, std::abs(of.percent) > kTold) << of.percent << ' ' << of.said;
+  if (of.told) {
+    EXPECT_NEAR(of.told_percent, of.percent, 1e-2 * std::abs(of.percent) + kBand) << of.said;
+  }
+}
+
+Scene free_body() {
+  Scene scene;
+  Body body;
+  body.name = "body", body.mass = 1, body.inertia = Vector3(1, 2, 3).asDiagonal();
+  body.angular_velocity = {2.7, 8.1, 2.7};
+  scene.bodies.push_back(body);
+  return scene;
+}
+
+Scene heavy_top() {
+  Scene scene;
+  scene.gravity = {0, 0, -9.81};
+  Body top;
+  top.name = "top", top.mass = 1, top.inertia = Vector3(0.05, 0.05, 0.08).asDiagonal();
+  top.orientation = Eigen::AngleAxisd(0.4, Vector3::UnitX()).toRotationMatrix();
+  top.position = top.orientation * Vector3(0, 0, 0.4);
+  top.angular_velocity = {0, 0, 20};
+  scene.bodies.push_back(top);
+  Joint tip;
+  tip.type = JointType::spherical, tip.i = kGround, tip.j = 0;
+  scene.joints.push_back(tip);
+  return scene;
+}
+
+// To and fro on a spring of the law given, from x = 0.
+Scene on_law(const char* law) {
+  Scene scene;
+  Body ball;
+  ball.name = "ball", ball.mass = 1, ball.inertia = 1e-2 * Matrix3::Identity();
+  ball.position = {1.5, 0, 0}, ball.velocity = {2, 0, 0};
+  scene.bodies.push_back(ball);
+  Spring spring;
+  spring.name = "spring", spring.i = kGround, spring.j = 0, spring.length = 1;
+  spring.law = Expression::parse_law(law);
+  scene.forces.push_back(spring);
+  return scene;
+}
+
+// One turn shows nothing in most of these, ten seconds do.
+TEST(EnergyBalance, what_adds_up_is_told_as_it_is) {
+  int told = 0, silent = 0;
+  for (const Scene& scene : {free_body(), heavy_top(), scene_of("gimbal_pendulum"), on_law("40*x + 30*x^3")})
+    in_every_way(2e-3, 6, [&](Settings settings) {
+      settings.rtol = 1e-5;
+      const Kept of = kept(scene, settings);
+      if (!of.ok) return;
+      expect_as_it_is(of);
+      ++(of.told ? told : silent);
+    });
+  EXPECT_GE(told, 12);
+  EXPECT_GT(silent, 50);
+}
+
+TEST(EnergyBalance, what_is_invented_is_told_too) {
+  Settings settings = dynamics("rA", 1e-3, 20);
+  settings.integrator = "half_implicit";
+  const Kept of = kept(free_body(), settings);
+  EXPECT_LT(of.percent, -10);
+  expect_as_it_is(of);
+  EXPECT_THAT(of.said, HasSubstr("half_implicit has invented"));
+}
+
+TEST(EnergyBalance, the_step_that_is_offered_keeps_it) {
+  const std::regex pattern("a step below ([0-9.e-]+) s, or error control, keeps it to 6 %");
+  int offered = 0;
+  for (const Scene& scene : {free_body(), heavy_top(), scene_of("steel_pendulum"), on_law("40*x + 30*x^3")})
+    in_every_way(4e-3, 2, [&](Settings settings) {
+      if (integrators().require(settings.integrator).controls_error) return;
+      const Kept coarse = kept(scene, settings);
+      std::smatch found;
+      if (!coarse.ok || !std::regex_search(coarse.remedy, found, pattern)) return;
+      settings.step = 0.99 * std::stod(found[1]);
+      EXPECT_LT(std::abs(kept(scene, settings).percent), kTold) << coarse.said;
+      ++offered;
+    });
+  EXPECT_GE(offered, 8);
+}
+
+// Error control holds the error of a step, not what adds up.
+TEST(EnergyBalance, error_control_is_told_of_as_well) {
+  int told = 0;
+  for (const char* integrator : {"dopri5", "dop853", "radau5"}) {
+    Settings settings = dynamics("rA", 1e-3, 60);
+    settings.integrator = integrator, settings.rtol = 1e-2;
+    const Kept of = kept(scene_of("simple_pendulum"), settings);
+    EXPECT_TRUE(of.ok);
+    expect_as_it_is(of);
+    if (!of.told) continue;
+    ++told;
+    EXPECT_EQ(of.remedy, "rtol 1e-04 or less keeps more of it");
+    settings.rtol = 1e-4;
+    EXPECT_LT(std::abs(kept(scene_of("simple_pendulum"), settings).percent), std::abs(of.percent));
+  }
+  EXPECT_GE(told, 1);
+}
+
+TEST(EnergyBalance, is_that_of_each_mechanism) {
+  Scene both = heavy_top();
+  Body large = free_body().bodies[0];
+  large.name = "large", large.inertia *= 1e4, large.angular_velocity = {0, 0, 1}, large.position = {9, 0, 0};
+  both.gravity.setZero(), both.bodies[0].angular_velocity = {3, 0, 20};
+  both.bodies.push_back(large);
+  Scene alone = both;
+  alone.bodies.pop_back();
+  Settings settings = dynamics("rp", 1e-3, 3);
+  settings.integrator = "half_implicit";
+  const Kept of_alone = kept(alone, settings), of_both = kept(both, settings);
+  ASSERT_TRUE(of_alone.told && of_both.told) << of_alone.percent;
+  expect_as_it_is(of_alone);
+  EXPECT_NEAR(of_both.told_percent, of_alone.told_percent, 0.1);
+  EXPECT_THAT(of_both.said, HasSubstr("the motion of the mechanism of body 'top' (/bodies/0)"));
+  EXPECT_THAT(of_both.said, HasSubstr("its largest kinetic energy"));
+}
+
+// A pendulum that loose tolerances drive faster and faster until nothing follows it: the stop is none of the
+// mechanism's.
+TEST(EnergyBalance, is_said_where_a_run_stops) {
+  Settings settings = dynamics("rA", 1e-3, 400);
+  settings.integrator = "dopri5", settings.rtol = 1e-2;
+  const Kept of = kept(scene_of("simple_pendulum"), settings);
+  EXPECT_FALSE(of.ok);
+  EXPECT_TRUE(of.told);
+  EXPECT_THAT(of.said, HasSubstr("dopri5 has invented"));
+}
+
+// A first order is half a step late, which is much in a few steps and no loss.
+TEST(EnergyBalance, what_is_late_is_not_lost) {
+  Settings settings = dynamics("rA", 1e-2, 0.1);
+  settings.integrator = "implicit_euler";
+  const Kept of_few = kept(scene_of("simple_pendulum"), settings);
+  EXPECT_GT(of_few.percent, 1.5 * kTold);
+  EXPECT_FALSE(of_few.told);
+}
+
+// At rest what is left of Newton's method is no loss.
+TEST(EnergyBalance, rest_loses_nothing) {
+  Scene hanging = loop({.links = 4});
+  hanging.gravity = {0, -1e4, 0};
+  for (Body& body : hanging.bodies) body.velocity.setZero(), body.angular_velocity.setZero();
+  Joint weld;
+  weld.type = JointType::fixed, weld.i = kGround, weld.j = 0, weld.point = hanging.bodies[0].position;
+  hanging.joints.push_back(weld);
+  Scene sprung = on_law("1e3*x");
+  sprung.bodies[0].velocity.setZero(), sprung.bodies[0].position = {1 + 9.81e-3, 0, 0};
+  sprung.gravity = {9.81, 0, 0};
+  for (const Scene& scene : {hanging, sprung})
+    in_every_way(1e-2, 1, [&](const Settings& settings) {
+      const Kept of = kept(scene, settings);
+      EXPECT_TRUE(of.ok);
+      EXPECT_FALSE(of.told) << of.said;
+    });
+}
+
+TEST(EnergyBalance, of_what_is_driven_or_damped_nothing_is_known) {
+  for (const char* law : {"40*x + 1e-9*v", "40*x + 1e-9*t"}) {
+    Settings settings = dynamics("rA", 2e-2, 2);
+    settings.integrator = "generalized_alpha";
+    settings.parameters["spectral_radius"] = 0;
+    EXPECT_FALSE(kept(on_law(law), settings).told) << law;
+    const Kept of = kept(on_law("200*x"), settings);
+    EXPECT_TRUE(of.told) << of.percent;
+  }
+}
+
+std::vector<bool> conserving(const Scene& scene) {
+  const Model model = compile(scene);
+  return conserving_mechanisms(model, mechanisms(model));
+}
+
+TEST(ConservedEnergy, what_moves_or_brakes_a_mechanism_is_seen) {
+  Scene two = free_body();
+  two.bodies.push_back(two.bodies[0]);
+  two.bodies[1].name = "other", two.bodies[1].position = {3, 0, 0};
+  EXPECT_THAT(conserving(two), ElementsAre(true, true));
+  const auto with_force = [&](const Force& force) {
+    Scene scene = two;
+    scene.forces.push_back(force);
+    return conserving(scene);
+  };
+  PointForce push;
+  push.body = 1;
+  EXPECT_THAT(with_force(push), ElementsAre(true, true));
+  push.force[1] = Expression(1.0);
+  EXPECT_THAT(with_force(push), ElementsAre(true, false));
+  Torque twist;
+  twist.body = 0, twist.torque[2] = Expression::parse("t");
+  EXPECT_THAT(with_force(twist), ElementsAre(false, true));
+  LinearDrag drag;
+  drag.body = 0;
+  EXPECT_THAT(with_force(drag), ElementsAre(true, true));
+  drag.rotational = 1;
+  EXPECT_THAT(with_force(drag), ElementsAre(false, true));
+  CallbackForce callback;
+  callback.bodies = {1}, callback.loads = [](double, std::span<const BodyState>, std::span<Load>) {};
+  EXPECT_THAT(with_force(callback), ElementsAre(true, false));
+  Spring spring;
+  spring.i = kGround, spring.j = 1, spring.stiffness = 1;
+  EXPECT_THAT(with_force(spring), ElementsAre(true, true));
+  spring.damping = 1;
+  EXPECT_THAT(with_force(spring), ElementsAre(true, false));
+  TorsionSpring torsion;
+  torsion.i = kGround, torsion.j = 0, torsion.axis = {0, 0, 1}, torsion.law = Expression::parse_law("x^3");
+  EXPECT_THAT(with_force(torsion), ElementsAre(true, true));
+  torsion.law = Expression::parse_law("x^3 + v");
+  EXPECT_THAT(with_force(torsion), ElementsAre(false, true));
+  torsion.law = Expression::parse_law("x^3*t");
+  EXPECT_THAT(with_force(torsion), ElementsAre(false, true));
+
+  const auto with_row = [&](ConstraintType type, const char* f) {
+    Scene scene = two;
+    Constraint row;
+    row.type = type, row.i = kGround, row.j = 1, row.c = row.a_j = {1, 0, 0}, row.s_i = {3, 0, 0};
+    row.f = Expression::parse(f);
+    scene.constraints.push_back(row);
+    return conserving(scene);
+  };
+  EXPECT_THAT(with_row(ConstraintType::CD, "0"), ElementsAre(true, true));
+  EXPECT_THAT(with_row(ConstraintType::CD, "t"), ElementsAre(true, false));
+  EXPECT_THAT(with_row(ConstraintType::pfaffian, "0"), ElementsAre(true, true));
+  EXPECT_THAT(with_row(ConstraintType::pfaffian, "1"), ElementsAre(true, false));
+}
+
+}  // namespace
+}  // namespace poinsot::test
