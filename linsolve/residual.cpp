@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/check.h"
 #include "core/index.h"
@@ -11,7 +12,8 @@
 namespace poinsot {
 namespace {
 
-constexpr int kTogether = 4;  // columns at most
+constexpr int kTogether = 4;       // columns at most
+constexpr double kFewTerms = 300;  // of a row; its sums are compared with its largest term
 
 Vec greater(Vec x, Vec y) {
   return x > y ? x : y;
@@ -58,10 +60,16 @@ void Residual::resize(const CscLayout& layout) {
     panels_.push_back(columns);
   }
   panels_.shrink_to_fit();
+  std::vector<int> entries(index(layout.n), 0);
+  for (const int row : layout.row) ++entries[index(row)];
+  terms_.resize(entries.size());
+  std::ranges::transform(entries, terms_.begin(), [](int count) { return std::max(1.0, count / kFewTerms); });
 }
 
 void Residual::measure_by(std::span<const double> rows, std::span<const double> columns) {
   rows_.assign(rows.begin(), rows.end());
+  by_terms_.resize(rows.size());
+  std::ranges::transform(rows, terms_, by_terms_.begin(), std::divides());
   per_column_.resize(columns.size());
   std::ranges::transform(columns, per_column_.begin(), [](double column) { return 1 / column; });
 }
@@ -96,7 +104,7 @@ void Residual::find(const CscLayout& layout, std::span<const double> values, std
 double Residual::size(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
                       std::span<const double> x) {
   find(layout, values, b, x);
-  const double size_x = largest(x, per_column_), size_b = largest(b, rows_), size_r = largest(r_, rows_);
+  const double size_x = largest(x, per_column_), size_b = largest(b, rows_), size_r = largest(r_, by_terms_);
   if (!all_finite(r_)) return HUGE_VAL;
   return size_r == 0 ? 0 : size_r / (size_x + size_b);
 }

@@ -17,7 +17,8 @@ class Residual {
   std::span<const double> rows() const { return rows_; }
   double column(std::size_t j) const { return 1 / per_column_[j]; }
 
-  // Both leave b − A x in vector(). The size is the largest |b − A x| against the largest of |A||x| and |b|.
+  // Both leave b − A x in vector(). The size is the largest |b − A x| against the largest of |A||x| and |b|; in a row
+  // of very many entries, as a hub has, |A||x| and the rounding of A x are as many times larger.
   void find(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
             std::span<const double> x);
   double size(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
@@ -25,8 +26,9 @@ class Residual {
   std::span<double> vector() { return r_; }
 
  private:
-  std::vector<int> panels_;  // columns in a row that have the same rows, and are taken together
-  std::vector<double> rows_, per_column_, r_;
+  std::vector<int> panels_;    // columns in a row that have the same rows, and are taken together
+  std::vector<double> terms_;  // by row: how many times more entries than few
+  std::vector<double> rows_, by_terms_, per_column_, r_;
 };
 
 }  // namespace poinsot

@@ -1,6 +1,9 @@
 // The size of a residual, and which solutions the block solver looks at.
 #include <gtest/gtest.h>
 
+#include <numeric>
+#include <random>
+
 #include "linsolve/residual.h"
 #include "tests/support/carried.h"
 #include "tests/support/linear_solver_suite.h"
@@ -39,6 +42,27 @@ TEST(Residual, IsRelativeToWhatIsSolved) {
     for (double& y : scaled_x) y *= scale;
     EXPECT_NEAR(residual.size(layout, values, scaled_b, scaled_x) / found, 1, 1e-6) << scale;
   }
+}
+
+// A row of very many entries, as a hub has: their sum cannot be rounded to its largest term.
+TEST(Residual, OfManyTermsIsRelativeToThemAll) {
+  constexpr int kTerms = 30'000;
+  CscLayout layout;
+  ASSERT_TRUE(layout.build({kTerms, {{0, 0, 1, kTerms}, {1, 1, 1, 1}}, std::vector<int>(kTerms, 0)}).ok());
+  std::mt19937_64 random(1);
+  const std::vector<double> values(static_cast<std::size_t>(layout.nonzeros()), 1),
+      ones(static_cast<std::size_t>(kTerms), 1), x = random_vector(kTerms, random);
+  Residual residual;
+  residual.resize(layout);
+  residual.measure_by(ones, ones);
+  std::vector<double> b(ones.size(), 0.0);
+  b[0] = static_cast<double>(std::accumulate(x.begin(), x.end(), 0.0L));
+  b[1] = x[1];
+  EXPECT_LT(residual.size(layout, values, b, x), 1e-15);
+  b[0] += 1e-8;
+  EXPECT_GT(residual.size(layout, values, b, x), 1e-12);
+  b[0] -= 1e-8, b[1] += 1e-12;
+  EXPECT_GT(residual.size(layout, values, b, x), 1e-14);
 }
 
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(LinearSolvers);
