@@ -125,13 +125,16 @@ class Builder {
       return index(kKinds * front + std::min<int>(strip.length, kKinds) - 1);
     };
     std::vector<int> next(kKinds * s.fronts.size() + 1, 0);
-    visit_strips(s, front_at, [&](int front, const Strip& strip) { ++next[place_of(front, strip) + 1]; });
+    std::vector<std::pair<int, Strip>> strips;  // and their fronts
+    visit_strips(s, front_at, [&](int front, const Strip& strip) {
+      ++next[place_of(front, strip) + 1];
+      strips.emplace_back(front, strip);
+    });
     std::partial_sum(next.begin(), next.end(), next.begin());
     for (std::size_t f = 0; f < s.fronts.size(); ++f)
       std::copy_n(next.begin() + static_cast<std::ptrdiff_t>(kKinds * f + 1), kKinds, s.fronts[f].strips.begin());
-    s.strips.assign(index(next.back()), Strip{});
-    visit_strips(s, front_at,
-                 [&](int front, const Strip& strip) { s.strips[index(next[place_of(front, strip)]++)] = strip; });
+    s.strips.assign(strips.size(), Strip{});
+    for (const auto& [front, strip] : strips) s.strips[index(next[place_of(front, strip)]++)] = strip;
   }
 
   // Positions become unknowns.
@@ -156,11 +159,13 @@ class Builder {
     Strip strip{};
     for (int j = 0; j < layout_.n; ++j) {
       const int pj = position_[index(j)];
+      int lj = 0, of = -1;  // the column in the front at hand
       for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k) {
         const int pi = position_[index(layout_.row[index(k)])];
         const int front = front_at[index(std::min(pi, pj))];
         const Front& f = s.fronts[index(front)];
-        const int li = local(s, front, pi), lj = local(s, front, pj), p = f.pivots;
+        if (front != of) lj = local(s, front, pj), of = front;
+        const int li = local(s, front, pi), p = f.pivots;
         int target = lj * p + li;
         if (li >= p) target = p * p + lj * f.rows + li - p;
         if (lj >= p) target = p * (p + f.rows) + (lj - p) * p + li;
