@@ -10,7 +10,23 @@
 namespace poinsot::block {
 namespace {
 
+constexpr std::size_t kMostReached = 64;   // groups, in the search for a hub
 constexpr std::size_t kMostTakenIn = 128;  // groups by one body: a front of some hundred unknowns
+
+// A group whose bodies were all eliminated before it waits for one that is not, a hub: the nearest group that has one,
+// −1 where there is none.
+int nearest_with_later(const Incidence& incidence, const std::vector<int>& place, int group, int at) {
+  const auto is_later = [&](int body) { return place[index(body)] > at; };
+  std::vector<int> reached = {group};
+  for (std::size_t k = 0; k < reached.size() && reached.size() < kMostReached; ++k) {
+    const std::span<const int> bodies = incidence.bodies[reached[k]];
+    if (std::ranges::any_of(bodies, is_later)) return reached[k];
+    for (const int body : bodies)
+      for (const int next : incidence.groups[body])
+        if (std::ranges::find(reached, next) == reached.end()) reached.push_back(next);
+  }
+  return -1;
+}
 
 }  // namespace
 
@@ -27,9 +43,11 @@ bool fuse(const CscLayout& layout, std::span<const int> node, const Schedule& sc
     const int of = node_at(k);
     if (with[index(of)] >= 0) continue;
     if (incidence.is_group[index(of)]) {
-      const std::span<const int> bodies = incidence.bodies[of];
+      int group = nearest_with_later(incidence, place, of, k);
+      if (group < 0 || with[index(group)] >= 0) group = of;
+      const std::span<const int> bodies = incidence.bodies[group];
       if (bodies.empty()) continue;
-      with[index(of)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[index(b)]; });
+      with[index(group)] = *std::ranges::max_element(bodies, {}, [&](int b) { return place[index(b)]; });
       any = true;
       continue;
     }

@@ -12,15 +12,16 @@
 namespace poinsot::test {
 
 // Round a hub on a hinge: arms that are hinged twice, arms hinged to their neighbours, too (so that all move as one, in
-// one plane or at different heights, or kilometres away from their hinges), four-bars. Or a coupler on parallel cranks,
-// the hub; on hinges or on balls.
-enum class Hub { twice, triangles, flat_triangles, far_triangles, four_bars, cranks, ball_cranks };
+// one plane or at different heights, or kilometres away from their hinges), four-bars, legs of two parts to another
+// hub. Or a coupler on parallel cranks, the hub; on hinges or on balls.
+enum class Hub { twice, triangles, flat_triangles, far_triangles, four_bars, two_hubs, cranks, ball_cranks };
 
 struct HubKind {
   Hub hub;
   std::string_view name;
   int freedoms(int count) const {  // of the mechanism with so many arms, loops or cranks
     if (hub == Hub::twice || hub == Hub::four_bars) return count + 1;
+    if (hub == Hub::two_hubs) return 4;      // the other one moves in the plane
     return hub == Hub::ball_cranks ? 2 : 1;  // a coupler turns about a line of balls
   }
 };
@@ -30,6 +31,7 @@ inline constexpr HubKind kHubs[] = {
     {Hub::flat_triangles, "flat triangles"},
     {Hub::far_triangles, "far triangles"},
     {Hub::four_bars, "four-bars"},
+    {Hub::two_hubs, "two hubs"},
     {Hub::cranks, "cranks"},
     {Hub::ball_cranks, "cranks with balls"},
 };
@@ -65,6 +67,18 @@ inline Scene hub(Hub kind, int count) {
     return scene;
   }
   join(kGround, centre, Vector3::Zero());
+  if (kind == Hub::two_hubs) {
+    const Vector3 apart(1.5, 0, 0);
+    const int other = body(apart);
+    for (int k = 0; k < count; ++k) {
+      const Vector3 foot = polar(1, 2 * std::numbers::pi * k / count), knee = foot + Vector3(0.8, 0.7, 0);
+      const int thigh = body(foot + Vector3(0.4, 0.3, 0)), shank = body(knee + Vector3(0.3, -0.3, 0));
+      join(centre, thigh, foot);
+      join(thigh, shank, knee);
+      join(shank, other, foot + apart);
+    }
+    return scene;
+  }
   int last = centre;
   for (int k = 0; k < count; ++k) {
     const double angle = kind == Hub::four_bars ? 2 * std::numbers::pi * k / count : 0.1 * k;
