@@ -1,9 +1,18 @@
-// Of redundant rows those that are kept wear out at their own pace: error control is not to creep up to where they
-// depend on one another while the mechanism is regular.
+// Redundant rows on the way. Those that are kept wear out at their own pace: error control is not to creep up to where
+// they depend on one another while the mechanism is regular. And what they cost beside none.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
+#include "integrators/start/rank.h"
+#include "integrators/start/row_space.h"
+#include "integrators/start/rows_aside.h"
+#include "integrators/start/violation.h"
+#include "tests/support/every_way.h"
+#include "tests/support/loops.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -28,8 +37,52 @@ TEST_P(RowWear, IsLookedForWhereStepsAreRejected) {
   EXPECT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
 }
 
+// In thousands of instructions of a loop of four links: assembly and factorization, a solution, one that is looked at
+// and corrected.
+double cost(const Outcome& outcome) {
+  double sum = 0;
+  for (const LinearWork& work : outcome.statistics.linear)
+    sum += 19.0 * static_cast<double>(work.factorizations + work.refactorizations) +
+           2.5 * static_cast<double>(work.solves) + 4.6 * static_cast<double>(work.refinements);
+  return sum;
+}
+
+// The same loop without redundancy takes as many factorizations and solutions; of these about as many are refined.
+TEST_P(RowWear, CostsLittle) {
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.analysis != Analysis::dynamics || refusal_of(integrator, GetParam())) continue;
+    for (const bool carried : {false, true}) {
+      Settings settings = dynamics(GetParam(), 2e-3, 0.5, 0.5);
+      settings.integrator = integrator.name;
+      settings.tolerance = 1e-8;
+      settings.rtol = 1e-7;
+      const auto of = [&](bool redundant) {
+        return cost(run(loop({4, Frames::random, carried, redundant}), settings).outcome);
+      };
+      EXPECT_LT(of(true), 1.1 * of(false)) << integrator.name << (carried ? ", carried" : "");
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, RowWear, ::testing::ValuesIn(formulation_names()),
                          [](const auto& test) { return test.param; });
+
+// After every step those rows are measured that no row kept says word for word: none of a joint that is there twice,
+// all of a loop's.
+TEST(RowsAside, AreMeasuredUnlessTheyAreSaidTwice) {
+  const auto measured = [](const Scene& scene) {
+    const auto model = std::make_shared<const Model>(compile(scene));
+    const std::vector<int> aside = analyze_rank(model, given_state(*model), RankNames::none).aside;
+    EXPECT_FALSE(aside.empty());
+    return std::pair(not_said_twice(*model, aside, all_but(model->rows.size(), aside)), aside);
+  };
+  Scene twice = loop({4, Frames::random, true, false});
+  twice.joints.insert(twice.joints.end(), twice.joints.begin(), twice.joints.end());
+  for (std::size_t k = 0; k < twice.joints.size(); ++k) twice.joints[k].name = fmt::format("joint {}", k);
+  EXPECT_THAT(measured(twice).first, ::testing::IsEmpty());
+  const auto [all, aside] = measured(loop({4, Frames::random, false, true}));
+  EXPECT_EQ(all, aside);
+}
 
 }  // namespace
 }  // namespace poinsot::test

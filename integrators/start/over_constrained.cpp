@@ -32,6 +32,7 @@ OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::share
     kept_ = kept_->clone_without(choice_->rows.aside());
   bodies_ = kept_->bodies();
   nq_ = kept_->nq(), nv_ = kept_->nv(), nc_ = kept_->nc();
+  no_accelerations_.resize(index(nv_));
   watch();
 }
 
@@ -45,7 +46,8 @@ OverConstrained::OverConstrained(const OverConstrained& other)
       accepted_at_(other.accepted_at_),
       way_(other.way_),
       ahead_(other.ahead_),
-      now_(other.now_) {
+      now_(other.now_),
+      no_accelerations_(other.no_accelerations_) {
   watch();
 }
 
@@ -60,11 +62,13 @@ void OverConstrained::keep() {
 }
 
 void OverConstrained::watch() {
-  aside_.emplace(model(), choice_->rows.aside());
+  const std::vector<int> rows = not_said_twice(model(), choice_->rows.aside(), model_rows());
+  aside_.reset();
+  if (!rows.empty()) aside_.emplace(model(), rows);
+  most_aside_ = -1;
   by_allowed_.clear();
-  for (const int row : aside_->rows()) by_allowed_.push_back(1 / (kLost * choice_->rows.size_of(row)));
-  rates_aside_ =
-      std::ranges::any_of(aside_->rows(), [&](int row) { return model().rows[index(row)].type == RowType::pfaffian; });
+  for (const int row : rows) by_allowed_.push_back(1 / (kLost * choice_->rows.size_of(row)));
+  rates_aside_ = std::ranges::any_of(rows, [&](int row) { return model().rows[index(row)].type == RowType::pfaffian; });
   kept_rates_.resize(rates_aside_ ? index(kept_->nc()) : 0);
 }
 
@@ -72,6 +76,7 @@ void OverConstrained::set_position(double t, std::span<const double> q) {
   if (kept_revision_ != choice_->revision) keep();
   kept_->set_position(t, q);
   t_ = t;
+  most_aside_ = -1;
 }
 
 Problem::LeftOut OverConstrained::left_out() const {
@@ -80,20 +85,24 @@ Problem::LeftOut OverConstrained::left_out() const {
     for (const double off : residual) most = std::max(most, std::abs(off));
     return most;
   };
-  LeftOut most;
-  most.position = largest(aside_->position_residual(t_, *kept_));
-  kept_->to_bodies(std::vector<double>(index(nv_)), now_);
-  most.velocity = largest(aside_->velocity_residual(now_));
-  return most;
+  if (!aside_) return {};
+  if (most_aside_ < 0) most_aside_ = largest(aside_->position_residual(t_, *kept_));
+  kept_->to_bodies(no_accelerations_, now_);
+  return {most_aside_, largest(aside_->velocity_residual(now_))};
 }
 
 // The rows set aside, where the kept problem stands.
 Status OverConstrained::measure(double t, std::span<const double> a) {
+  if (!aside_) return {};
   const std::span<const double> residual = aside_->position_residual(t, *kept_);
   std::size_t worst = 0;
   double most = 0;
-  for (std::size_t k = 0; k < by_allowed_.size(); ++k)
-    if (const double part = std::abs(residual[k]) * by_allowed_[k]; part > most) most = part, worst = k;
+  most_aside_ = 0;
+  for (std::size_t k = 0; k < by_allowed_.size(); ++k) {
+    const double off = std::abs(residual[k]);
+    most_aside_ = std::max(most_aside_, off);
+    if (const double part = off * by_allowed_[k]; part > most) most = part, worst = k;
+  }
   if (most <= 1 || (to_tolerance_ && std::abs(residual[worst]) <= kAsKept * kept_off()))
     return rates_aside_ ? measure_rates(t, a) : Status{};
   return with_settings(
@@ -179,7 +188,7 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
 
 bool OverConstrained::choose_rows_here(double t, std::span<const double> q, std::span<const double> v,
                                        std::span<double> lambda) {
-  kept_->to_bodies(std::vector<double>(index(nv_)), now_);
+  kept_->to_bodies(no_accelerations_, now_);
   const bool others = choice_->rows.renew(t_, now_, HUGE_VAL, 0, true);
   choice_->at = now_;
   way_ = 0;

@@ -1,10 +1,11 @@
 // A problem with redundant rows: kept are rows that determine the motion, the others are set aside and watched.
 //
-// After every accepted step the rows set aside are measured. Where one of them does not hold any more the run stops and
-// names it: it followed from the others where the run began only. And when the mechanism has turned by some angle the
-// choice is looked at again (integrators/start/row_choice.h): as the directions in which the mechanism is constrained
-// too often turn with it, rows that were a good choice become singular. Then other rows take the place of those kept,
-// with the multipliers that mean the same reactions; revision() counts that up, and linear systems are analysed anew.
+// After every accepted step the rows set aside are measured, but for those that a row kept says word for word. Where
+// one of them does not hold any more the run stops and names it: it followed from the others where the run began only.
+// And when the mechanism has turned by some angle the choice is looked at again (integrators/start/row_choice.h): as
+// the directions in which the mechanism is constrained too often turn with it, rows that were a good choice become
+// singular. Then other rows take the place of those kept, with the multipliers that mean the same reactions; revision()
+// counts that up, and linear systems are analysed anew.
 //
 // Scenes without redundant rows have none of this.
 #pragma once
@@ -110,15 +111,17 @@ class OverConstrained final : public Problem {
   std::shared_ptr<Choice> choice_;
   int kept_revision_ = 0;
   std::unique_ptr<Problem> kept_;
-  const bool to_tolerance_;  // kept rows hold
-  mutable std::optional<RowsAside> aside_;
-  std::vector<double> by_allowed_;  // 1 over what is allowed of |Φ|, by row set aside
-  bool rates_aside_ = false;        // velocity rows are among them
+  const bool to_tolerance_;                 // kept rows hold
+  mutable std::optional<RowsAside> aside_;  // those that are measured, if any
+  mutable double most_aside_ = -1;          // |Φ| of these where the problem stands; below 0: not known
+  std::vector<double> by_allowed_;          // 1 over what is allowed of |Φ|, by row set aside
+  bool rates_aside_ = false;                // velocity rows are among them
   std::vector<double> kept_rates_, kept_positions_;
   double t_ = 0;                // where the problem stands
   double accepted_at_ = 0;      // the last step's end
   double way_ = 0, ahead_ = 0;  // rad, what the fastest body has turned by since the last look, about; its last part
   mutable std::vector<BodyState> now_;
+  std::vector<double> no_accelerations_;
 };
 
 }  // namespace poinsot

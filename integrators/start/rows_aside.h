@@ -7,9 +7,14 @@
 #include <vector>
 
 #include "core/body_state.h"
+#include "core/model.h"
 #include "formulations/problem.h"
 
 namespace poinsot {
+
+// Of `aside` those that no row of `kept` says word for word, as a joint does that is there twice: what holds there
+// holds here to the last bit. Rows of the model, ascending.
+std::vector<int> not_said_twice(const Model& model, const std::vector<int>& aside, const std::vector<int>& kept);
 
 class RowsAside {
  public:
@@ -24,7 +29,6 @@ class RowsAside {
  private:
   std::vector<int> rows_, body_;  // of the model
   std::unique_ptr<Problem> problem_;
-  std::vector<BodyState> states_;
   std::vector<double> q_, v_, residual_;
 };
 
