@@ -21,7 +21,7 @@ using ::testing::Not;
 
 constexpr double kTold = 6;  // percent
 
-struct Kept {
+struct EnergyFound {
   bool ok = false;
   double lost = 0, percent = 0;  // J; of the largest kinetic energy
   bool told = false;             // of the energy
@@ -29,7 +29,7 @@ struct Kept {
   std::string said, remedy;
 };
 
-Kept kept(const Scene& scene, const Settings& settings) {
+EnergyFound kept(const Scene& scene, const Settings& settings) {
   double first = 0, last = 0, most = 0;
   const Outcome outcome = simulate(scene, settings, [&](const Sample& at) {
     if (at.t == 0) first = at.problem.energy();
@@ -40,7 +40,7 @@ Kept kept(const Scene& scene, const Settings& settings) {
     for (std::size_t k = 0; k < momentum.size(); ++k) twice += at.v[k] * momentum[k];
     most = std::max(most, twice / 2);
   });
-  Kept result{outcome.status.ok(), first - last, 100 * (first - last) / most, false, 0, {}, {}};
+  EnergyFound result{outcome.status.ok(), first - last, 100 * (first - last) / most, false, 0, {}, {}};
   const std::regex pattern(" has (lost|invented) ([0-9.e+-]+) J .*, ([0-9.e+]+) % of .*should stay as it is; (.*)");
   for (const std::string& notice : outcome.notices) {
     std::smatch found;
@@ -51,7 +51,7 @@ Kept kept(const Scene& scene, const Settings& settings) {
   return result;
 }
 
-void expect_as_it_is(const Kept& of) {
+void expect_as_it_is(const EnergyFound& of) {
   constexpr double kBand = 0.3;  // percent: the largest kinetic energy is looked for at every fourth step
   EXPECT_EQ(of.told, std::abs(of.percent) > kTold) << of.percent << ' ' << of.said;
   if (of.told) {
@@ -68,7 +68,7 @@ Scene free_body() {
   return scene;
 }
 
-Scene heavy_top() {
+Scene spun_top() {
   Scene scene;
   scene.gravity = {0, 0, -9.81};
   Body top;
@@ -100,10 +100,10 @@ Scene on_law(const char* law) {
 // One turn shows nothing in most of these, ten seconds do.
 TEST(EnergyBalance, what_adds_up_is_told_as_it_is) {
   int told = 0, silent = 0;
-  for (const Scene& scene : {free_body(), heavy_top(), scene_of("gimbal_pendulum"), on_law("40*x + 30*x^3")})
+  for (const Scene& scene : {free_body(), spun_top(), scene_of("gimbal_pendulum"), on_law("40*x + 30*x^3")})
     in_every_way(2e-3, 6, [&](Settings settings) {
       settings.rtol = 1e-5;
-      const Kept of = kept(scene, settings);
+      const EnergyFound of = kept(scene, settings);
       if (!of.ok) return;
       expect_as_it_is(of);
       ++(of.told ? told : silent);
@@ -115,7 +115,7 @@ TEST(EnergyBalance, what_adds_up_is_told_as_it_is) {
 TEST(EnergyBalance, what_is_invented_is_told_too) {
   Settings settings = dynamics("rA", 1e-3, 20);
   settings.integrator = "half_implicit";
-  const Kept of = kept(free_body(), settings);
+  const EnergyFound of = kept(free_body(), settings);
   EXPECT_LT(of.percent, -10);
   expect_as_it_is(of);
   EXPECT_THAT(of.said, HasSubstr("half_implicit has invented"));
@@ -124,10 +124,10 @@ TEST(EnergyBalance, what_is_invented_is_told_too) {
 TEST(EnergyBalance, the_step_that_is_offered_keeps_it) {
   const std::regex pattern("a step below ([0-9.e-]+) s, or error control, keeps it to 6 %");
   int offered = 0;
-  for (const Scene& scene : {free_body(), heavy_top(), scene_of("steel_pendulum"), on_law("40*x + 30*x^3")})
+  for (const Scene& scene : {free_body(), spun_top(), scene_of("steel_pendulum"), on_law("40*x + 30*x^3")})
     in_every_way(4e-3, 2, [&](Settings settings) {
       if (integrators().require(settings.integrator).controls_error) return;
-      const Kept coarse = kept(scene, settings);
+      const EnergyFound coarse = kept(scene, settings);
       std::smatch found;
       if (!coarse.ok || !std::regex_search(coarse.remedy, found, pattern)) return;
       settings.step = 0.99 * std::stod(found[1]);
@@ -143,7 +143,7 @@ TEST(EnergyBalance, error_control_is_told_of_as_well) {
   for (const char* integrator : {"dopri5", "dop853", "radau5"}) {
     Settings settings = dynamics("rA", 1e-3, 60);
     settings.integrator = integrator, settings.rtol = 1e-2;
-    const Kept of = kept(scene_of("simple_pendulum"), settings);
+    const EnergyFound of = kept(scene_of("simple_pendulum"), settings);
     EXPECT_TRUE(of.ok);
     expect_as_it_is(of);
     if (!of.told) continue;
@@ -156,7 +156,7 @@ TEST(EnergyBalance, error_control_is_told_of_as_well) {
 }
 
 TEST(EnergyBalance, is_that_of_each_mechanism) {
-  Scene both = heavy_top();
+  Scene both = spun_top();
   Body large = free_body().bodies[0];
   large.name = "large", large.inertia *= 1e4, large.angular_velocity = {0, 0, 1}, large.position = {9, 0, 0};
   both.gravity.setZero(), both.bodies[0].angular_velocity = {3, 0, 20};
@@ -165,7 +165,7 @@ TEST(EnergyBalance, is_that_of_each_mechanism) {
   alone.bodies.pop_back();
   Settings settings = dynamics("rp", 1e-3, 3);
   settings.integrator = "half_implicit";
-  const Kept of_alone = kept(alone, settings), of_both = kept(both, settings);
+  const EnergyFound of_alone = kept(alone, settings), of_both = kept(both, settings);
   ASSERT_TRUE(of_alone.told && of_both.told) << of_alone.percent;
   expect_as_it_is(of_alone);
   EXPECT_NEAR(of_both.told_percent, of_alone.told_percent, 0.1);
@@ -178,7 +178,7 @@ TEST(EnergyBalance, is_that_of_each_mechanism) {
 TEST(EnergyBalance, is_said_where_a_run_stops) {
   Settings settings = dynamics("rA", 1e-3, 400);
   settings.integrator = "dopri5", settings.rtol = 1e-2;
-  const Kept of = kept(scene_of("simple_pendulum"), settings);
+  const EnergyFound of = kept(scene_of("simple_pendulum"), settings);
   EXPECT_FALSE(of.ok);
   EXPECT_TRUE(of.told);
   EXPECT_THAT(of.said, HasSubstr("dopri5 has invented"));
@@ -188,7 +188,7 @@ TEST(EnergyBalance, is_said_where_a_run_stops) {
 TEST(EnergyBalance, what_is_late_is_not_lost) {
   Settings settings = dynamics("rA", 1e-2, 0.1);
   settings.integrator = "implicit_euler";
-  const Kept of_few = kept(scene_of("simple_pendulum"), settings);
+  const EnergyFound of_few = kept(scene_of("simple_pendulum"), settings);
   EXPECT_GT(of_few.percent, 1.5 * kTold);
   EXPECT_FALSE(of_few.told);
 }
@@ -206,7 +206,7 @@ TEST(EnergyBalance, rest_loses_nothing) {
   sprung.gravity = {9.81, 0, 0};
   for (const Scene& scene : {hanging, sprung})
     in_every_way(1e-2, 1, [&](const Settings& settings) {
-      const Kept of = kept(scene, settings);
+      const EnergyFound of = kept(scene, settings);
       EXPECT_TRUE(of.ok);
       EXPECT_FALSE(of.told) << of.said;
     });
@@ -218,7 +218,7 @@ TEST(EnergyBalance, of_what_is_driven_or_damped_nothing_is_known) {
     settings.integrator = "generalized_alpha";
     settings.parameters["spectral_radius"] = 0;
     EXPECT_FALSE(kept(on_law(law), settings).told) << law;
-    const Kept of = kept(on_law("200*x"), settings);
+    const EnergyFound of = kept(on_law("200*x"), settings);
     EXPECT_TRUE(of.told) << of.percent;
   }
 }
