@@ -6,8 +6,10 @@
 namespace poinsot::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 // A body that a drag stops within a hundredth of a step, and one that falls beside it.
 Scene stopped(double drag) {
@@ -67,6 +69,39 @@ TEST_P(StiffDamper, WhatRingsIsTold) {
   EXPECT_THAT(r.outcome.notices[1], HasSubstr("radau5"));
   EXPECT_THAT(run(scene_of("double_pendulum"), s).outcome.notices, IsEmpty());
   EXPECT_THAT(run(stopped(1), s).outcome.notices, IsEmpty());
+}
+
+// A body that is driven along a guide as if by a blow, without any damper or spring.
+Scene driven_by_a_blow() {
+  Scene scene;
+  scene.name = "driven by a blow";
+  Body& sled = scene.bodies.emplace_back();
+  sled.name = "sled";
+  sled.mass = 1;
+  sled.inertia = Vector3(0.1, 0.2, 0.3).asDiagonal();
+  sled.position = {1, 0, 0};
+  Joint& guide = scene.joints.emplace_back();
+  guide.name = "guide", guide.type = JointType::translational, guide.j = 0;
+  guide.axis = Vector3::UnitX();
+  Driver& leg = scene.drivers.emplace_back();
+  leg.name = "leg", leg.type = DriverType::distance, leg.j = 0;
+  leg.value = Expression::parse("1.01 + 0.01*tanh((t - 0.05)/0.0004)");
+  return scene;
+}
+
+TEST_P(StiffDamper, WhatRingsAcrossConstraintsIsPutDownToNone) {
+  Settings s = dynamics(std::get<1>(GetParam()), 1e-3, 0.2, 0.1);
+  s.integrator = std::get<0>(GetParam());
+  const auto told = [&] {
+    const Recorded r = run(driven_by_a_blow(), s);
+    EXPECT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    return fmt::format("{}", fmt::join(r.outcome.notices, "\n"));
+  };
+  EXPECT_THAT(told(), AllOf(Not(HasSubstr("damper")), HasSubstr("across the constraints")));
+  s.step = 1e-5, s.tolerance = 1e-11 / (s.step * s.step);
+  EXPECT_THAT(told(), Not(HasSubstr("across")));
+  s.integrator = "radau5";
+  EXPECT_THAT(told(), IsEmpty());
 }
 
 }  // namespace

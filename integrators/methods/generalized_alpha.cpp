@@ -99,7 +99,8 @@ class GeneralizedAlpha : public FixedSteps {
     if (open && form_ == Form::stabilized2 && settings_.retry) status = iterate_at_index3(t);
     if (!status.ok()) return status;
     end_step();
-    ringing_.watch(run_, x_.z, extrapolation_.before(), x_.q, t, h_);
+    ringing_.watch(run_, x_.z, extrapolation_.before(), x_.q, t, h_,
+                   [&](Vector& accelerations) { return keep_along(t, accelerations); });
     return status;
   }
 
@@ -162,6 +163,14 @@ class GeneralizedAlpha : public FixedSteps {
     corrects_velocity_ = true;
     if (status.ok()) tell_of_index3(t);
     return status;
+  }
+
+  // Of accelerations at the end of a step to t, what the constraints allow.
+  Status keep_along(double t, Vector& accelerations) {
+    problem_.set_position(t, span(x_.q));
+    problem_.set_velocity(span(x_.v));
+    if (Status status = consistent_.factor(t); !status.ok()) return status;
+    return consistent_.along_constraints(x_, span(accelerations));
   }
 
   void end_step() {

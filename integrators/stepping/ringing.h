@@ -1,6 +1,9 @@
 // Accelerations that turn round and change by more than their size within a step, step after step, are not those of the
 // motion, in any of the scene's mechanisms (core/mechanisms.h). Those of an oscillation that the steps resolve turn
 // round now and then.
+//
+// Along the constraints a stiff damper or spring rings. Across them no force does: there the steps themselves have kept
+// what they did not follow, of a start or of a change too sudden for them.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/index.h"
@@ -19,15 +23,17 @@ namespace poinsot {
 
 class Ringing {
  public:
-  explicit Ringing(const Problem& problem) : mechanism_(mechanisms(problem.model())) {
+  explicit Ringing(const Problem& problem) : mechanism_(mechanisms(problem.model())), change_(problem.nv()) {
     parts_.resize(mechanism_count(mechanism_));
     if (parts_.size() == 1) mechanism_.resize(1);  // at one go
   }
 
-  // A step of length h to (t, q) took the accelerations at the head of z_n to those of z. Tells it once.
+  // A step of length h to (t, q) took the accelerations at the head of z_n to those of z. Tells it once of either kind,
+  // told apart by keep_along(x), which leaves of accelerations at (t, q) what the constraints allow, or fails.
+  template <class KeepAlong>
   void watch(const Run& run, const Eigen::VectorXd& z, const Eigen::VectorXd& z_n, const Eigen::VectorXd& q, double t,
-             double h) {
-    if (told_ || mechanism_.empty()) return;
+             double h, KeepAlong&& keep_along) {
+    if ((told_along_ && told_across_) || mechanism_.empty()) return;
     const auto bodies = static_cast<Eigen::Index>(mechanism_.size());
     const Eigen::Index per_body = run.problem.nv() / bodies;
     for (Eigen::Index b = 0; b < bodies; ++b) {
@@ -42,13 +48,17 @@ class Ringing {
       const bool rings = of.along < 0 && of.change >= of.before &&
                          h * h * std::sqrt(of.change) >= kRounding * std::max(place(q, number), 1.0);
       of = {rings ? of.in_a_row + 1 : std::max(of.in_a_row - 1, 0)};
-      if (of.in_a_row >= kTold) return tell(run, number, t, h);
+      if (of.in_a_row < kTold) continue;
+      of.in_a_row = 0;
+      const double whole = keep_change(number, z, z_n);
+      if (keep_along(change_).ok()) tell(run, number, change_.norm() > kAlong * whole, t, h);
     }
   }
 
  private:
   static constexpr int kTold = 10;
   static constexpr double kRounding = 1e4 * std::numeric_limits<double>::epsilon();
+  static constexpr double kAlong = 0.1;  // of a change: what a force has to do with it
 
   struct Part {
     int in_a_row = 0;                          // but for a few
@@ -65,18 +75,36 @@ class Ringing {
     return std::sqrt(square);
   }
 
-  void tell(const Run& run, int mechanism, double t, double h) {
-    told_ = true;
+  // Of a mechanism, in change_; its size.
+  double keep_change(int mechanism, const Eigen::VectorXd& z, const Eigen::VectorXd& z_n) {
+    const auto bodies = static_cast<Eigen::Index>(mechanism_.size());
+    const Eigen::Index per_body = change_.size() / bodies;
+    change_.setZero();
+    for (Eigen::Index b = 0; b < bodies; ++b)
+      if (mechanism_[index(b)] == mechanism)
+        change_.segment(b * per_body, per_body) =
+            z.segment(b * per_body, per_body) - z_n.segment(b * per_body, per_body);
+    return change_.norm();
+  }
+
+  void tell(const Run& run, int mechanism, bool along, double t, double h) {
+    if (std::exchange(along ? told_along_ : told_across_, true)) return;
     run.tell(fmt::format(
         "up to t = {:.6g} s accelerations{} turn round and change by more than their size within a step, step after "
-        "step: a stiff damper or spring moves that h = {:g} s does not resolve, and what is made of it here dies out "
-        "by the factor spectral_radius a step; try integrator radau5 or a step that resolves it",
-        t, of_mechanism(run.problem.model(), mechanism_, mechanism), h));
+        "step{}dies out by the factor spectral_radius a step; try integrator radau5 or a step that resolves it",
+        t, of_mechanism(run.problem.model(), mechanism_, mechanism),
+        along ? fmt::format(": a stiff damper or spring moves that h = {:g} s does not resolve, and what is made of it "
+                            "here ",
+                            h)
+              : fmt::format(", across the constraints: before that something changed faster than h = {:g} s follows, "
+                            "and what it has left here in accelerations, reactions and velocities, not in positions, ",
+                            h)));
   }
 
   std::vector<int> mechanism_;  // of each body, or of all as one
   std::vector<Part> parts_;     // by mechanism
-  bool told_ = false;
+  Eigen::VectorXd change_;      // of accelerations
+  bool told_along_ = false, told_across_ = false;
 };
 
 }  // namespace poinsot
