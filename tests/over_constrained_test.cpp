@@ -299,6 +299,28 @@ TEST(OverConstrained, ARowThatDoesNotFollowAnyMoreStopsTheRun) {
   EXPECT_GE(compared, 25);
 }
 
+// What Newton's tolerance leaves rows that are kept off by adds up in those that follow from them. That is no
+// contradiction, and the smaller tolerance that is offered serves.
+TEST(OverConstrained, RowsThatAToleranceLeavesOffDoNotContradict) {
+  int stopped = 0;
+  in_every_way(0.1, 1, [&](Settings settings) {
+    settings.stopping = "relative";
+    settings.tolerance = 1e-3;
+    for (const Frames frames : {Frames::quarter_turns, Frames::random}) {
+      const Scene scene = loop({4, frames, true, true});
+      const Course coarse = move(scene, settings);
+      EXPECT_THAT(coarse.outcome.status.message, ::testing::Not(::testing::HasSubstr("contradict")));
+      if (coarse.outcome.status.failure != Failure::constraint_lost) continue;
+      ++stopped;
+      EXPECT_THAT(coarse.outcome.status.message, ::testing::HasSubstr("the tolerance of Newton's method"));
+      Settings finer = settings;
+      finer.tolerance = 1e-6;
+      EXPECT_NE(move(scene, finer).outcome.status.failure, Failure::constraint_lost);
+    }
+  });
+  EXPECT_GT(stopped, 0);
+}
+
 // Off by less than what stops a run, and in the record all the same.
 TEST(OverConstrained, RowsSetAsideCountAsViolated) {
   const Scene scene = twice_driven("t", "t + 0.001*t^5");

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLookedAgain = 1;  // rad, at the latest
 constexpr double kLost = 1e-5;      // of a body's size: far above what steps leave, far below what opens to the eye
-// In kinematics of what kept rows are off, which a tolerance leaves off: rows that follow from them add them up.
+// Of what kept rows are off, which a tolerance leaves off: rows that follow from them add them up.
 constexpr double kAsKept = 100;
 
 }  // namespace
@@ -103,16 +103,26 @@ Status OverConstrained::measure(double t, std::span<const double> a) {
     most_aside_ = std::max(most_aside_, off);
     if (const double part = off * by_allowed_[k]; part > most) most = part, worst = k;
   }
-  if (most <= 1 || (to_tolerance_ && std::abs(residual[worst]) <= kAsKept * kept_off()))
-    return rates_aside_ ? measure_rates(t, a) : Status{};
-  return with_settings(
-      {Failure::constraint_lost, t,
-       fmt::format("at t = {:.9g} s {} is violated by {}: it followed from the other constraints where the run "
-                   "began and was set aside, and does not hold with them any more; the constraints contradict one "
-                   "another from here on, and one of them has to go, or the steps leave them",
-                   t, describe_row(model(), aside_->rows()[worst]),
-                   describe_residual(model(), aside_->rows()[worst], std::abs(residual[worst]), 0))},
-      "try smaller steps or a smaller tolerance");
+  const auto go_on = [&] { return rates_aside_ ? measure_rates(t, a) : Status{}; };
+  if (most <= 1) return go_on();
+  const double off = std::abs(residual[worst]), kept = kept_off();
+  const bool left_by_tolerance = off <= kAsKept * kept;
+  if (left_by_tolerance && to_tolerance_) return go_on();
+  const std::string why =
+      left_by_tolerance
+          ? fmt::format(
+                "it follows from other constraints and was set aside, and the tolerance of Newton's method "
+                "leaves those off by up to {:.2g}",
+                kept)
+          : std::string(
+                "it followed from the other constraints where the run began and was set aside, and does not "
+                "hold with them any more; the constraints contradict one another from here on, and one of "
+                "them has to go, or the steps leave them");
+  const int row = aside_->rows()[worst];
+  return with_settings({Failure::constraint_lost, t,
+                        fmt::format("at t = {:.9g} s {} is violated by {}: {}", t, describe_row(model(), row),
+                                    describe_residual(model(), row, off, 0), why)},
+                       "try smaller steps or a smaller tolerance");
 }
 
 // By how much the rows that are kept are off at most, where they stand.
