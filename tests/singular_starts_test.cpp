@@ -148,7 +148,7 @@ TEST_P(SingularStarts, ADirectionDrivenFromOneTurnsAsItsVelocityLeads) {
   expect_right_or_named(starts);
 }
 
-// A distance of 0 says nothing of the way in which it grows.
+// A distance of 0 says nothing of the way in which it grows; velocities do.
 TEST_P(SingularStarts, ADistanceDrivenFromZeroIsRightOrRefusedByName) {
   std::vector<Start> starts;
   for (const bool driver : {false, true}) {
@@ -169,8 +169,8 @@ TEST_P(SingularStarts, ADistanceDrivenFromZeroIsRightOrRefusedByName) {
             add_constraint(start.scene, "leg", ConstraintType::D, 0, fmt::format("({})^2", law));
           }
           start.kinematics = guided;
-          start.may_stop = true;
-          if (leads && (guided || !sine)) start.way = way;
+          start.may_stop = driver;  // of no length where it begins
+          if (leads) start.way = way;
           starts.push_back(std::move(start));
         }
       }

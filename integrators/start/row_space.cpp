@@ -110,7 +110,8 @@ double RowSpace::left_of(std::size_t k) const {
 
 void RowSpace::distances(std::span<double> out) const {
   problem_->position_residual(out);
-  for (std::size_t k = 0; k < out.size(); ++k) out[k] /= lengths_[k];
+  for (std::size_t k = 0; k < out.size(); ++k)
+    if (out[k] != 0) out[k] /= lengths_[k];  // 0 also where the gradient has vanished
 }
 
 void RowSpace::rates(std::span<const double> v, std::span<double> residual, std::span<double> nu) {
