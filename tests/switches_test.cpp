@@ -1,6 +1,7 @@
 // Kinks and jumps of drivers and forces: found ahead, stepped onto by error control, told by fixed steps.
 #include <gmock/gmock.h>
 
+#include "core/scene_reader.h"
 #include "integrators/stepping/switch_times.h"
 #include "tests/support/controlled_ways.h"
 #include "tests/support/simulation.h"
@@ -275,6 +276,54 @@ TEST_P(Switches, AreTakenFromFixedStepsBySayingSo) {
     }
     s.end = s.every = 0.3;
     EXPECT_THAT(simulate(scene, s, {}).notices, IsEmpty()) << entry.name;
+  }
+}
+
+// A body of 2 kg at the origin with what a table has to do with it.
+Scene by_a_table(const char* rest) {
+  return parse_scene(fmt::format(R"json({{"scene": 1, "name": "by a table",
+      "bodies": [{{"name": "b", "mass": 2, "inertia": [1, 1, 1], "position": [0, 0, 0]}}],
+      "tables": {{"pulse": {{"points": [[0, 0], [4.999, 0], [5, 1000], [5.001, 0], [10, 0]]}},
+                 "way": {{"points": [[0, 0], [0.3, 0.5], [0.31, 0.49], [0.6, 0.1], [1, 1]]}}}},
+      {}}})json",
+                                 rest),
+                     "table.json");
+}
+
+// A pulse between points that are near to one another. Between them the spline is a cubic, of which Simpson's rule has
+// the integral exactly.
+TEST_P(Switches, PulsesOfTablesAreNotSteppedOver) {
+  const Scene scene = by_a_table(
+      R"json("forces": [{"type": "force", "body": "b", "point": [0, 0, 0], "force": ["pulse(t)", "0", "0"]}])json");
+  const Expression& force = std::get<PointForce>(scene.forces[0]).force[0];
+  const std::vector<double> points{0, 4.999, 5, 5.001, 10};
+  double v = 0;
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    const double a = points[k - 1], b = points[k];
+    v += (b - a) / 6 * (force.at(a).f + 4 * force.at((a + b) / 2).f + force.at(b).f) / 2;
+  }
+  const Recorded r = run(scene, settings(1e-8, 10, 10));
+  ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+  EXPECT_NEAR(r.samples.back().bodies[0].rd.x(), v, 1e-6 * std::abs(v));
+  EXPECT_THAT(fmt::format("{}", fmt::join(r.outcome.notices, "\n")), ::testing::Not(HasSubstr("singular")));
+}
+
+// Tables have no kinks: steps of fixed length lose nothing at their points.
+TEST_P(Switches, TablesLeadAsTheyAre) {
+  const Scene scene = by_a_table(
+      R"json("constraints": [{"type": "CD", "bodies": ["ground", "b"], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "c": [1, 0, 0], "f": "way(t)"}])json");
+  const Expression& way = scene.constraints[0].f;
+  for (const bool controlled : {true, false}) {
+    Settings s = settings(1e-8, 1, 0.1);
+    if (!controlled) s.integrator = "rattle", s.step = 1e-3, s.tolerance = 1e-8;
+    const Recorded r = run(scene, s);
+    ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+    ASSERT_EQ(r.samples.size(), 11u);
+    for (const Snapshot& sample : r.samples) {
+      EXPECT_NEAR(sample.bodies[0].r.x(), way.at(sample.t).f, 1e-6);
+      EXPECT_NEAR(sample.bodies[0].rd.x(), way.at(sample.t).fd, 1e-5);
+    }
+    EXPECT_THAT(fmt::format("{}", fmt::join(r.outcome.notices, "\n")), ::testing::Not(HasSubstr("kink")));
   }
 }
 

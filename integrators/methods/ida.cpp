@@ -228,12 +228,7 @@ class Session {
     }
     if (Status status = passing_->start(at_); !status.ok()) return status;
     if (before_.known && before_.t < at_.t) passing_->expect(before_.t, span(before_.a), last_.way + way_, consistent_);
-    if (!std::exchange(told_, true)) {
-      run_.tell(fmt::format(
-          "at t = {:.6g} s, as beside a singular position, steps of ida come to nothing: those of {} lead on "
-          "from such places",
-          at_.t, dop853_pair().name));
-    }
+    const double from = at_.t;
     by_singular_ = false;
     int steps = 0;
     since_pass_ = 0;
@@ -243,8 +238,15 @@ class Session {
       return since_pass_ > kFar || (!by_singular_ && ++steps == kSteps);
     });
     at_ = passing_->state();
+    if (!std::exchange(told_, true)) tell_passage(from);
     if (!status.ok()) return status;
     return renew();
+  }
+
+  // Whether a singular position was in the way the steps over the place have seen.
+  void tell_passage(double from) {
+    run_.tell(fmt::format("at t = {:.6g} s{} steps of ida come to nothing: those of {} lead on from such places", from,
+                          by_singular_ ? ", as beside a singular position," : "", dop853_pair().name));
   }
 
   // Makes the motion at a time within the last step the state.
