@@ -343,6 +343,15 @@ TEST(OverConstrained, StartsThatLeadNowhereAreRefusedByName) {
       EXPECT_TRUE(m.end().empty());
     });
   }
+  // So near to it that rank does not tell it apart that is said, not that it is one.
+  for (const double angle : {1e-7, 1e-5}) {
+    in_every_way(1e-3, 0.1, [&](const Settings& settings) {
+      const Course near = move(posts(2, angle, 0, false), settings), beside = move(posts(2, 1e-3, 0, false), settings);
+      EXPECT_THAT(near.outcome.status.message, ::testing::HasSubstr("or within 1e-04 rad"));
+      EXPECT_THAT(near.outcome.status.message, ::testing::HasSubstr("start beside it, by 1e-03 or more"));
+      EXPECT_TRUE(beside.outcome.status.ok()) << beside.outcome.status.message;
+    });
+  }
   // The remedies that are named.
   in_every_way(1e-3, 0.1, [&](const Settings& settings) {
     const Course beside = move(posts(1, 0.05, 0, true), settings), moving = move(posts(1, 0, -3, true), settings);

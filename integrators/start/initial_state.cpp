@@ -20,6 +20,7 @@
 #include "integrators/start/rank.h"
 #include "integrators/start/regular_beside.h"
 #include "integrators/start/rough_pose.h"
+#include "integrators/start/row_space.h"
 #include "integrators/stepping/consistent.h"
 
 namespace poinsot {
@@ -243,13 +244,14 @@ class Assembler {
           "write what they amount to by other constraints");
     return with_remedy(
         Failure::singular_position, 0,
-        fmt::format("the initial pose is a singular position of the mechanism, and the initial velocities do not lead "
-                    "away from it: singular here: {}; {}",
-                    names(rank.singular),
+        fmt::format("the initial pose is a singular position of the mechanism, or within {:.0e} rad or of the bodies' "
+                    "sizes of one, and the initial velocities do not lead away from it: singular here: {}; {}",
+                    10 * kIndependent, names(rank.singular),
                     rank.singular.front().others.empty() && rank.singular.size() == 1
                         ? "its gradient vanishes, so that it constrains nothing here"
                         : "what the constraints leave free here and what they leave free beside it differ"),
-        "start beside it, or with a velocity along the branch that is meant");
+        fmt::format("start beside it, by {:.0e} or more, or with a velocity along the branch that is meant",
+                    100 * kIndependent));
   }
 
   // Rates are found from the constraints alone, and are rounding where a row is all but dependent on the others.
