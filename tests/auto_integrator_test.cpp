@@ -197,57 +197,6 @@ TEST(AutoIntegrator, ExplicitMethodsSayThatAMotionIsStiff) {
   }
 }
 
-// A sled on a guide that a spring holds, moving at 1 m/s to begin with.
-Scene sprung_sled(double stiffness, double damping) {
-  Scene scene;
-  Body sled;
-  sled.name = "sled";
-  sled.mass = 1;
-  sled.inertia = Vector3(0.1, 0.2, 0.3).asDiagonal();
-  sled.position = {1, 0, 0}, sled.velocity = {1, 0, 0};
-  scene.bodies.push_back(sled);
-  Joint guide;
-  guide.type = JointType::translational;
-  guide.j = 0;
-  guide.axis = {1, 0, 0};
-  scene.joints.push_back(guide);
-  Spring spring;
-  spring.i = kGround, spring.j = 0;
-  spring.stiffness = stiffness, spring.damping = damping;
-  spring.length = 1;
-  scene.forces.push_back(spring);
-  return scene;
-}
-
-// An oscillation that dampers have taken out of a motion, at tolerances at which its rounding, not stability, holds
-// steps.
-TEST(AutoIntegrator, ExplicitMethodsSayThatStepsFollowADecayedOscillation) {
-  constexpr double kDamping = 1e3, kMass = 1;  // its part decays as exp(-t c/2m)
-  int ways = 0;
-  for (const char* integrator : {"dopri5", "dop853"})
-    for (const std::string& formulation : formulation_names())
-      for (const double rtol : {1e-8, 1e-10}) {
-        SCOPED_TRACE(fmt::format("{} {} {}", integrator, formulation, rtol));
-        Settings settings = controlled(integrator, formulation, rtol, 0.1, 0.1);
-        const Scene scene = sprung_sled(1e8, kDamping);
-        double told_at = 0;
-        const Outcome outcome = simulate(scene, settings, {}, [&](const std::string& notice) {
-          EXPECT_THAT(notice, HasSubstr("decayed"));
-          EXPECT_THAT(notice, HasSubstr("radau5"));
-          const auto at = notice.find("t = ");
-          if (at != std::string::npos) told_at = std::stod(notice.substr(at + 4));
-        });
-        ASSERT_TRUE(outcome.status.ok()) << outcome.status.message;
-        EXPECT_EQ(outcome.notices.size(), 1u);
-        EXPECT_GT(told_at, -0.8 * std::log(rtol) * 2 * kMass / kDamping);
-        EXPECT_LT(told_at, -1.6 * std::log(rtol) * 2 * kMass / kDamping);
-        settings.end = 0.03;
-        EXPECT_THAT(simulate(sprung_sled(1e8, 0), settings, {}).notices, IsEmpty());
-        ++ways;
-      }
-  EXPECT_EQ(ways, 12);
-}
-
 // Every model with no options, against a method of another kind.
 TEST(AutoIntegrator, ReachesAMillionthOnEveryModel) {
   int compared = 0;

@@ -20,10 +20,8 @@ class ExplicitRungeKutta final : public Integrator {
     if (Status status = method.start(run.state); !status.ok()) return status;
     bool told = false;
     return controlled_run(method, pair_.rule, run, clock, [&] {
-      if (!told && (method.stiff() || method.long_held_by_the_decayed())) {
-        run.tell(stiffness_notice(method));
-        told = true;
-      }
+      if (method.stiff() && !told) run.tell(stiffness_notice(method));
+      told = told || method.stiff();
       return false;
     });
   }
@@ -31,10 +29,9 @@ class ExplicitRungeKutta final : public Integrator {
  private:
   std::string stiffness_notice(const ControlledPair& method) const {
     return fmt::format(
-        "the motion is stiff: at t = {:.3g} s the steps of {} are {:.2g} s long for the sake of {}, not of "
+        "the motion is stiff: at t = {:.3g} s the steps of {} are {:.2g} s long for the sake of stability, not of "
         "accuracy; the result is as accurate as asked for, but integrator radau5 takes longer steps",
-        method.state().t, pair_.name, method.last_step(),
-        method.stiff() ? "stability" : "a part of it that has decayed");
+        method.state().t, pair_.name, method.last_step());
   }
 
   const RungeKuttaPair& pair_;

@@ -170,14 +170,11 @@ void ExplicitStepper::test_stiffness() {
   const double apart = norm_(span(combined_), span(scale_));
   if (!(apart * rtol_ > kNoise)) return;
   const auto nv = static_cast<Eigen::Index>(nv_);
-  const auto q = combined_.head(nv).array() / scale_.tail(nv).array();
-  const auto v = combined_.tail(nv).array() / scale_.tail(nv).array();
-  const auto a = (k_.col(last_) - k_.col(last_ - 1)).tail(nv).array() / scale_.tail(nv).array();
-  const DifferenceProducts products{q.square().sum(), (q * v).sum(), v.square().sum(),
-                                    (q * a).sum(),    (v * a).sum(), a.square().sum()};
-  const double place = (combined_.head(nv).array() / scale_.head(nv).array()).matrix().norm();
+  const auto scaled = [&](auto&& x) { return x.tail(nv).array() / scale_.tail(nv).array(); };
+  const double size = scaled(combined_).square().sum();
+  const double along = (scaled(k_.col(last_) - k_.col(last_ - 1)) * scaled(combined_)).sum();
   combined_ = k_.col(last_) - k_.col(last_ - 1);
-  stiffness_.accepted(h_, h_ * norm_(span(combined_), span(scale_)) / apart, products, !(place * rtol_ > kNoise));
+  stiffness_.accepted(h_ * norm_(span(combined_), span(scale_)) / apart, size > 0 ? -h_ * along / size : 0);
 }
 
 Status ExplicitStepper::attempt(double to, Stages stages, double& error) {

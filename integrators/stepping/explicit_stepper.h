@@ -68,7 +68,6 @@ class ExplicitStepper {
   bool stiff() const { return stiffness_.stiff(); }
   // Whether accuracy holds them for a part of the motion that has decayed below the tolerance.
   bool held_by_the_decayed() const { return stiffness_.decayed_below(rtol_); }
-  bool long_held_by_the_decayed() const { return stiffness_.long_decayed_below(rtol_); }
   double last_step() const { return h_; }
   bool beside_singular() { return consistent_.beside_singular(); }  // since asked last
 
