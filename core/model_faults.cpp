@@ -36,7 +36,73 @@ double beyond(const Row& row, double t) {
   return std::abs(f) - (1 + kRounding) * most;
 }
 
+// Where in [from, to] |g| is largest, as far as numbers tell; the last time with a value, where some have none.
+template <class Function>
+double place_of_largest(const Function& g, double from, double to) {
+  constexpr int kParts = 32, kRounds = 12;
+  for (int round = 0; round < kRounds; ++round) {
+    const double part = (to - from) / kParts;
+    double most = -1, at = from;
+    for (int k = 0; k <= kParts; ++k) {
+      const double t = from + k * part, size = std::abs(g(t));
+      if (!std::isfinite(size)) {
+        at = t;
+        break;
+      }
+      if (size > most) most = size, at = t;
+    }
+    const double lower = std::max(from, at - part);
+    to = std::min(to, at + part), from = lower;
+  }
+  return from + (to - from) / 2;
+}
+
+// Whether |g| grows towards c by a factor in each of many halvings of the time that is left.
+template <class Function>
+bool grows_towards(const Function& g, double c) {
+  constexpr double kFactor = 1.3;  // a root's rate has 1.41
+  constexpr int kFirst = 6, kLast = 26;
+  for (int k = kFirst; k < kLast; ++k) {
+    const double before = std::abs(g(c - std::ldexp(c, -k))), next = std::abs(g(c - std::ldexp(c, -k - 1)));
+    if (!(before > 0 && next > kFactor * before)) return false;
+  }
+  return true;
+}
+
+// Of f and its rates up to a derivative, what grows without bound.
+std::string unbounded(const Expression& f, int derivatives, double from, double to) {
+  if (f.is_constant()) return {};
+  constexpr const char* kWhich[] = {"", "the first derivative of ", "the second derivative of "};
+  for (int k = 0; k <= derivatives; ++k) {
+    const auto g = [&](double t) {
+      const Jet2<double> at = f.at(t);
+      return k == 0 ? at.f : k == 1 ? at.fd : at.fdd;
+    };
+    const double c = place_of_largest(g, from, to);
+    if (c > 0 && grows_towards(g, c))
+      return fmt::format("{}'{}' grows without bound towards t = {:.9g} s", kWhich[k], f.text(), c);
+  }
+  return {};
+}
+
 }  // namespace
+
+std::string growing_without_bound(const Model& model, double from, double to) {
+  for (std::size_t k = 0; k < model.rows.size(); ++k) {
+    const Row& row = model.rows[k];
+    if (const std::string what = unbounded(row.f, row.type == RowType::pfaffian ? 1 : 2, from, to); !what.empty())
+      return fmt::format("{}: {}", describe_row(model, static_cast<int>(k)), what);
+  }
+  const auto of = [&](const auto& loads, auto components) -> std::string {
+    for (const auto& load : loads)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (const std::string what = unbounded((load.*components)[k], 0, from, to); !what.empty())
+          return fmt::format("force '{}', component {}: {}", load.name, "xyz"[k], what);
+    return {};
+  };
+  const std::string of_forces = of(model.point_forces, &PointForce::force);
+  return of_forces.empty() ? of(model.torques, &Torque::torque) : of_forces;
+}
 
 std::string beyond_any_position(const Model& model, double from, double to) {
   constexpr int kTimes = 32;

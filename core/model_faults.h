@@ -19,6 +19,11 @@ std::string fault_sentence(double t, const std::string& whose, const std::string
 // is none.
 std::string beyond_any_position(const Model& model, double from, double to);
 
+// "force 'push', component x: '1/(t - 0.5)^2' grows without bound towards t = 0.5 s", "driver 'slide': the rate of
+// 'sqrt(1 - t)' ...": the first function that does, as does the inverse of a power of the time that is left, at a time
+// in [from, to]; of constraints and drivers with the rates that rows need. Empty where none does.
+std::string growing_without_bound(const Model& model, double from, double to);
+
 // "driver 'spin' turns at 1e+100 rad/s, ...": the first driven angle that within [from, to] changes by more than a
 // tenth of a radian from one time before `end` to the next that numbers tell apart, so that no step is short enough for
 // it; empty where there is none.

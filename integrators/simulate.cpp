@@ -176,13 +176,13 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     const FlushSubnormals flush;
     outcome.status = integrator.make()->run(run);
   }
+  const bool explained = explain_by_functions(outcome.status, *problem, settings);
   if (keeps_energy && !outcome.status.ok() && state.t > 0 && model->torsions.empty()) {  // their turns are the method's
     problem->set_position(state.t, span(state.q));
     problem->set_velocity(span(state.v));
     energy.end({state.t, state.t, *problem, span(state.q), span(state.v), state.a(), state.lambda()});
   }
   if (keeps_energy) energy.conclude(run, integrator);
-  const bool explained = explain_by_functions(outcome.status, *problem, settings);
   const double largest = outcome.statistics.largest_rotation;
   if (outcome.status.ok() && largest > rotation.wrong) {
     notice(fmt::format(

@@ -28,6 +28,10 @@ bool explain_by_functions(Status& status, const Problem& problem, const Settings
     const bool at_once = !faster_than_times(problem.model(), 0, 0, settings.end).empty();
     status = with_remedy(Failure::rotation_too_large, t, fmt::format("at t = {:.9g} s {}", t, fast),
                          at_once ? "change the function" : "end before it, or change the function");
+  } else if (const std::string grows = growing_without_bound(problem.model(), std::max(t - near, 0.0), t + near);
+             !grows.empty()) {
+    status = with_remedy(Failure::not_finite, t, fmt::format("at t = {:.9g} s {}", t, grows),
+                         "end the run before, or change the function");
   } else if (const std::string why = overflowing(problem.model(), t); !why.empty()) {
     status = with_remedy(Failure::not_finite, t, fmt::format("at t = {:.9g} s a number overflows: {}", t, why),
                          "give it in units in which it is smaller");

@@ -10,8 +10,10 @@
 namespace poinsot::test {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 Scene bodies(int count) {
@@ -78,8 +80,8 @@ TEST(Mechanisms, growth_of_one_is_told_beside_another) {
       const Recorded grows = run(beside_a_large_motion(2100), settings);
       EXPECT_THAT(grows.outcome.notices,
                   ElementsAre(HasSubstr("velocities of the mechanism of body 'body 1' (/bodies/1) change to and fro"),
-                              HasSubstr("in the motion of the mechanism of body 'body 1' (/bodies/1), ")));
-      EXPECT_THAT(run(beside_a_large_motion(500), settings).outcome.notices, SizeIs(0));
+                              HasSubstr("the energy of the mechanism of body 'body 1' (/bodies/1) ")));
+      EXPECT_THAT(run(beside_a_large_motion(500), settings).outcome.notices, Not(Contains(HasSubstr("to and fro"))));
     }
 }
 
@@ -91,7 +93,7 @@ TEST(Mechanisms, ringing_of_one_is_told_beside_another) {
     const Recorded rings = run(beside_a_large_motion(1e5), settings);
     EXPECT_THAT(rings.outcome.notices,
                 ElementsAre(HasSubstr("accelerations of the mechanism of body 'body 1' (/bodies/1) turn round"),
-                            HasSubstr("of the motion of the mechanism of body 'body 1' (/bodies/1), ")));
+                            HasSubstr("the energy of the mechanism of body 'body 1' (/bodies/1) ")));
     EXPECT_THAT(run(beside_a_large_motion(100), settings).outcome.notices, SizeIs(0));
   }
 }

@@ -9,6 +9,7 @@
 namespace poinsot::test {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StrEq;
 
@@ -55,6 +56,18 @@ TEST(FasterThanTimes, IsADrivenAngleThatNoStepIsShortEnoughFor) {
   EXPECT_THAT(found("exp(100*t)", 0.4, 1), ::testing::Not(IsEmpty()));
   EXPECT_THAT(found("1e14*t", 0, 1), IsEmpty());
   EXPECT_THAT(found("1e20*t", 0, 1e-7), IsEmpty());
+}
+
+TEST(GrowingWithoutBound, IsSeenOfValuesAndRatesOnTheWayToThem) {
+  const auto found = [](const char* f) { return growing_without_bound(asking(ConstraintType::CD, f), 0.4995, 0.5005); };
+  EXPECT_THAT(found("1/(t - 0.5)^2"), StrEq("constraint 'row': '1/(t - 0.5)^2' grows without bound towards t = 0.5 s"));
+  EXPECT_THAT(found("3 + 1/(0.5003 - t)"), HasSubstr("grows without bound towards t = 0.5003 s"));
+  EXPECT_THAT(found("sqrt(0.5 - t)"), HasSubstr("the first derivative of 'sqrt(0.5 - t)' grows without bound"));
+  EXPECT_THAT(found("asin(2*t)"), HasSubstr("the first derivative of 'asin(2*t)' grows without bound"));
+  EXPECT_THAT(found("abs(t - 0.5)^1.5"), HasSubstr("the second derivative of 'abs(t - 0.5)^1.5' grows without bound"));
+  for (const char* bounded : {"t", "sin(1e4*t)", "exp(40*t)", "tanh(1e6*(t - 0.5))", "abs(t - 0.5)", "abs(t - 0.5)^3",
+                              "1/(t - 0.51)", "sqrt(0.6 - t)", "min(t, 0.5)", "1/(1e-9 + (t - 0.5)^2)"})
+    EXPECT_THAT(found(bounded), IsEmpty()) << bounded;
 }
 
 }  // namespace

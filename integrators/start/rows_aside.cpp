@@ -37,11 +37,12 @@ std::vector<int> not_said_twice(const Model& model, const std::vector<int>& asid
     if (is_plain(k)) said.emplace_back(Words(row(k)), k);
   std::ranges::sort(said, std::less());
   std::vector<int> twice, once;
-  for (const int k : kept)
-    if (is_plain(k))
-      for (const auto& [words, other] :
-           std::ranges::equal_range(said, Words(row(k)), std::less(), &std::pair<Words, int>::first))
-        twice.push_back(other);
+  for (const int k : kept) {
+    if (!is_plain(k)) continue;
+    const Words words(row(k));
+    auto at = std::ranges::lower_bound(said, words, std::less(), &std::pair<Words, int>::first);
+    for (; at != said.end() && at->first == words; ++at) twice.push_back(at->second);
+  }
   std::ranges::sort(twice);
   std::ranges::set_difference(aside, twice, std::back_inserter(once));
   return once;

@@ -121,13 +121,12 @@ void EnergyBalance::conclude(const Run& run, const IntegratorEntry& integrator) 
   run.statistics.energy_change = most;
   const double late = integrator.order == 1 ? kLate / static_cast<double>(run.statistics.steps) : 0;
   if (!told || most < kTold + late) return;
-  const bool lost = told->last < told->first;
   const std::string whose = of_mechanism(model, mechanisms(model), static_cast<int>(told - of_.data()));
   run.tell(fmt::format(
-      "{} has {} {:.3g} J {} the motion{}, {:.3g} % of {} largest kinetic energy: nothing drives or damps it, so its "
-      "energy should stay as it is; {}",
-      run.settings.integrator, lost ? "lost" : "invented", std::abs(told->last - told->first), lost ? "of" : "in",
-      whose, 100 * most, whose.empty() ? "the" : "its", remedy(run.settings, integrator, most)));
+      "{} leaves the energy{} {:.3g} J {} at t = {:.6g} s than at the start, by {:.3g} % of {} largest "
+      "kinetic energy: nothing drives or damps it, so it should stay as it is; {}",
+      run.settings.integrator, whose, std::abs(told->last - told->first), told->last < told->first ? "lower" : "higher",
+      run.state.t, 100 * most, whose.empty() ? "the" : "its", remedy(run.settings, integrator, most)));
 }
 
 }  // namespace poinsot
