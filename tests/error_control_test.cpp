@@ -220,15 +220,15 @@ TEST_P(ErrorControl, StopsWhereAForceGrowsWithoutBound) {
   torque.torque[2] = Expression::parse("100/(0.5-t)^3");
   scene.forces.emplace_back(torque);
   const Recorded r = run(scene, settings(1e-8, 1));
-  EXPECT_EQ(r.outcome.status.failure, Failure::step_size_too_small);
+  EXPECT_EQ(r.outcome.status.failure, Failure::not_finite);
   EXPECT_NEAR(r.outcome.status.time, 0.5, 0.01);
-  EXPECT_THAT(r.outcome.status.message, HasSubstr("grows without bound"));
+  EXPECT_THAT(r.outcome.status.message,
+              HasSubstr("force 'torque1' (/forces/0), component z: '100/(0.5-t)^3' grows without bound "
+                        "towards t = 0.5 s; end the run before"));
   EXPECT_THAT(r.outcome.status.message, ::testing::Not(HasSubstr("beside a singular position")));
   ASSERT_GT(r.samples.size(), 2u);  // those before are good
   EXPECT_LE(r.samples.back().t, r.outcome.status.time);
   EXPECT_TRUE(r.samples.back().bodies[0].A.allFinite());
-  EXPECT_THAT(r.outcome.status.message, HasSubstr("body '"));
-  EXPECT_THAT(r.outcome.status.message, HasSubstr("end before it"));
   EXPECT_TRUE(run(scene, settings(1e-8, 0.45)).outcome.status.ok());
 }
 
@@ -241,9 +241,11 @@ TEST_P(ErrorControl, StopsAFreeBodyWhoseForceGrowsWithoutBound) {
   push.body = 0, push.force[0] = Expression::parse("1/(0.5 - t)^2");
   scene.forces.emplace_back(push);
   const Recorded r = run(scene, settings(1e-8, 1));
-  EXPECT_EQ(r.outcome.status.failure, Failure::step_size_too_small);
+  EXPECT_EQ(r.outcome.status.failure, Failure::not_finite);
   EXPECT_NEAR(r.outcome.status.time, 0.5, 0.01);
-  EXPECT_THAT(r.outcome.status.message, HasSubstr("grows without bound"));
+  EXPECT_THAT(r.outcome.status.message,
+              HasSubstr("force 'force1' (/forces/0), component x: '1/(0.5 - t)^2' grows without bound "
+                        "towards t = 0.5 s; end the run before"));
   EXPECT_THAT(r.outcome.status.message, ::testing::Not(HasSubstr("singular")));
 }
 

@@ -78,7 +78,7 @@ std::string run_summary(const Scene& scene, const Settings& settings, const Outc
   text += fmt::format("largest violation of the constraints: position {:.2g}, velocity {:.2g}\n", s.violation.position,
                       s.violation.velocity);
   if (s.energy_change)
-    text += fmt::format("energy, which nothing adds to or takes from: off by {:.2g} of the largest kinetic energy\n",
+    text += fmt::format("energy of what nothing drives or damps: off by {:.2g} of the largest kinetic energy\n",
                         *s.energy_change);
   return text;
 }
