@@ -84,5 +84,16 @@ TEST(RowsAside, AreMeasuredUnlessTheyAreSaidTwice) {
   EXPECT_EQ(all, aside);
 }
 
+// What differs by less than one is not the same.
+TEST(RowsAside, OfOtherRightHandSidesAreMeasured) {
+  Scene scene = scene_of("free_body");
+  for (const double f : {0.25, 0.75, 0.25}) {
+    Constraint& row = scene.constraints.emplace_back();
+    row.type = ConstraintType::CD, row.j = 0, row.c = {1, 0, 0}, row.f = Expression(f);
+  }
+  const Model model = compile(scene);
+  EXPECT_THAT(not_said_twice(model, {1, 2}, {0}), ::testing::ElementsAre(1));
+}
+
 }  // namespace
 }  // namespace poinsot::test

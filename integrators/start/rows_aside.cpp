@@ -22,7 +22,7 @@ struct Words {
     auto to = numbers.begin();
     for (const Vector3* part : {&row.a_i, &row.b_i, &row.a_j, &row.s_i, &row.s_j, &row.c})
       to = std::copy_n(part->data(), 3, to);
-    *to = row.f.at(0).f;
+    *to = row.f.at(0.0).f;
   }
   auto operator<=>(const Words&) const = default;
 };
