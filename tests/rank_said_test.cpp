@@ -179,8 +179,8 @@ TEST(RankSaid, WhichReactionsAreUniqueIsSaidJointByJoint) {
   EXPECT_THAT(study::check_text(found),
               HasSubstr("reactions that redundant rows leave undetermined: joint 'joint1' (fz nx ny), joint 'joint2' "
                         "(fz nx ny), joint 'joint3' (fz nx ny), joint 'joint4' (fz nx ny)\n"));
-  for (const auto& components : study::check_json(found)["undetermined_components"])
-    EXPECT_THAT(components, ElementsAre("fz", "nx", "ny"));
+  const auto json = study::check_json(found);
+  for (const auto& components : json["undetermined_components"]) EXPECT_THAT(components, ElementsAre("fz", "nx", "ny"));
   EXPECT_THAT(study::check_json(found)["undetermined_reactions"],
               ElementsAre("joint 'joint1'", "joint 'joint2'", "joint 'joint3'", "joint 'joint4'"));
 }
