@@ -9,6 +9,7 @@
 
 #include "core/conserved_energy.h"
 #include "core/mechanisms.h"
+#include "tests/support/energy_course.h"
 #include "tests/support/every_way.h"
 #include "tests/support/loops.h"
 
@@ -23,27 +24,18 @@ constexpr double kTold = 6;  // percent
 
 struct EnergyFound {
   bool ok = false;
-  double lost = 0, percent = 0;  // J; of the largest kinetic energy
-  bool told = false;             // of the energy
-  double told_percent = 0;       // as the notice has it
+  double percent = 0;       // lost of the largest kinetic energy
+  bool told = false;        // of the energy
+  double told_percent = 0;  // as the notice has it
   std::string said, remedy;
 };
 
 EnergyFound kept(const Scene& scene, const Settings& settings) {
-  double first = 0, last = 0, most = 0;
-  const Outcome outcome = simulate(scene, settings, [&](const Sample& at) {
-    if (at.t == 0) first = at.problem.energy();
-    last = at.problem.energy();
-    std::vector<double> momentum(at.v.size());
-    at.problem.momentum(at.v, momentum);
-    double twice = 0;
-    for (std::size_t k = 0; k < momentum.size(); ++k) twice += at.v[k] * momentum[k];
-    most = std::max(most, twice / 2);
-  });
-  EnergyFound result{outcome.status.ok(), first - last, 100 * (first - last) / most, false, 0, {}, {}};
+  const EnergyCourse energy = energy_course(scene, settings);
+  EnergyFound result{energy.outcome.status.ok(), energy.percent_lost(), false, 0, {}, {}};
   const std::regex pattern(
       " ([0-9.e+-]+) J (lower|higher) at t = .*, by ([0-9.e+]+) % of .*should stay as it is; (.*)");
-  for (const std::string& notice : outcome.notices) {
+  for (const std::string& notice : energy.outcome.notices) {
     std::smatch found;
     if (!std::regex_search(notice, found, pattern)) continue;
     result.told = true, result.said = notice, result.remedy = found[4];

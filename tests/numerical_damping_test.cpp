@@ -4,7 +4,7 @@
 
 #include <regex>
 
-#include "tests/support/simulation.h"
+#include "tests/support/energy_course.h"
 
 namespace poinsot::test {
 namespace {
@@ -63,19 +63,10 @@ struct Lost {
 };
 
 Lost lost(const Scene& scene, const Settings& settings) {
-  double first = 0, last = 0, most = 0;
-  const Outcome outcome = simulate(scene, settings, [&](const Sample& at) {
-    if (at.t == 0) first = at.problem.energy();
-    last = at.problem.energy();
-    std::vector<double> momentum(at.v.size());
-    at.problem.momentum(at.v, momentum);
-    double twice = 0;
-    for (std::size_t k = 0; k < momentum.size(); ++k) twice += at.v[k] * momentum[k];
-    most = std::max(most, twice / 2);
-  });
-  EXPECT_TRUE(outcome.status.ok()) << outcome.status.message;
-  Lost result{100 * (first - last) / most, 0, {}};
-  for (const std::string& notice : outcome.notices) {
+  const EnergyCourse energy = energy_course(scene, settings);
+  EXPECT_TRUE(energy.outcome.status.ok()) << energy.outcome.status.message;
+  Lost result{energy.percent_lost(), 0, {}};
+  for (const std::string& notice : energy.outcome.notices) {
     std::smatch found;
     const std::regex pattern("by itself, ([0-9.e+]+) % .*: it damps in proportion to the step; (.*)");
     if (!std::regex_search(notice, found, pattern)) continue;
