@@ -157,9 +157,10 @@ class Examination {
     result_.rank_here = result_.rank;
   }
 
+  using UnitLoad = Eigen::Matrix<double, 6, 1>;  // on a body at its centre, its moment in the body's frame and size
+
   // A null vector loads a group where what its rows do to one of the bodies does not add up to nothing.
   void tell_undetermined(const Sparse& columns, const NullSpace& null) {
-    using Load = Eigen::Matrix<double, 6, 1>;  // on a body at its centre, its moment in the body's frame and size
     std::vector<Undetermined> of_groups(model_->groups.size());
     std::vector<char> loaded(model_->groups.size(), 0);
     const auto row = [&](int column) -> const Row& { return model_->rows[index(space_->rows()[index(column)])]; };
@@ -176,7 +177,7 @@ class Examination {
           const int group = row(first->first).group;
           const Row& of = row(first->first);
           const int body = of.j != kGround ? of.j : of.i;
-          Load load = Load::Zero();
+          UnitLoad load = UnitLoad::Zero();
           for (; first != z.end() && row(first->first).group == group; ++first)
             for (Sparse::InnerIterator it(columns, first->first); it; ++it)
               if (it.row() / 6 == body) load[it.row() % 6] += first->second * it.value();
@@ -195,11 +196,11 @@ class Examination {
     }
   }
   // The same at the point of the group, global; its moment still in the body's size.
-  Eigen::Matrix<double, 6, 1> at_point(const Group& group, int body, const Eigen::Matrix<double, 6, 1>& load) const {
+  UnitLoad at_point(const Group& group, int body, const UnitLoad& load) const {
     const BodyState& of = states_[index(body)];
     Vector3 point = group.point_j;
     if (group.j != kGround) point = states_[index(group.j)].r + states_[index(group.j)].A * group.point_j;
-    Eigen::Matrix<double, 6, 1> there = load;
+    UnitLoad there = load;
     there.tail<3>() =
         of.A * load.tail<3>() - (point - of.r).cross(Vector3(load.head<3>())) / space_->size_of_body(body);
     return there;
