@@ -203,7 +203,7 @@ TEST(BlockSchedule, OfALadderKeepsAStackThatDoesNotGrow) {
     block::Graph graph;
     graph.build(layout, pattern.node, fused);
     block::Schedule schedule;
-    EXPECT_TRUE(schedule.build(layout, graph, block::elimination_order(graph)));
+    EXPECT_TRUE(schedule.build(layout, graph, block::elimination_order(graph), block::Fronts::cheap));
     return schedule.stack_size;
   };
   EXPECT_LE(stack(600), 2 * stack(60));

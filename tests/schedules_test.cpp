@@ -11,12 +11,12 @@
 namespace poinsot::test {
 namespace {
 
-std::shared_ptr<const block::Schedule> of_chain(int bodies) {
+std::shared_ptr<const block::Schedule> of_chain(int bodies, block::Fronts kind = block::Fronts::cheap) {
   std::mt19937_64 random(1);
   const SampleSystem s = saddle_point(chain(bodies, 5), BodyKind::six, random);
   CscLayout layout;
   EXPECT_TRUE(layout.build(s.pattern).ok());
-  return block::schedule_of(layout, s.pattern.node, std::vector<int>(2 * static_cast<std::size_t>(bodies), -1));
+  return block::schedule_of(layout, s.pattern.node, std::vector<int>(2 * static_cast<std::size_t>(bodies), -1), kind);
 }
 
 TEST(Schedules, ServeTheNextOfTheSamePattern) {
@@ -24,6 +24,7 @@ TEST(Schedules, ServeTheNextOfTheSamePattern) {
     const auto first = of_chain(bodies);
     ASSERT_TRUE(first);
     EXPECT_EQ(of_chain(bodies + 1)->n, 11 * (bodies + 1));
+    EXPECT_NE(of_chain(bodies, block::Fronts::calm), first);
     EXPECT_EQ(of_chain(bodies), first);
   }
 }

@@ -55,6 +55,16 @@ class Eliminated {
     return std::ranges::any_of(graph_.bodies[g], [&](int b) { return counts(b, g) && !in_[index(b)]; });
   }
 
+  // Whether none of a body's groups would find all its bodies eliminated after it.
+  bool leads_to_none(int atom) const {
+    const int body = graph_.node[index(atom)];
+    if (graph_.constraint[index(atom)]) return false;
+    return std::ranges::none_of(graph_.groups[body], [&](int g) {
+      return !in_[index(g)] &&
+             std::ranges::all_of(graph_.bodies[g], [&](int b) { return b == body || in_[index(b)] || !counts(b, g); });
+    });
+  }
+
   bool may_be_pivot(int atom) {
     if (!graph_.constraint[index(atom)]) return true;
     const int g = graph_.node[index(atom)];

@@ -19,7 +19,7 @@ double cost(int p, int m) {
 
 }  // namespace
 
-FrontTree::FrontTree(const CscLayout& layout, const Graph& graph, std::span<const int> order)
+FrontTree::FrontTree(const CscLayout& layout, const Graph& graph, std::span<const int> order, Fronts kind)
     : nodes_(order.size()), place_(index(layout.n)), owner_(index(layout.n)) {
   unknown_.reserve(place_.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
@@ -32,7 +32,7 @@ FrontTree::FrontTree(const CscLayout& layout, const Graph& graph, std::span<cons
     nodes_[k].pivots = count(unknown_) - nodes_[k].first;
   }
   find_structure(layout);
-  amalgamate();
+  amalgamate(graph, order, kind);
   order_children();
 }
 
@@ -73,15 +73,22 @@ void FrontTree::adopt(Node& parent, int first, int last) {
   parent.last_child = last;
 }
 
-// A child goes into its parent where one larger front is cheaper than two.
-void FrontTree::amalgamate() {
+// A child goes into its parent where one larger front is cheaper than two, or for calm not much dearer if it is a
+// body's rotation and the parent holds rows of constraints.
+void FrontTree::amalgamate(const Graph& graph, std::span<const int> order, Fronts kind) {
   constexpr int kMostPivots = 8;  // as far as kernels of fixed size go
-  for (Node& node : nodes_) {
+  constexpr int kRotation = 3;    // a body's atoms with so many unknowns
+  constexpr double kDearer = 1.3;
+  for (int k = 0; k < size(); ++k) {
+    Node& node = nodes_[index(k)];
+    const bool rows = kind == Fronts::calm && graph.constraint[index(order[index(k)])];
     int before = -1;
     for (int c = node.child; c >= 0;) {
       Node& child = nodes_[index(c)];
       const int p = child.pivots + node.pivots, m = node.others;
-      if (p > kMostPivots || cost(p, m) > cost(child.pivots, child.others) + cost(node.pivots, m)) {
+      const bool of_body = !graph.constraint[index(order[index(c)])];
+      const double dearer = rows && of_body && child.pivots >= kRotation ? kDearer : 1;
+      if (p > kMostPivots || cost(p, m) > dearer * (cost(child.pivots, child.others) + cost(node.pivots, m))) {
         before = std::exchange(c, child.sibling);
         continue;
       }

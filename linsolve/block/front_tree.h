@@ -1,5 +1,11 @@
 // The tree of fronts of a block elimination (linsolve/block/schedule.h): which unknowns are eliminated together, and in
 // which order, by the matrix's structure and estimated costs.
+//
+// Where numbers are to stay calm, a body's rotation shares a front with rows that act on it though that is dearer. In a
+// frame that is turned against a slender body its inertia is nearly singular in a direction that no row or column
+// shows. Eliminated alone it leaves numbers larger by the ratio of the moments, which cancel when the rows of its joint
+// follow, and residuals of 1e-14; in one front pivots are chosen among the entries of both, and 3e-16 is left. A ladder
+// whose bodies need none of that would take 12 % more instructions.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +14,7 @@
 
 #include "core/index.h"
 #include "linsolve/block/graph.h"
+#include "linsolve/block/schedule.h"
 #include "linsolve/csc_layout.h"
 
 namespace poinsot::block {
@@ -28,7 +35,7 @@ class FrontTree {
   };
 
   // Atoms in the order of their elimination.
-  FrontTree(const CscLayout& layout, const Graph& graph, std::span<const int> order);
+  FrontTree(const CscLayout& layout, const Graph& graph, std::span<const int> order, Fronts kind);
 
   int size() const { return static_cast<int>(nodes_.size()); }
   const Node& operator[](int k) const { return nodes_[index(k)]; }
@@ -48,7 +55,7 @@ class FrontTree {
 
  private:
   void find_structure(const CscLayout& layout);
-  void amalgamate();
+  void amalgamate(const Graph& graph, std::span<const int> order, Fronts kind);
   void order_children();
   void adopt(Node& parent, int first, int last);
 

@@ -20,9 +20,13 @@ namespace {
 // what is gone when that is used up, not after every elimination beside them.
 class MinimumDegree {
  public:
-  // `early`: what a group that is_early() counts more than its degree.
-  MinimumDegree(const Graph& graph, int early)
-      : early_(early), eliminated_(graph), begin_(1, 0), atoms_(index(graph.atoms())) {
+  // What counts more than its degree: a group that is_early(), a body that leads_to_none().
+  MinimumDegree(const Graph& graph, int early, int leading_to_none)
+      : early_(early),
+        leading_to_none_(leading_to_none),
+        eliminated_(graph),
+        begin_(1, 0),
+        atoms_(index(graph.atoms())) {
     int top = 0;
     for (int a = 0; a < graph.atoms(); ++a) {
       const std::span<const int> neighbours = graph.neighbours[a];
@@ -62,6 +66,7 @@ class MinimumDegree {
     int weight = 0, degree = -1, mark = 0;
     int front = -2;  // the newest one it was in, by its pivot
     bool done = false, last = false;
+    bool waited = false;  // it was a body's turn, but it leads to none
   };
 
   std::span<const int> neighbours(int a) const {
@@ -78,8 +83,9 @@ class MinimumDegree {
   bool mark(int a) { return std::exchange(atoms_[index(a)].mark, stamp_) != stamp_; }
 
   void push(int a) {
-    atoms_[index(a)].degree = degree(a) + (eliminated_.is_early(a) ? early_ : 0);
-    queue_.push(entry(atoms_[index(a)].degree, a));
+    State& state = atoms_[index(a)];
+    state.degree = degree(a) + (eliminated_.is_early(a) ? early_ : 0) + (state.waited ? leading_to_none_ : 0);
+    queue_.push(entry(state.degree, a));
   }
 
   // Unknowns outside a that its elimination couples. Exact while a sees little, else an upper bound; hubs come
@@ -117,8 +123,15 @@ class MinimumDegree {
       const int a = static_cast<int>(first & UINT32_MAX);
       queue_.pop();
       if (atoms_[index(a)].done || first != entry(atoms_[index(a)].degree, a)) continue;
-      if (eliminated_.may_be_pivot(a)) return a;
-      atoms_[index(a)].degree = -1;  // comes back when something next to it is eliminated
+      State& state = atoms_[index(a)];
+      if (!eliminated_.may_be_pivot(a)) {
+        state.degree = -1;  // comes back when something next to it is eliminated
+      } else if (leading_to_none_ > 0 && !state.waited && eliminated_.leads_to_none(a)) {
+        state.waited = true;
+        push(a);
+      } else {
+        return a;
+      }
     }
     // Constraints on nothing but constraints: numbers will tell.
     return static_cast<int>(std::ranges::find(atoms_, false, &State::done) - atoms_.begin());
@@ -182,7 +195,7 @@ class MinimumDegree {
     atoms_[index(b)].neighbours = static_cast<int>(std::remove_if(first, last, gone) - first);
   }
 
-  int early_;
+  int early_, leading_to_none_;
   double products_ = 0;
   Eliminated eliminated_;
   std::vector<int> list_, begin_, pool_, front_;
@@ -196,12 +209,19 @@ class MinimumDegree {
 
 std::vector<int> elimination_order(const Graph& graph) {
   constexpr int kSmall = 500;  // atoms: beyond, one order is enough to find
-  MinimumDegree later(graph, 1);
-  std::vector<int> order = later.order();
-  if (graph.atoms() > kSmall) return order;
-  MinimumDegree any_time(graph, 0);
-  std::vector<int> other = any_time.order();
-  return any_time.products() <= later.products() ? other : order;
+  constexpr int kLeadingToNone = 8;
+  MinimumDegree later(graph, 1, 0);
+  std::vector<int> best = later.order();
+  if (graph.atoms() > kSmall) return best;
+  double products = later.products();
+  for (const int leading_to_none : {0, kLeadingToNone}) {
+    MinimumDegree any_time(graph, 0, leading_to_none);
+    std::vector<int> other = any_time.order();
+    if (any_time.products() > products) continue;
+    products = any_time.products();
+    best = std::move(other);
+  }
+  return best;
 }
 
 }  // namespace poinsot::block

@@ -16,6 +16,10 @@
 // entry a row it goes later, in small systems if the whole order is cheaper for it: factors of a ladder of thirty cells
 // on a moving body have 8 % less entries.
 //
+// Around a loop that stands on the ground bodies are as cheap to take one after the other from both ends, each with the
+// joint it leads to, as in any order; then no body of the loop stands alone for long (front_tree.h). In small systems a
+// body that no constraint could follow goes later, if the whole order is not dearer for it.
+//
 // No library's minimum degree can be told which vertex may be taken when. AMD's order of the same atoms has as little
 // fill, and takes 253 of the 400 atoms of constraints of a chain of 100 bodies before the rules let it, 421 of the 510
 // of a ladder. A mechanism may violate what the rules take for granted (a body without inertia); pivots are checked by

@@ -14,8 +14,8 @@ namespace {
 
 class Builder {
  public:
-  Builder(const CscLayout& layout, const Graph& graph, std::span<const int> order)
-      : layout_(layout), tree_(layout, graph, order), postorder_(tree_.postorder()) {}
+  Builder(const CscLayout& layout, const Graph& graph, std::span<const int> order, Fronts kind)
+      : layout_(layout), tree_(layout, graph, order, kind), postorder_(tree_.postorder()) {}
 
   bool build(Schedule& schedule) {
     number(schedule);
@@ -190,8 +190,8 @@ class Builder {
 
 }  // namespace
 
-bool Schedule::build(const CscLayout& layout, const Graph& graph, std::span<const int> order) {
-  return Builder(layout, graph, order).build(*this);
+bool Schedule::build(const CscLayout& layout, const Graph& graph, std::span<const int> order, Fronts kind) {
+  return Builder(layout, graph, order, kind).build(*this);
 }
 
 }  // namespace poinsot::block

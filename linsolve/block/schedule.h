@@ -46,6 +46,9 @@ struct Stretch {
   std::uint16_t from, to, length;
 };
 
+// What decides whether fronts become one: their cost, or also that numbers do not grow (front_tree.h).
+enum class Fronts { cheap, calm };
+
 struct Schedule {
   int n = 0;
   std::vector<Front> fronts;
@@ -61,7 +64,7 @@ struct Schedule {
   int largest_update = 0, largest_pivots = 0, largest_rows = 0;
 
   // false where a front is too large for the store's addressing; such a matrix is dense, not a mechanism.
-  bool build(const CscLayout& layout, const Graph& graph, std::span<const int> order);
+  bool build(const CscLayout& layout, const Graph& graph, std::span<const int> order, Fronts kind);
 };
 
 }  // namespace poinsot::block

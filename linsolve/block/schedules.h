@@ -16,6 +16,6 @@ namespace poinsot::block {
 // Of the matrix with unknown i in node node[i], where node g is fused with the body node fused[g] (−1: with none).
 // Null where Schedule::build refuses.
 std::shared_ptr<const Schedule> schedule_of(const CscLayout& layout, std::span<const int> node,
-                                            std::span<const int> fused);
+                                            std::span<const int> fused, Fronts kind);
 
 }  // namespace poinsot::block

@@ -14,7 +14,8 @@
 // where it served for less.
 //
 // Where the fresh one left more than rounding, solutions are looked at, too: all of them where it left much, else all
-// until they turn out good without refinement. Where too many did not, pivot blocks are inverted no more (pivots.h).
+// until they turn out good without refinement. Where too many did not, fronts are made for numbers to stay calm in them
+// (front_tree.h), and if that does not help, pivot blocks are inverted no more (pivots.h).
 //
 // Where this does not lead to a trustworthy answer the same values are handed over to klu, whose word counts, singular
 // included; so are all matrices without a saddle point's symmetric structure (kinematics). Each is counted, and
@@ -61,8 +62,8 @@ constexpr double kCancelled = 1e-6, kRounding = 1e-10;
 // kLike times farther away than where the last solution was seen to be good.
 constexpr double kLike = 2;
 constexpr int kCalm = 8, kSeldom = 7, kLongCalm = 15 * kSeldom, kRarely = 3 * kSeldom;
-// Where so many solutions needed refinement, and of those looked at one in so many, inverses of pivot blocks may be the
-// cause; to factor these in their place costs about as much as that refinement.
+// Where so many solutions needed refinement, and of those looked at one in so many, numbers that grow within the
+// elimination may be the cause, or inverses of pivot blocks; to do without costs less than that refinement.
 constexpr int kOften = 8, kShare = 10;
 constexpr int kWorthwhile = 64;  // good solutions, after which bodies first are examined
 constexpr int kRefinements = 3;  // each gains three digits or more of kFairResidual; beyond, they do not converge
@@ -115,7 +116,7 @@ class Solver final : public LinearSolver {
 
   bool order() {
     schedule_.reset();  // before another is made beside it
-    schedule_ = schedule_of(layout_, node_, fused_);
+    schedule_ = schedule_of(layout_, node_, fused_, fronts_);
     if (!schedule_) return false;
     factor_.resize(*schedule_);
     statistics_.factor_nonzeros = schedule_->factor_nonzeros;
@@ -139,7 +140,17 @@ class Solver final : public LinearSolver {
 
   LinearStatus factor_in_order() {
     if (answer_ == Answer::handed_over) return factor_by_klu();
-    if (refined_ >= kOften && refined_ * kShare > looked_at_) factor_.drop_inverses();
+    if (refined_ >= kOften && refined_ * kShare > looked_at_) {
+      if (fronts_ == Fronts::calm) {
+        factor_.drop_inverses();
+      } else {
+        fronts_ = Fronts::calm;
+        looked_at_ = refined_ = 0;
+        if (order()) return factor_fresh();
+        answer_ = Answer::handed_over;
+        return factor_by_klu();
+      }
+    }
     const bool examined = answer_ == Answer::trusted || answer_ == Answer::sampled || answer_ == Answer::checked;
     const Drift drift = factor_.factor(*schedule_, values_, examined);
     if (!examined || !drift.within(kFar)) return factor_fresh();
@@ -341,6 +352,7 @@ class Solver final : public LinearSolver {
   }
 
   CscLayout layout_;
+  Fronts fronts_ = Fronts::cheap;
   std::vector<int> node_, fused_;
   std::shared_ptr<const Schedule> schedule_;
   Factor factor_;
