@@ -1,5 +1,6 @@
 // Assembly: the Newton matrix into its slots, against triplets with a rebuild of the compressed matrix.
 #include <Eigen/SparseCore>
+#include <algorithm>
 
 #include "bench/bench_support.h"
 
@@ -36,6 +37,7 @@ void by_triplets(benchmark::State& state, const SceneSource& source, const Formu
   Eigen::SparseMatrix<double> matrix(pattern.n, pattern.n);
   PerBody figures(state, standing.problem->bodies());
   for (auto _ : state) {
+    std::ranges::fill(values, 0.0);  // blocks that share an entry do not share a place here
     standing.assemble(kind, slots, values);
     triplets.clear();
     for (const Block& block : pattern.blocks) {

@@ -122,7 +122,7 @@ class DerivativeChecker {
     for (const Block& block : pattern.blocks) {
       for (int c = 0; c < block.cols; ++c) slots.push_back((block.col + c) * pattern.n + block.row);
     }
-    Matrix m(pattern.n, pattern.n);
+    Matrix m = Matrix::Zero(pattern.n, pattern.n);
     const Vector a = Vector::Zero(problem_->nv()), lambda = multipliers();
     problem_->assemble(MatrixKind::exact, scale, {}, view(a), view(lambda), slots,
                        {m.data(), static_cast<std::size_t>(m.size())});

@@ -1,7 +1,7 @@
 // The matrices of a mechanism in formulation F on scalars T; what they are says formulations/problem.h.
 //
-// One traversal, write(), either records the blocks' places or adds their values in the same order, so that pattern and
-// values cannot disagree and nothing is looked up while assembling. The Newton matrix over the accelerations is
+// One traversal, write(), either records the blocks' places or writes their values in the same order, so that pattern
+// and values cannot disagree and nothing is looked up while assembling. The Newton matrix over the accelerations is
 //   ca M + (cv ∂/∂v) T⁻¹ + cq ∂/∂q of M a + Gᵀλ − Q, bordered by G and Gᵀ,
 // where T = T(dq) is the tangent operator of rA's step, the identity elsewhere.
 #pragma once
@@ -26,8 +26,14 @@ class MechanismMatrix {
 
   explicit MechanismMatrix(const Elements& elements) : second_(elements) {}
 
-  // See Problem::assemble. The sink takes block(row, col, matrix) calls; an empty dq (null) means T = I. Never inlined:
-  // it is called for places and for values, and would be compiled for each.
+  // Whether there are places that nothing but add() writes to, which are to hold zeros before: those of forces, and of
+  // pairs of bodies, which rows may name in either order.
+  static bool adds_only(const Elements& elements, MatrixKind kind) {
+    const bool exact = kind == MatrixKind::exact;
+    return (exact && !elements.pairs.empty()) || ((exact || kind == MatrixKind::simplified) && elements.has_forces());
+  }
+  // See Problem::assemble and formulations/blocks.h; an empty dq (null) means T = I. Never inlined: it is called for
+  // places and for values, and would be compiled for each.
   template <class Sink>
   [[gnu::noinline]] void write(C& c, MatrixKind kind, const StepScale& scale, const T* dq, const T* a, const T* lambda,
                                Sink& sink) {
@@ -78,7 +84,12 @@ class MechanismMatrix {
     const int r = b * kV, x = r + 3;
 
     const Eigen::Matrix<T, 1, 1> m(ca * c.mass(b));
-    for (int k = 0; k < 3; ++k) sink.block(r + k, r + k, m);
+    if (exact && c.elements->body_rr[index(b)]) {
+      sink.first(r, r, Mat3<T>(cq * second_.body(b).rr));
+      for (int k = 0; k < 3; ++k) sink.add(r + k, r + k, m);
+    } else {
+      for (int k = 0; k < 3; ++k) sink.first(r + k, r + k, m);
+    }
 
     XX xx = ca * F::mass(at, J);
     if (exact || (newton && F::simplified_keeps_rate_term)) xx += cv * F::inertia_rate_variation(at, rate, xd, J);
@@ -95,17 +106,16 @@ class MechanismMatrix {
         const auto& own = second_.body(b);
         const auto& W = at.W();
         K += W.transpose() * own.xx * W;
-        if (c.elements->body_rr[index(b)]) sink.block(r, r, Mat3<T>(cq * own.rr));
-        sink.block(r, x, Eigen::Matrix<T, 3, F::m>(cq * own.rx * W));
-        sink.block(x, r, Eigen::Matrix<T, F::m, 3>(cq * (own.xr_transposed * W).transpose()));
+        sink.first(r, x, Eigen::Matrix<T, 3, F::m>(cq * own.rx * W));
+        sink.first(x, r, Eigen::Matrix<T, F::m, 3>(cq * (own.xr_transposed * W).transpose()));
       }
       xx += cq * K;
     }
-    sink.block(x, x, xx);
+    sink.first(x, x, xx);
     if constexpr (F::normalized) {
       const int row = kV * c.elements->nb + c.elements->rows + b;
-      sink.block(row, x, Eigen::Matrix<T, 1, F::m>(at.p.transpose()));
-      sink.block(x, row, X(at.p));
+      sink.first(row, x, Eigen::Matrix<T, 1, F::m>(at.p.transpose()));
+      sink.first(x, row, X(at.p));
     }
   }
 
@@ -115,25 +125,25 @@ class MechanismMatrix {
     const auto& xx = second_.pair(k);
     const auto &Wi = c.at[index(pair.i)].W(), &Wj = c.at[index(pair.j)].W();
     const int ri = pair.i * kV, xi = ri + 3, rj = pair.j * kV, xj = rj + 3;
-    sink.block(xi, xj, XX(cq * (Wi.transpose() * xx.xx_ij * Wj)));
-    sink.block(xj, xi, XX(cq * (Wj.transpose() * xx.xx_ji * Wi)));
+    sink.add(xi, xj, XX(cq * (Wi.transpose() * xx.xx_ij * Wj)));
+    sink.add(xj, xi, XX(cq * (Wj.transpose() * xx.xx_ji * Wi)));
     if (pair.with_r < 0) return;
     const auto& sum = second_.pair_with_r(k);
     using RX = Eigen::Matrix<T, 3, F::m>;
     using XR = Eigen::Matrix<T, F::m, 3>;
     if (pair.rx) {
-      sink.block(ri, xj, RX(cq * sum.rx_ij * Wj));
-      sink.block(xj, ri, XR(cq * (sum.xr_ji_transposed * Wj).transpose()));
+      sink.add(ri, xj, RX(cq * sum.rx_ij * Wj));
+      sink.add(xj, ri, XR(cq * (sum.xr_ji_transposed * Wj).transpose()));
     }
     if (pair.xr) {
-      sink.block(rj, xi, RX(cq * sum.rx_ji * Wi));
-      sink.block(xi, rj, XR(cq * (sum.xr_ij_transposed * Wi).transpose()));
+      sink.add(rj, xi, RX(cq * sum.rx_ji * Wi));
+      sink.add(xi, rj, XR(cq * (sum.xr_ij_transposed * Wi).transpose()));
     }
     if (pair.rr) {
       const Eigen::Matrix<T, 1, 1> rr(cq * sum.rr);
       for (int l = 0; l < 3; ++l) {
-        sink.block(ri + l, rj + l, rr);
-        sink.block(rj + l, ri + l, rr);
+        sink.add(ri + l, rj + l, rr);
+        sink.add(rj + l, ri + l, rr);
       }
     }
   }
@@ -144,11 +154,11 @@ class MechanismMatrix {
     bool places_only = sink.places_only();  // no values: functions of the program are not asked for any
     template <class M>
     void body_block(int row_body, int col_body, const M& m) {
-      sink.block(row_body * kV, col_body * kV, m);
+      sink.add(row_body * kV, col_body * kV, m);
     }
     template <class M>
     void orientation_block(int row_body, int col_body, const M& m) {
-      sink.block(row_body * kV + 3, col_body * kV + 3, m);
+      sink.add(row_body * kV + 3, col_body * kV + 3, m);
     }
   };
 

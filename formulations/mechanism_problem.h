@@ -161,7 +161,7 @@ class MechanismProblem final : public Problem {
 
   void assemble(MatrixKind kind, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
                 std::span<const double> lambda, std::span<const int> slots, std::span<double> values) override {
-    std::fill(values.begin(), values.end(), 0.0);
+    if (Matrix::adds_only(*mechanism_.c.elements, kind)) std::fill(values.begin(), values.end(), 0.0);
     Blocks blocks{slots, values};
     matrix_.write(mechanism_.c, kind, scale, dq.empty() ? nullptr : dq.data(), a.data(), lambda.data(), blocks);
     check(blocks.slot == slots.data() + slots.size(), "an assembled matrix has the blocks of its pattern");

@@ -100,7 +100,8 @@ class Problem {
                              std::span<double> out) = 0;
 
   virtual Pattern pattern(MatrixKind kind) const = 0;
-  // Writes the matrix of `kind` at the current point into values (zeroed here):
+  // Writes the matrix of `kind` at the current point into values, where blocks that share an entry share a place;
+  // whatever the places of its blocks held before, others are to hold zeros:
   //   [acceleration M + velocity ∂(Ma+Gᵀλ−Q)/∂v] T⁻¹ + position ∂(Ma+Gᵀλ−Q)/∂q,  Gᵀ;   G, 0
   // with T = T(dq) the tangent of the retraction that led here by dq from where the step began. dq may be empty: T = I.
   virtual void assemble(MatrixKind kind, const StepScale& scale, std::span<const double> dq, std::span<const double> a,

@@ -1,7 +1,8 @@
 // The constraint rows' blocks in the matrices: G with its transpose, ∂(G v − ν)/∂q, and the velocity rows of a step.
 //
 // A row of G is the gradient (−g, e_i | g, e_j) of formulations/rows.h with e pulled back by Ŵᵀ; a coincidence's three
-// rows are ± [I, E(s) Ŵ]. A sink takes block(row, col, matrix) calls.
+// rows are ± [I, E(s) Ŵ]. A sink takes first(row, col, matrix) and
+// add(row, col, matrix) calls (formulations/blocks.h).
 #pragma once
 
 #include <vector>
@@ -39,7 +40,7 @@ class RowBlocks {
     if constexpr (F::normalized) {
       if (transposed) return;  // beside the inertia there
       for (int b = 0; b < c_.elements->nb; ++b) {
-        sink_.block(c_.elements->rows + b, b * kV + 3, Eigen::Matrix<T, 1, F::m>(c_.p(b).transpose()));
+        sink_.first(c_.elements->rows + b, b * kV + 3, Eigen::Matrix<T, 1, F::m>(c_.p(b).transpose()));
       }
     }
   }
@@ -57,7 +58,7 @@ class RowBlocks {
           x += T_inverse[index(body)].transpose() * psi - psi;
         }
       }
-      sink_.block(first_row + row, body * kV + 3, Eigen::Matrix<T, 1, F::m>(x.transpose()));
+      sink_.add(first_row + row, body * kV + 3, Eigen::Matrix<T, 1, F::m>(x.transpose()));
     };
     auto k = c_.elements->pfaffian.begin();
     RateRows<F, T>::velocity(c_, [&](const auto& variation, auto) {
@@ -73,8 +74,8 @@ class RowBlocks {
     const auto write = [&](const auto& variation, auto has_r) {
       const auto on = [&](int body, const Vec3<T>& g, const X& x) {
         if (body == kGround) return;
-        if constexpr (has_r) sink_.block(variation.row, body * kV, Eigen::Matrix<T, 1, 3>(g.transpose()));
-        sink_.block(variation.row, body * kV + 3, Eigen::Matrix<T, 1, F::m>(x.transpose()));
+        if constexpr (has_r) sink_.first(variation.row, body * kV, Eigen::Matrix<T, 1, 3>(g.transpose()));
+        sink_.first(variation.row, body * kV + 3, Eigen::Matrix<T, 1, F::m>(x.transpose()));
       };
       on(variation.i, -variation.g, variation.xi);
       on(variation.j, variation.g, variation.xj);
@@ -83,7 +84,7 @@ class RowBlocks {
     RateRows<F, T>::velocity(c_, write);
     if constexpr (F::normalized) {
       for (int b = 0; b < c_.elements->nb; ++b) {
-        sink_.block(c_.elements->rows + b, b * kV + 3,
+        sink_.first(c_.elements->rows + b, b * kV + 3,
                     Eigen::Matrix<T, 1, F::m>(Eigen::Map<const X>(c_.xd(b)).transpose()));
       }
     }
@@ -95,11 +96,11 @@ class RowBlocks {
     using GX = Eigen::Matrix<T, 3, F::m>;
     const Eigen::Matrix<T, 1, 1> one(sign);
     const GX x = sign * C::E_times(c_.s[index(point)], c_.at[index(body)].W());
-    for (int l = 0; l < 3; ++l) sink_.block(row + l, body * kV + l, one);
-    sink_.block(row, body * kV + 3, x);
+    for (int l = 0; l < 3; ++l) sink_.first(row + l, body * kV + l, one);
+    sink_.first(row, body * kV + 3, x);
     if (!transposed) return;
-    for (int l = 0; l < 3; ++l) sink_.block(body * kV + l, row + l, one);
-    sink_.block(body * kV + 3, row, Eigen::Matrix<T, F::m, 3>(x.transpose()));
+    for (int l = 0; l < 3; ++l) sink_.first(body * kV + l, row + l, one);
+    sink_.first(body * kV + 3, row, Eigen::Matrix<T, F::m, 3>(x.transpose()));
   }
   template <bool has_r>
   void gradient_blocks(int row, int body, const Vec3<T>& g, const Ambient& e, bool transposed) const {
@@ -107,12 +108,12 @@ class RowBlocks {
       Eigen::Matrix<T, kV, 1> column;
       column.template head<3>() = g;
       column.template tail<F::m>() = c_.at[index(body)].W().transpose() * e;
-      sink_.block(row, body * kV, Eigen::Matrix<T, 1, kV>(column.transpose()));
-      if (transposed) sink_.block(body * kV, row, column);
+      sink_.first(row, body * kV, Eigen::Matrix<T, 1, kV>(column.transpose()));
+      if (transposed) sink_.first(body * kV, row, column);
     } else {
       const X column = c_.at[index(body)].W().transpose() * e;
-      sink_.block(row, body * kV + 3, Eigen::Matrix<T, 1, F::m>(column.transpose()));
-      if (transposed) sink_.block(body * kV + 3, row, column);
+      sink_.first(row, body * kV + 3, Eigen::Matrix<T, 1, F::m>(column.transpose()));
+      if (transposed) sink_.first(body * kV + 3, row, column);
     }
   }
 

@@ -1,8 +1,8 @@
 // Solves A x = b for a sparse, square, in general unsymmetric A whose structure is known before its values.
 //
 // 1. analyze(pattern) is called once: it fixes the layout and does all symbolic work. state() becomes analyzed.
-// 2. The caller writes the values of A: it zeroes values(), then adds every block at the slots() (see
-// linsolve/pattern.h).
+// 2. The caller writes the values of A: every block at the slots() (see linsolve/pattern.h). What no block covers is
+// zero from the start, and stays so.
 // 3. factor() factorizes what values() holds, and values() holds it afterwards, though slots() may be others then.
 // state() becomes factored when it answers ok.
 // 4. solve(b) replaces b by A⁻¹ b, solve_transposed(b) by A⁻ᵀ b, as often as wanted, for the values of the last

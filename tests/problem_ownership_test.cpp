@@ -1,14 +1,20 @@
 // A problem refers to no vector of its caller's: whatever happens to q and v after they were set, it answers the same.
+// Nor do its matrices hang on what their values were before.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
+#include "core/index.h"
 #include "core/scene_reader.h"
 #include "formulations/registry.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
 namespace {
+
+constexpr MatrixKind kMatrixKinds[] = {MatrixKind::kinematic, MatrixKind::rates, MatrixKind::consistent,
+                                       MatrixKind::simplified, MatrixKind::exact};
 
 // Everything a problem can be asked where it stands.
 std::vector<double> answers(Problem& problem) {
@@ -29,8 +35,7 @@ std::vector<double> answers(Problem& problem) {
   add(n, [&](auto& out) { problem.constraint_forces(lambda, out); });
   add(n, [&](auto& out) { problem.equations_of_motion(a, lambda, out); });
   add(n + c, [&](auto& out) { problem.step_residual({1, 0.5, 0.25}, a, lambda, out); });
-  for (const MatrixKind kind :
-       {MatrixKind::kinematic, MatrixKind::rates, MatrixKind::consistent, MatrixKind::simplified, MatrixKind::exact}) {
+  for (const MatrixKind kind : kMatrixKinds) {
     std::vector<int> slots;
     int size = 0;
     for (const Block& block : problem.pattern(kind).blocks) {
@@ -56,26 +61,62 @@ std::vector<double> answers(Problem& problem) {
   return all;
 }
 
+// Of a formulation at t = 0.1 s, moving, off the constraints.
+class MovingProblem {
+ public:
+  MovingProblem(std::shared_ptr<const Model> model, const FormulationEntry& formulation)
+      : problem(formulation.make(model, {})), q(index(problem->nq())), v(index(problem->nv())) {
+    std::vector<BodyState> states;
+    for (const Body& body : model->bodies) {
+      BodyState& state = states.emplace_back();
+      state.r = body.position, state.A = body.orientation;
+      state.rd = Vector3(0.1, -0.2, 0.3), state.w = Vector3(-0.5, 0.7, 0.2);
+    }
+    problem->from_bodies(states, q, v);
+    problem->set_position(0.1, q);
+    problem->set_velocity(v);
+  }
+  const std::unique_ptr<Problem> problem;
+  std::vector<double> q, v;
+};
+
 TEST(ProblemOwnership, answers_do_not_depend_on_the_vectors_of_the_caller) {
   for (const char* name : {"knife_edge", "double_four_bar", "steel_pendulum", "andrews", "four_link"}) {
     const auto model = std::make_shared<const Model>(compile(scene_of(name)));
     for (const FormulationEntry& formulation : formulations()) {
-      const std::unique_ptr<Problem> problem = formulation.make(model, {});
-      std::vector<BodyState> states;
-      for (const Body& body : model->bodies) {
-        BodyState& state = states.emplace_back();
-        state.r = body.position, state.A = body.orientation;
-        state.rd = Vector3(0.1, -0.2, 0.3), state.w = Vector3(-0.5, 0.7, 0.2);
-      }
-      std::vector<double> q(static_cast<std::size_t>(problem->nq())), v(static_cast<std::size_t>(problem->nv()));
-      problem->from_bodies(states, q, v);
-      problem->set_position(0.1, q);
-      problem->set_velocity(v);
-      const std::vector<double> before = answers(*problem);
-      std::ranges::fill(q, std::numeric_limits<double>::quiet_NaN());
-      std::ranges::fill(v, std::numeric_limits<double>::quiet_NaN());
-      EXPECT_EQ(answers(*problem), before) << name << ' ' << formulation.name;
+      MovingProblem moving(model, formulation);
+      const std::vector<double> before = answers(*moving.problem);
+      std::ranges::fill(moving.q, std::numeric_limits<double>::quiet_NaN());
+      std::ranges::fill(moving.v, std::numeric_limits<double>::quiet_NaN());
+      EXPECT_EQ(answers(*moving.problem), before) << name << ' ' << formulation.name;
       for (const double x : before) ASSERT_TRUE(std::isfinite(x)) << name << ' ' << formulation.name;
+    }
+  }
+}
+
+TEST(ProblemOwnership, matrices_are_written_over_what_was_there) {
+  for (const char* name :
+       {"knife_edge", "double_four_bar", "steel_pendulum", "andrews", "four_link", "stewart_platform"}) {
+    const auto model = std::make_shared<const Model>(compile(scene_of(name)));
+    for (const FormulationEntry& formulation : formulations()) {
+      MovingProblem moving(model, formulation);
+      Problem& problem = *moving.problem;
+      const std::vector<double> ones(index(problem.nv() + problem.nc()), 1.0);
+      const std::span<const double> a = std::span(ones).first(index(problem.nv()));
+      const std::span<const double> lambda = std::span(ones).first(index(problem.nc()));
+      for (const MatrixKind kind : kMatrixKinds) {
+        const Pattern pattern = problem.pattern(kind);
+        std::vector<int> slots;
+        std::vector<double> once(index(pattern.n) * index(pattern.n), 0.0), again = once;
+        for (const Block& block : pattern.blocks)
+          for (int c = 0; c < block.cols; ++c) {
+            slots.push_back((block.col + c) * pattern.n + block.row);
+            std::fill_n(again.begin() + slots.back(), block.rows, std::numeric_limits<double>::quiet_NaN());
+          }
+        for (std::vector<double>* values : {&once, &again})
+          problem.assemble(kind, {1, 0.5, 0.25}, {}, a, lambda, slots, *values);
+        EXPECT_EQ(again, once) << name << ' ' << formulation.name << ' ' << static_cast<int>(kind);
+      }
     }
   }
 }

@@ -33,7 +33,7 @@ inline std::unique_ptr<Problem> make_problem(std::string_view formulation, const
 inline MatrixX assemble(Problem& problem, MatrixKind kind, const StepScale& scale, const VectorX& dq, const VectorX& a,
                         const VectorX& lambda) {
   const Pattern pattern = problem.pattern(kind);
-  MatrixX matrix(pattern.n, pattern.n);
+  MatrixX matrix = MatrixX::Zero(pattern.n, pattern.n);
   std::vector<int> slots;
   for (const Block& block : pattern.blocks) {
     for (int c = 0; c < block.cols; ++c) slots.push_back((block.col + c) * pattern.n + block.row);
