@@ -39,6 +39,15 @@ inline void unrolled(F&& f) {
   (std::make_integer_sequence<int, N>());
 }
 
+// Two sums of C vectors each, of which none waits for the other: term k goes to one of them, the first ones begin them.
+template <int k, int C>
+inline void add_to_one_of_two(Vec (&sums)[2][C], int c, Vec term) {
+  if constexpr (k < 2)
+    sums[k][c] = term;
+  else
+    sums[k % 2][c] += term;
+}
+
 // Number i is f(std::integral_constant<int, i>()).
 template <class F>
 inline Vec vector(F&& f) {

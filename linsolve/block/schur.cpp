@@ -223,9 +223,12 @@ bool Schur::invert_parts() {
 }
 
 void Schur::find_left() {
+  const int step = step_;
   for (int k = 0; k < singles_; ++k) {
-    const int column = columns_[index(k)] * step_;
-    for (int i = column; i < column + step_; i += kLanes) store(L_ + i, load(G_ + i) * inverse_[k]);
+    const int column = columns_[index(k)] * step;
+    const double *g = G_ + column, by = inverse_[k];
+    double* l = L_ + column;
+    for (int i = 0; i < step; i += kLanes) store(l + i, load(g + i) * by);
   }
   for (const Part& part : parts_)
     part_kernel(part.size).left(inverse_ + part.block, G_, L_, &columns_[index(part.column)], step_);

@@ -87,7 +87,7 @@ struct SchurFactors {
 template <int N, int U>
 [[gnu::flatten]] void multipliers(const SchurFactors& of, const double* b) {
   constexpr int C = padded(N) / kLanes, kStep = C * kLanes, kForces = padded(U) / kLanes;
-  Vec sum[2][C] = {}, x[2][C] = {}, w[2][kForces] = {};  // two sums, of which none waits for the other
+  Vec sum[2][C] = {}, x[2][C], w[2][kForces];
   const double* L = of.L;
   const auto take = [&](Vec(&to)[C], double by) {
     unrolled<C>([&](auto c) { to[c] += load(L + c * kLanes) * by; });
@@ -102,11 +102,11 @@ template <int N, int U>
   unrolled<C>([&](auto c) { store(of.lambda + c * kLanes, sum[0][c] + sum[1][c]); });
   unrolled<N>([&](auto k) {
     const double by = of.lambda[k] - b[of.row[k]];
-    unrolled<C>([&](auto c) { x[k % 2][c] += load(of.inverse + k * kStep + c * kLanes) * by; });
+    unrolled<C>([&](auto c) { add_to_one_of_two<k>(x, c, load(of.inverse + k * kStep + c * kLanes) * by); });
   });
   unrolled<C>([&](auto c) { store(of.lambda + c * kLanes, x[0][c] + x[1][c]); });
   unrolled<N>([&](auto k) {
-    unrolled<kForces>([&](auto c) { w[k % 2][c] += load(of.B + k * U + c * kLanes) * of.lambda[k]; });
+    unrolled<kForces>([&](auto c) { add_to_one_of_two<k>(w, c, load(of.B + k * U + c * kLanes) * of.lambda[k]); });
   });
   unrolled<kForces>([&](auto c) { store(of.forces + c * kLanes, w[0][c] + w[1][c]); });
 }
@@ -114,15 +114,17 @@ template <int N, int U>
 // L = G D⁻¹ for a block D of K, the columns `column` of G and L.
 template <int P>
 [[gnu::flatten]] void left(const double* inverse, const double* G, double* L, const int* column, int step) {
-  for (int row = 0; row < step; row += kLanes) {
+  int start[P];
+  unrolled<P>([&](auto a) { start[a] = column[a] * step; });
+  for (int row = 0; row < step; row += kLanes, G += kLanes, L += kLanes) {
     Vec g[P];
-    unrolled<P>([&](auto a) { g[a] = load(G + column[a] * step + row); });
+    unrolled<P>([&](auto a) { g[a] = load(G + start[a]); });
     unrolled<P>([&](auto b) {
       Vec sum = g[0] * inverse[b * P];
       unrolled<P>([&](auto a) {
         if constexpr (a > 0) sum += g[a] * inverse[b * P + a];
       });
-      store(L + column[b] * step + row, sum);
+      store(L + start[b], sum);
     });
   }
 }
