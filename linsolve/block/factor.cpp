@@ -20,16 +20,17 @@ template <int... P>
 constexpr auto eliminations(std::integer_sequence<int, P...>) {
   return std::array{&block::eliminate<P>...};
 }
-template <int... P>
+template <bool Moved, int... P>
 constexpr auto forwards(std::integer_sequence<int, P...>) {
-  return std::array{&block::forward<P>...};
+  return std::array{&block::forward<P, Moved>...};
 }
 template <bool Whole, int... P>
 constexpr auto backwards(std::integer_sequence<int, P...>) {
   return std::array{&block::backward<P, Whole>...};
 }
 constexpr auto kEliminate = eliminations(std::make_integer_sequence<int, kKernels>());
-constexpr auto kForward = forwards(std::make_integer_sequence<int, kKernels>());
+constexpr std::array kForward{forwards<false>(std::make_integer_sequence<int, kKernels>()),
+                              forwards<true>(std::make_integer_sequence<int, kKernels>())};
 constexpr std::array kBackward{backwards<false>(std::make_integer_sequence<int, kKernels>()),
                                backwards<true>(std::make_integer_sequence<int, kKernels>())};
 
@@ -114,23 +115,24 @@ Drift Factor::factor(const Schedule& s, std::span<const double> values, bool kee
 
 void Factor::solve(const Schedule& s, std::span<double> b) {
   const Front *const begin = s.fronts.data(), *const end = begin + s.fronts.size();
-  const std::ptrdiff_t ahead = store_.size() > kCached ? kAhead : end - begin;
+  const std::ptrdiff_t ahead = store_.size() > kCached ? std::min(kAhead, end - begin) : end - begin;
   const Pass pass{store_.data(), s.unknown.data(), s.other.data(), b.data(), t_.data()};
   const char* moved = moved_.data();
-  for (const Front* f = begin; f != end; ++f, ++moved) {
-    if (end - f > ahead) {
+  for (const Front *f = begin, *const fetched = end - ahead; f != end; ++f, ++moved) {
+    if (f < fetched) {
       const Front& next = f[ahead];
       fetch(pass.store + next.store + next.pivots * next.pivots, next.pivots * next.rows);
     }
-    kForward[kernel(f->pivots)](pass, *f, *moved ? order_.data() + f->first : nullptr);
+    kForward[index(*moved)][kernel(f->pivots)](pass, *f, order_.data() + f->first);
   }
-  for (const Front* f = end; f-- != begin;) {
-    if (f - begin >= ahead) {
+  const char* whole = whole_.data() + (end - begin);
+  for (const Front *f = end, *const fetched = begin + ahead; f-- != begin;) {
+    if (f >= fetched) {
       const Front& next = f[-ahead];
       fetch(pass.store + next.store, next.pivots * next.pivots);
       fetch(pass.store + next.store + next.pivots * (next.pivots + next.rows), next.pivots * next.others);
     }
-    kBackward[index(whole_[index(f - begin)])][kernel(f->pivots)](pass, *f);
+    kBackward[index(*--whole)][kernel(f->pivots)](pass, *f);
   }
 }
 

@@ -164,8 +164,8 @@ struct Pass {
   double *x, *t;
 };
 
-// `order` is null where no rows moved.
-template <int P>
+// Moved: rows are in another order than 0, 1, 2, …, in this one.
+template <int P, bool Moved>
 [[gnu::flatten]] void forward(const Pass& pass, const Front& f, const std::uint16_t* order) {
   const int p = P ? P : f.pivots, rows = f.rows;
   const double* L = pass.store + f.store + p * p;
@@ -173,11 +173,8 @@ template <int P>
   double *x = pass.x, *t = pass.t;
   if constexpr (P > 0) {
     double b[P];
-    unrolled<P>([&](auto k) { b[k] = x[own[k]]; });
-    if (order) {
-      reorder<P>(order, p, b, t);
-      unrolled<P>([&](auto k) { x[own[k]] = b[k]; });
-    }
+    unrolled<P>([&](auto k) { b[k] = x[own[Moved ? order[k] : k.value]]; });
+    if constexpr (Moved) unrolled<P>([&](auto k) { x[own[k]] = b[k]; });
     for (int row = 0; row < rows; row += kLanes) {
       Vec sum = load(L + row) * b[0];
       unrolled<P>([&](auto k) {
@@ -187,7 +184,7 @@ template <int P>
     }
   } else {
     double* b = t + rows;
-    for (int k = 0; k < p; ++k) b[k] = x[own[order ? order[k] : k]];
+    for (int k = 0; k < p; ++k) b[k] = x[own[Moved ? order[k] : k]];
     for (int k = 0; k < p; ++k) x[own[k]] = b[k];
     std::fill_n(t, rows, 0.0);
     for (int k = 0; k < p; ++k)
@@ -224,12 +221,12 @@ template <int P, bool Whole>
     }
     if (other != end) take(U, x[*other]);
     if constexpr (Whole) {
-      Vec b[2][C] = {};  // two sums, of which none waits for the other
+      Vec b[2][C];
       unrolled<P>([&](auto k) {
         const Vec by = spread<k % kLanes>(sum[k / kLanes]);
-        unrolled<C>([&](auto c) { b[k % 2][c] += load(D + k * P + c * kLanes) * by; });
+        unrolled<C>([&](auto c) { add_to_one_of_two<k>(b, c, load(D + k * P + c * kLanes) * by); });
       });
-      unrolled<C>([&](auto c) { b[0][c] += b[1][c]; });
+      if constexpr (P > 1) unrolled<C>([&](auto c) { b[0][c] += b[1][c]; });
       unrolled<P>([&](auto k) { x[own[k]] = b[0][k / kLanes][k % kLanes]; });
     } else {
       double b[P];
