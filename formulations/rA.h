@@ -55,7 +55,7 @@ struct RA {
   // N, so that s̈⁰ = N s̄.
   template <class T>
   static Mat3<T> A_ddot0(const Position<T>& at, const Velocity<T>& rate, const T*) {
-    return at.A * (rate.w * rate.w.transpose() - rate.w.squaredNorm() * Mat3<T>::Identity());
+    return rate.wg * rate.w.transpose() - rate.w.squaredNorm() * at.A;  // A ω̃̄ω̃̄ without a product of matrices
   }
   // ∂ṡ/∂x at fixed rates.
   template <class T>
