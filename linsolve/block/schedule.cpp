@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -15,11 +16,12 @@ namespace {
 class Builder {
  public:
   Builder(const CscLayout& layout, const Graph& graph, std::span<const int> order, Fronts kind)
-      : layout_(layout), tree_(layout, graph, order, kind), postorder_(tree_.postorder()) {}
+      : layout_(layout), tree_(std::in_place, layout, graph, order, kind), postorder_(tree_->postorder()) {}
 
   bool build(Schedule& schedule) {
     number(schedule);
     if (!lay_out(schedule)) return false;
+    tree_.reset();  // its room is that of the strips
     assign_values(schedule);
     name_others(schedule);
     return true;
@@ -27,13 +29,14 @@ class Builder {
 
  private:
   void number(Schedule& s) {
-    front_of_.assign(index(tree_.size()), -1);
+    const FrontTree& tree = *tree_;
+    front_of_.assign(index(tree.size()), -1);
     position_.assign(index(layout_.n), 0);
     s.unknown.clear();
     s.unknown.reserve(index(layout_.n));
     for (std::size_t f = 0; f < postorder_.size(); ++f) {
       front_of_[index(postorder_[f])] = static_cast<int>(f);
-      tree_.pivots(tree_[postorder_[f]], [&](int unknown) {
+      tree.pivots(tree[postorder_[f]], [&](int unknown) {
         position_[index(unknown)] = count(s.unknown);
         s.unknown.push_back(unknown);
       });
@@ -45,21 +48,22 @@ class Builder {
     s.fronts.clear(), s.other.clear(), s.stretches.clear(), s.children.clear();
     s.store_size = s.stack_size = s.factor_nonzeros = 0;
     s.largest_update = s.largest_pivots = s.largest_rows = 0;
+    const FrontTree& tree = *tree_;
     std::size_t entries = 0;
-    for (const int k : postorder_) entries += index(tree_[k].others);
+    for (const int k : postorder_) entries += index(tree[k].others);
     s.fronts.reserve(postorder_.size()), s.other.reserve(entries);
     s.children.reserve(postorder_.size());
     std::int64_t top = 0;
     int first = 0;
     for (const int k : postorder_) {
-      const FrontTree::Node& node = tree_[k];
+      const FrontTree::Node& node = tree[k];
       Front f{};
       f.pivots = node.pivots, f.others = node.others, f.rows = padded(f.others);
       f.first = first, first += f.pivots;
       f.list = count(s.other);
-      for (const int other : tree_.others(node)) s.other.push_back(position_[index(tree_.unknown(other))]);
+      for (const int other : tree.others(node)) s.other.push_back(position_[index(tree.unknown(other))]);
       std::sort(s.other.begin() + f.list, s.other.end());
-      for (int child = node.child; child >= 0; child = tree_[child].sibling) {
+      for (int child = node.child; child >= 0; child = tree[child].sibling) {
         s.children.push_back(front_of_[index(child)]);
         const Front& c = s.fronts[index(front_of_[index(child)])];
         top -= std::int64_t{c.rows} * c.others;
@@ -126,6 +130,7 @@ class Builder {
     };
     std::vector<int> next(kKinds * s.fronts.size() + 1, 0);
     std::vector<std::pair<int, Strip>> strips;  // and their fronts
+    strips.reserve(index(layout_.nonzeros()));
     visit_strips(s, front_at, [&](int front, const Strip& strip) {
       ++next[place_of(front, strip) + 1];
       strips.emplace_back(front, strip);
@@ -184,7 +189,7 @@ class Builder {
   }
 
   const CscLayout& layout_;
-  FrontTree tree_;
+  std::optional<FrontTree> tree_;
   std::vector<int> postorder_, front_of_, position_;
 };
 
