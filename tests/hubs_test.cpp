@@ -10,6 +10,9 @@
 #include "formulations/registry.h"
 #include "integrators/start/initial_state.h"
 #include "integrators/start/rank.h"
+#include "linsolve/block/cancellation.h"
+#include "linsolve/block/fusion.h"
+#include "linsolve/block/schedules.h"
 #include "linsolve/linear_system.h"
 #include "tests/scale.h"
 #include "tests/support/simulation.h"
@@ -63,6 +66,33 @@ TEST(Hubs, FactorsGrowWithTheirJoints) {
       entries[k] = static_cast<double>(system.statistics().factor_nonzeros);
     }
     EXPECT_LT(entries[1], 4.5 * entries[0]);
+  }
+}
+
+// Groups whose rows hold a hub are known by counting: the first order of elimination serves.
+TEST(Hubs, AreHeldByRowsThatAreCounted) {
+  for (const HubKind& kind : {kHubs[5], kHubs[6], kHubs[7]}) {
+    SCOPED_TRACE(kind.name);
+    const auto model = std::make_shared<const Model>(compile(hub(kind.hub, 150)));
+    const std::vector<BodyState> states = given_state(*model);
+    const auto problem = intrinsic_formulation().make(model, analyze_rank(model, states, RankNames::none).aside);
+    std::vector<double> q(index(problem->nq())), v(index(problem->nv()));
+    problem->from_bodies(states, q, v);
+    problem->set_position(0, q);
+    problem->set_velocity(v);
+    const Pattern pattern = problem->pattern(MatrixKind::consistent);
+    CscLayout layout;
+    ASSERT_TRUE(layout.build(pattern).ok());
+    std::vector<double> values(index(layout.nonzeros()));
+    problem->assemble(MatrixKind::consistent, {}, {}, {}, {}, layout.slots, values);
+    const auto cancelled = [&](const std::vector<int>& fused) {
+      const auto schedule = block::schedule_of(layout, pattern.node, fused);
+      return block::cancelled_pivots(*schedule, values, std::vector<double>(index(layout.n), 1.0), 1e-6).pivots.size();
+    };
+    std::vector<int> fused(1 + index(*std::ranges::max_element(pattern.node)), -1);
+    EXPECT_GT(cancelled(fused), 0u);
+    block::fuse_with_hubs(layout, pattern.node, fused);
+    EXPECT_EQ(cancelled(fused), 0u);
   }
 }
 

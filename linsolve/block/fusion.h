@@ -1,4 +1,5 @@
-// What makes a body or a group regular that an elimination has found not to be so: it is fused with others.
+// What makes a body or a group regular that an elimination has found not to be so, or cannot find to be: it is fused
+// with others.
 #pragma once
 
 #include <span>
@@ -16,5 +17,10 @@ namespace poinsot::block {
 // its own six unknowns cannot be why all these are bad.
 bool fuse(const CscLayout& layout, std::span<const int> node, const Schedule& schedule, std::span<const int> bad,
           std::vector<int>& fused);
+
+// Before anything is eliminated: where hubs do not move the mechanism falls apart, and a part with more rows than its
+// bodies have freedoms holds hubs, too. As many of its groups go into theirs as have these rows; an elimination would
+// find that out at the price of another. Which rows hold hubs beyond that, numbers tell.
+void fuse_with_hubs(const CscLayout& layout, std::span<const int> node, std::vector<int>& fused);
 
 }  // namespace poinsot::block

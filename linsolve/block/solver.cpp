@@ -106,7 +106,9 @@ class Solver final : public LinearSolver {
     klu_.reset();
     helped_ = 0;
     fused_.assign(index(1 + *std::ranges::max_element(node_)), -1);
-    answer_ = symmetry(layout_) >= kSymmetric && order() ? Answer::open : Answer::handed_over;
+    const bool symmetric = symmetry(layout_) >= kSymmetric;
+    if (symmetric) fuse_with_hubs(layout_, node_, fused_);
+    answer_ = symmetric && order() ? Answer::open : Answer::handed_over;
     const bool fits = answer_ == Answer::open && schur_.lay_out(pattern, layout_);
     bodies_first_ = fits ? BodiesFirst::unexamined : BodiesFirst::unfit;
     if (fits) examination_.resize(layout_.n), sizes_.resize(index(layout_.n)), b_.reserve(sizes_.size());
@@ -152,8 +154,9 @@ class Solver final : public LinearSolver {
       }
     }
     const bool examined = answer_ == Answer::trusted || answer_ == Answer::sampled || answer_ == Answer::checked;
-    const Drift drift = factor_.factor(*schedule_, values_, examined);
-    if (!examined || !drift.within(kFar)) return factor_fresh();
+    if (!examined) return factor_fresh();
+    const Drift drift = factor_.factor(*schedule_, values_, true);
+    if (!drift.within(kFar)) return factor_fresh();
     ++statistics_.refactorizations;
     drift_ = drift;
     answer_ = drift.within(kNear)                                      ? near_
@@ -228,17 +231,19 @@ class Solver final : public LinearSolver {
 
   // Factorizes, and finds the pivots that may be why the factors are not to be trusted.
   Pivots factor_looking(std::vector<int>& bad) {
+    const std::span<const double> rows = residual_.rows();
     const auto cancelled = [&](std::span<const double> weight, double part) {
       return cancelled_pivots(*schedule_, values_, weight, part);
     };
-    if (!trustworthy()) {
-      bad = cancelled(residual_.rows(), kCancelled).pivots;
-      return Pivots::bad;
-    }
-    Cancelled found = cancelled(weight_, kRounding);  // above, they may pass for pivots, as of very different masses
+    Cancelled found = cancelled(rows, kCancelled);
+    // Solutions need not tell what is nothing but rounding, and looking at them takes as long as all else.
+    const bool trusted = found.least > 1 / kSingularCondition && trustworthy();
+    if (trusted && (found.least <= kCancelled || !std::ranges::equal(weight_, rows)))
+      found = cancelled(weight_, kRounding);  // above, they may pass for pivots, as of very different masses
+    bad = std::move(found.pivots);
+    if (!trusted) return Pivots::bad;
     if (found.least > kCancelled) return Pivots::good;
     near_ = std::max(near_, Answer::sampled);
-    bad = std::move(found.pivots);
     if (bad.empty()) return Pivots::good;
     near_ = Answer::checked;
     return cancelled(weight_, 1 / kSingularCondition).pivots.empty() ? Pivots::doubtful : Pivots::bad;
