@@ -21,20 +21,25 @@ constexpr double kGrown = 1e6;        // times: rounding of 1e-12, as projection
 constexpr double kMostWork = 2e9;     // operations with what wide rows leave of columns
 
 // A z at the wide rows, as entries behind those of the columns: combined like them, and zero for a null vector of A.
-void append_wide_rows(const Sparse& A, const std::vector<int>& wide, double tolerance, SparseEntries& z) {
+// `from` grows to the largest that passes for zero, beside the largest of z.
+void append_wide_rows(const Sparse& A, const std::vector<int>& wide, double tolerance, SparseEntries& z, double& from) {
   std::map<int, double> sums;
   for (const auto& [column, value] : z)
     for (Sparse::InnerIterator it(A, column); it; ++it)
       if (const int k = wide[static_cast<std::size_t>(it.row())]; k >= 0) sums[k] += it.value() * value;
-  const double nothing = std::max(tolerance, kNegligible) * largest(z);
+  const double size = largest(z), nothing = std::max(tolerance, kNegligible) * size;
   for (const auto& [k, sum] : sums)
-    if (std::abs(sum) > nothing) z.emplace_back(static_cast<int>(A.cols()) + k, sum);
+    if (std::abs(sum) > nothing)
+      z.emplace_back(static_cast<int>(A.cols()) + k, sum);
+    else
+      from = std::max(from, std::abs(sum) / size);
 }
 
 // Of the columns that depend on others but for the wide rows, those that do with them: as many are independent by wide
-// rows as these have independent sums. In time with the number of columns.
+// rows as these have independent sums. In time with the number of columns. `from` grows to the largest part of one that
+// passes for nothing.
 std::vector<int> dependent_on_wide_rows(const Sparse& A, const std::vector<int>& wide, int count, FrontQr& qr,
-                                        double tolerance) {
+                                        double tolerance, double& from) {
   const std::vector<int>& columns = qr.dependent();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(count, A.cols());
   for (int k = 0; k < A.outerSize(); ++k)
@@ -45,7 +50,11 @@ std::vector<int> dependent_on_wide_rows(const Sparse& A, const std::vector<int>&
   for (int row = 0; row < count; ++row) {
     const Eigen::RowVectorXd parts = sums.cwiseAbs().colwise().maxCoeff().cwiseQuotient(sizes.transpose().cwiseMax(1));
     Eigen::Index pivot = 0, at = 0;
-    if (!(parts.maxCoeff(&pivot) > std::max(tolerance, kNegligible))) break;
+    const double most = parts.maxCoeff(&pivot);
+    if (!(most > std::max(tolerance, kNegligible))) {
+      from = std::max(from, most);
+      break;
+    }
     sums.col(pivot).cwiseAbs().maxCoeff(&at);
     is_dependent[static_cast<std::size_t>(pivot)] = 0;
     const Eigen::VectorXd column = sums.col(pivot) / sums(at, pivot);
@@ -95,18 +104,26 @@ struct WideRows {
   }
 };
 
+struct Decomposed {
+  FrontQr qr;
+  double from;  // the least tolerance at which it is the same
+};
+
 // Where the columns kept by their order are barely independent, and rounding of A decides about what is left of others,
 // those are kept that are clearest; unless `enough` of them are dependent all the same. So, too, beside wide rows: what
 // these hold is found by sums along null vectors, which such columns make long.
-FrontQr decomposed(const Sparse& A, const WideRows& wide, double tolerance, std::size_t most, std::size_t enough) {
+Decomposed decomposed(const Sparse& A, const WideRows& wide, double tolerance, std::size_t most, std::size_t enough) {
   const auto choose = [&](FrontQr::Choice choice, std::size_t vectors) {
-    return FrontQr(A, wide.left_out, tolerance, choice, vectors);
+    FrontQr qr(A, wide.left_out, tolerance, choice, vectors);
+    const double from = qr.left();
+    return Decomposed{std::move(qr), from};
   };
   if (wide.count > 0) return choose(FrontQr::Choice::clearest, SIZE_MAX);
-  FrontQr first = choose(FrontQr::Choice::by_order, most);
-  if (first.growth() <= kGrown || first.dependent().size() >= enough) return first;
-  FrontQr other = choose(FrontQr::Choice::clearest, most);
-  return other.growth() < first.growth() ? std::move(other) : std::move(first);
+  Decomposed first = choose(FrontQr::Choice::by_order, most);
+  if (first.qr.growth() <= kGrown || first.qr.dependent().size() >= enough) return first;
+  Decomposed other = choose(FrontQr::Choice::clearest, most);
+  first.from = other.from = std::max(first.from, other.from);
+  return other.qr.growth() < first.qr.growth() ? std::move(other) : std::move(first);
 }
 
 // Null vectors of A, by the last column of each.
@@ -114,19 +131,19 @@ struct Echelon {
   std::map<int, SparseEntries> by_last;
   std::vector<int> dependent;  // instead, where the vectors are not needed or would be too long
   bool complete = true;
-  double from = 0;  // the least tolerance that comes to the same
-  std::size_t stretched = 0;
+  double from;  // the least tolerance that comes to the same
+  std::size_t stretched;
 
   // Vectors are not needed where there are more than `most`.
-  Echelon(const Sparse& A, double tolerance, const WideRows& wide_rows, FrontQr& qr, std::size_t most) {
+  Echelon(const Sparse& A, double tolerance, const WideRows& wide_rows, Decomposed& of, std::size_t most)
+      : from(of.from), stretched(of.qr.stretched()) {
     const int count = wide_rows.count;
     const std::vector<int>& wide = wide_rows.number;
-    from = qr.choice() == FrontQr::Choice::by_order ? qr.left() : tolerance;
-    stretched = qr.stretched();
+    FrontQr& qr = of.qr;
     const double work = static_cast<double>(qr.dependent().size()) * count * count;
     if (count > 0 && qr.dependent().size() > most && work < kMostWork) {
       complete = false;
-      dependent = dependent_on_wide_rows(A, wide, count, qr, tolerance);
+      dependent = dependent_on_wide_rows(A, wide, count, qr, tolerance, from);
       return;
     }
     std::vector<SparseEntries> vectors;
@@ -136,7 +153,7 @@ struct Echelon {
       if (!complete) break;
       SparseEntries& z = vectors.emplace_back(qr.null_vector(column));
       drop_nothing(z);
-      append_wide_rows(A, wide, tolerance, z);
+      append_wide_rows(A, wide, tolerance, z, from);
       size += z.size();
     }
     if (!complete) {
@@ -176,8 +193,8 @@ ColumnDependencies dependencies(Echelon space) {
 
 ColumnDependencies column_dependencies(const Sparse& A, double tolerance) {
   const WideRows wide(A);
-  FrontQr qr = decomposed(A, wide, tolerance, kMostNamed, SIZE_MAX);
-  return dependencies(Echelon(A, tolerance, wide, qr, kMostNamed));
+  Decomposed of = decomposed(A, wide, tolerance, kMostNamed, SIZE_MAX);
+  return dependencies(Echelon(A, tolerance, wide, of, kMostNamed));
 }
 
 std::vector<int> clearest_dependent_columns(const Sparse& A, double tolerance) {
@@ -190,15 +207,15 @@ std::vector<int> clearest_dependent_columns(const Sparse& A, double tolerance) {
 
 std::vector<int> dependent_columns(const Sparse& A, double tolerance, std::size_t enough) {
   const WideRows wide(A);
-  FrontQr qr = decomposed(A, wide, tolerance, 0, enough);
-  return Echelon(A, tolerance, wide, qr, 0).dependent;
+  Decomposed of = decomposed(A, wide, tolerance, 0, enough);
+  return Echelon(A, tolerance, wide, of, 0).dependent;
 }
 
 NullSpace null_space(const Sparse& A, double tolerance, std::size_t most, ColumnDependencies* named) {
   const WideRows wide(A);
-  FrontQr qr = decomposed(A, wide, tolerance, named ? kMostNamed : most, SIZE_MAX);
-  if (named) *named = dependencies(Echelon(A, tolerance, wide, qr, kMostNamed));
-  Echelon space(A, tolerance, wide, qr, most);
+  Decomposed of = decomposed(A, wide, tolerance, named ? kMostNamed : most, SIZE_MAX);
+  if (named) *named = dependencies(Echelon(A, tolerance, wide, of, kMostNamed));
+  Echelon space(A, tolerance, wide, of, most);
   NullSpace found{std::move(space.dependent), {}, space.from, space.stretched};
   for (auto& [column, z] : space.by_last) found.vectors.push_back(std::move(z));
   return found;

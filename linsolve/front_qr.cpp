@@ -134,6 +134,7 @@ void FrontQr::settle_waiting(Front& front) {
     Eigen::Index least = 0, most = 0;
     const Eigen::RowVectorXd norms = front.left().rightCols(count).colwise().norm();
     const double smallest = norms.minCoeff(&least), largest = norms.maxCoeff(&most);
+    if (largest <= tolerance_) most_left_ = std::max(most_left_, largest);
     if (!(smallest > kNothing))
       take(front, first + least, smallest);
     else if (first == 0 || count > (largest > tolerance_ ? kMostWait : 4 * kMostWait))

@@ -32,10 +32,10 @@ class FrontQr {
   // columns are dependent.
   FrontQr(const Sparse& A, const std::vector<char>& left_out, double tolerance, Choice choice, std::size_t most);
 
-  Choice choice() const { return choice_; }
   // Columns of A that depend on those before them in the order P, that of their elimination.
   const std::vector<int>& dependent() const { return dependent_; }
-  // The most that was left of one of them: tolerances between that and the one given lead to the same decomposition.
+  // The most that was left of one of them, or that was held to be nothing on the way there: tolerances between that and
+  // the one given lead to the same decomposition.
   double left() const { return most_left_; }
   // The largest |y| of Rᵀ y = b for signs b: rounding of A is so many times as large in what is left of a dependent
   // column. It grows with the length of a mechanism; where columns of which little is left are kept one after the other
