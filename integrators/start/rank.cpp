@@ -38,10 +38,7 @@ class Examination {
     tell_vanishing();
     result_.loops = loop_rows(*model_, *space_);
     if (result_.loops.empty()) return std::move(result_);
-    if (result_.loops.size() < model_->rows.size()) {
-      space_.emplace(model_, result_.loops);
-      space_->stand(0, states_);
-    }
+    if (result_.loops.size() < model_->rows.size()) space_->keep(result_.loops);
     here_ = few_null_vectors(space_->columns(), kIndependent);
     const auto surely = [&] {
       return few_null_vectors(space_->columns(), kDependent, names_ == RankNames::all ? &named_.emplace() : nullptr);

@@ -23,10 +23,13 @@ RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
     : model_(std::move(model)),
       rows_(std::move(rows)),
       problem_(intrinsic_formulation().make(model_, all_but(model_->rows.size(), rows_))),
+      place_(rows_.size()),
       sizes_(body_sizes(*model_)),
       q_(index(problem_->nq())),
       v_(index(problem_->nv())),
-      lengths_(rows_.size()) {
+      lengths_(rows_.size()),
+      of_problem_(rows_.size()) {
+  std::iota(place_.begin(), place_.end(), 0);
   check(layout_.build(problem_->pattern(MatrixKind::kinematic)).ok(), "an assembled matrix fits 32-bit indices");
   values_.resize(index(layout_.nonzeros()));
   const int nc = problem_->nc();
@@ -78,6 +81,26 @@ void RowSpace::stand(double t, std::span<const BodyState> states) {
   }
 }
 
+void RowSpace::keep(std::vector<int> rows) {
+  Eigen::SparseMatrix<double> left(Gt_.rows(), static_cast<Eigen::Index>(rows.size()));
+  left.reserve(Gt_.nonZeros());
+  std::size_t k = 0, entries = 0;
+  for (std::size_t c = 0; c < rows.size(); ++c, ++k) {
+    while (rows_[k] != rows[c]) ++k;
+    left.startVec(static_cast<Eigen::Index>(c));
+    for (int i = Gt_.outerIndexPtr()[k]; i < Gt_.outerIndexPtr()[k + 1]; ++i, ++entries) {
+      left.insertBack(Gt_.innerIndexPtr()[i], static_cast<Eigen::Index>(c)) = Gt_.valuePtr()[i];
+      source_[entries] = source_[index(i)], measure_[entries] = measure_[index(i)];
+    }
+    place_[c] = place_[k], lengths_[c] = lengths_[k], rounding_[c] = rounding_[k];
+  }
+  left.finalize();
+  Gt_ = std::move(left);
+  source_.resize(entries), measure_.resize(entries);
+  place_.resize(rows.size()), lengths_.resize(rows.size()), rounding_.resize(rows.size());
+  rows_ = std::move(rows);
+}
+
 // Of the cross product of two directions.
 double RowSpace::direction_terms(const Row& row) const {
   double size = 0;
@@ -108,16 +131,24 @@ double RowSpace::left_of(std::size_t k) const {
   return terms > 0 ? std::min(1.0, lengths_[k] / terms) : 1;
 }
 
+// What the problem has of its rows, of those that are kept.
+void RowSpace::take_places(std::span<double> out) const {
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] = of_problem_[index(place_[k])];
+}
+
 void RowSpace::distances(std::span<double> out) const {
-  problem_->position_residual(out);
+  problem_->position_residual(of_problem_);
+  take_places(out);
   for (std::size_t k = 0; k < out.size(); ++k)
     if (out[k] != 0) out[k] /= lengths_[k];  // 0 also where the gradient has vanished
 }
 
 void RowSpace::rates(std::span<const double> v, std::span<double> residual, std::span<double> nu) {
   problem_->set_velocity(v);
-  problem_->velocity_residual(residual);
-  problem_->nu(nu);
+  problem_->velocity_residual(of_problem_);
+  take_places(residual);
+  problem_->nu(of_problem_);
+  take_places(nu);
 }
 
 double RowSpace::size_of_row(std::size_t k) const {

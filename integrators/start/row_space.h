@@ -37,6 +37,9 @@ class RowSpace {
 
   // At rest.
   void stand(double t, std::span<const BodyState> states);
+  // Leaves these of its rows, ascending, as they stand: making another space of a large model takes as long as all that
+  // it costs to carry the others along.
+  void keep(std::vector<int> rows);
 
   const std::vector<int>& rows() const { return rows_; }
   // Gᵀ, a column of unit length for each row; 0 where the gradient is nothing but rounding.
@@ -57,13 +60,16 @@ class RowSpace {
 
  private:
   double direction_terms(const Row& row) const;
+  void take_places(std::span<double> out) const;
   double rounding_of(std::size_t k, std::span<const BodyState> states) const;
 
   std::shared_ptr<const Model> model_;
   std::vector<int> rows_;
   std::unique_ptr<Problem> problem_;
+  std::vector<int> place_;  // by row: among those of the problem
   std::vector<double> sizes_;
   std::vector<double> q_, v_, values_, lengths_;
+  mutable std::vector<double> of_problem_;
   CscLayout layout_;
   // By entry of Gt_: its place in the layout, and one over the body's size where it is about a turn, else 1.
   std::vector<int> source_;
