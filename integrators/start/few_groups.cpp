@@ -55,13 +55,14 @@ class Choice {
       for (Sparse::InnerIterator it(columns_, k); it; ++it) touched.push_back(it.row());
     std::ranges::sort(touched);
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    std::vector<Eigen::Triplet<double>> entries;
-    for (std::size_t c = 0; c < block.size(); ++c)
-      for (Sparse::InnerIterator it(columns_, block[c]); it; ++it)
-        entries.emplace_back(static_cast<int>(std::ranges::lower_bound(touched, it.row()) - touched.begin()),
-                             static_cast<int>(c), it.value());
     Sparse part(static_cast<Eigen::Index>(touched.size()), static_cast<Eigen::Index>(block.size()));
-    part.setFromTriplets(entries.begin(), entries.end());
+    for (std::size_t c = 0; c < block.size(); ++c) {
+      const auto column = static_cast<Eigen::Index>(c);
+      part.startVec(column);
+      for (Sparse::InnerIterator it(columns_, block[c]); it; ++it)
+        part.insertBack(std::ranges::lower_bound(touched, it.row()) - touched.begin(), column) = it.value();
+    }
+    part.finalize();
     return part;
   }
 

@@ -31,15 +31,25 @@ class UnionFind {
 // By set(k) of unknown k: the other sets it shares entries with.
 template <class SetOf>
 Lists seen(const CscLayout& layout, int sets, SetOf&& set) {
+  const auto rows = [&](int j) {
+    return std::span(layout.row)
+        .subspan(index(layout.start[index(j)]), index(layout.start[index(j) + 1] - layout.start[index(j)]));
+  };
+  std::vector<int> columns;  // but for those that say the same as the one before
+  for (int j = 0; j < layout.n; ++j)
+    if (j == 0 || set(j) != set(j - 1) || !std::ranges::equal(rows(j), rows(j - 1))) columns.push_back(j);
   return Lists::collect(sets, [&](auto&& emit) {
     int last_i = -1, last_j = -1;  // a block's entries say the same again and again
-    entries(layout, [&](int i, int j) {
-      const int a = set(i), b = set(j);
-      if (a == b || (a == last_i && b == last_j)) return;
-      last_i = a, last_j = b;
-      emit(a, b);
-      emit(b, a);
-    });
+    for (const int j : columns) {
+      const int b = set(j);
+      for (const int i : rows(j)) {
+        const int a = set(i);
+        if (a == b || (a == last_i && b == last_j)) continue;
+        last_i = a, last_j = b;
+        emit(a, b);
+        emit(b, a);
+      }
+    }
   });
 }
 
@@ -47,12 +57,13 @@ Lists seen(const CscLayout& layout, int sets, SetOf&& set) {
 // of the first part of its atom. Bodies' parts that see the same rows are merged first, then rows are compared by the
 // merged parts they see.
 template <class Home>
-std::vector<int> merge(const CscLayout& layout, UnionFind& part, const std::vector<char>& on_body, Home&& home) {
-  const Lists outside = seen(layout, layout.n, [&](int k) { return part.find(k); });
+std::vector<int> merge(const CscLayout& layout, const std::vector<int>& part, const std::vector<char>& on_body,
+                       Home&& home) {
+  const Lists outside = seen(layout, layout.n, [&](int k) { return part[index(k)]; });
   std::vector<int> roots, merged(index(layout.n));
   std::iota(merged.begin(), merged.end(), 0);
   for (int k = 0; k < layout.n; ++k)
-    if (part.find(k) == k) roots.push_back(k);
+    if (part[index(k)] == k) roots.push_back(k);
   std::ranges::stable_sort(roots, {}, home);
 
   struct Known {
@@ -117,20 +128,23 @@ void Graph::build(const CscLayout& layout, std::span<const int> node_of, std::sp
   };
 
   // Parts of a node that are connected within it. A part with an entry on the diagonal belongs to a body.
-  UnionFind part(n);
+  UnionFind connected(n);
   std::vector<char> diagonal(index(n), 0), on_body(index(n), 0);  // the latter by root of part
   entries(layout, [&](int i, int j) {
-    if (home(i) == home(j)) part.join(i, j);
+    if (home(i) == home(j)) connected.join(i, j);
     if (i == j) diagonal[index(i)] = 1;
   });
-  for (int k = 0; k < n; ++k)
-    if (diagonal[index(k)]) on_body[index(part.find(k))] = 1;
+  std::vector<int> part(index(n));  // by unknown: its root
+  for (int k = 0; k < n; ++k) {
+    part[index(k)] = connected.find(k);
+    if (diagonal[index(k)]) on_body[index(part[index(k)])] = 1;
+  }
 
   const std::vector<int> merged = merge(layout, part, on_body, home);
   node.clear(), constraint.clear();
   std::vector<int> atom_at(index(n), -1), atom_of(index(n));  // by root; by unknown
   for (int k = 0; k < n; ++k) {
-    const int root = merged[index(part.find(k))];
+    const int root = merged[index(part[index(k)])];
     if (atom_at[index(root)] < 0) {
       atom_at[index(root)] = static_cast<int>(node.size());
       constraint.push_back(on_body[index(root)] == 0);
@@ -152,11 +166,14 @@ void Graph::build(const CscLayout& layout, std::span<const int> node_of, std::sp
 
 double symmetry(const CscLayout& layout) {
   if (layout.nonzeros() == 0) return 1;
+  // Columns are taken ascending, and in each row so are the entries whose mirrors are looked for in a column.
+  std::vector<int> next(layout.start.begin(), layout.start.end() - 1);
   int mirrored = 0;
   entries(layout, [&](int i, int j) {
-    const auto first = layout.row.begin() + layout.start[index(i)],
-               last = layout.row.begin() + layout.start[index(i) + 1];
-    mirrored += std::binary_search(first, last, j);
+    int& k = next[index(i)];
+    const int end = layout.start[index(i) + 1];
+    while (k < end && layout.row[index(k)] < j) ++k;
+    mirrored += k < end && layout.row[index(k)] == j;
   });
   return static_cast<double>(mirrored) / layout.nonzeros();
 }

@@ -164,13 +164,16 @@ class Builder {
     Strip strip{};
     for (int j = 0; j < layout_.n; ++j) {
       const int pj = position_[index(j)];
-      int lj = 0, of = -1;  // the column in the front at hand
+      int lj = 0, li = -1, of = -1;  // the column in the front at hand, and the row before
       for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k) {
         const int pi = position_[index(layout_.row[index(k)])];
         const int front = front_at[index(std::min(pi, pj))];
         const Front& f = s.fronts[index(front)];
+        const int p = f.pivots;
+        const bool follows =
+            front == of && li + 1 >= p && li + 1 < p + f.others && s.other[index(f.list + li + 1 - p)] == pi;
         if (front != of) lj = local(s, front, pj), of = front;
-        const int li = local(s, front, pi), p = f.pivots;
+        li = follows ? li + 1 : local(s, front, pi);
         int target = lj * p + li;
         if (li >= p) target = p * p + lj * f.rows + li - p;
         if (lj >= p) target = p * (p + f.rows) + (lj - p) * p + li;
