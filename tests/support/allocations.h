@@ -1,4 +1,5 @@
-// Counts what the whole program allocates, by malloc itself: Eigen and SuiteSparse do not go through operator new.
+// Counts what the whole program allocates, and how many bytes in all, by malloc itself: Eigen and SuiteSparse do not go
+// through operator new.
 //
 // Replaces malloc and its kin by counting ones over those of glibc; where the address sanitizer has taken their place,
 // asks it to tell. Include in one file of an executable.
@@ -9,9 +10,16 @@
 #include <cstddef>
 
 namespace poinsot::test {
-inline constinit std::atomic<long> allocation_count = 0;
+inline constinit std::atomic<long> allocation_count = 0, allocation_bytes = 0;
 inline long allocations() {
   return allocation_count.load();
+}
+inline long allocated_bytes() {
+  return allocation_bytes.load();
+}
+inline void count_allocation(std::size_t size) {
+  ++allocation_count;
+  allocation_bytes += static_cast<long>(size);
 }
 }  // namespace poinsot::test
 
@@ -28,7 +36,7 @@ extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile
 
 namespace poinsot::test {
 inline const int kAllocationHook = __sanitizer_install_malloc_and_free_hooks(
-    [](const volatile void*, std::size_t) { ++allocation_count; }, [](const volatile void*) {});
+    [](const volatile void*, std::size_t size) { count_allocation(size); }, [](const volatile void*) {});
 }  // namespace poinsot::test
 
 #else
@@ -40,19 +48,19 @@ void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 
 void* malloc(std::size_t size) noexcept {
-  ++poinsot::test::allocation_count;
+  poinsot::test::count_allocation(size);
   return __libc_malloc(size);
 }
 void* calloc(std::size_t count, std::size_t size) noexcept {
-  ++poinsot::test::allocation_count;
+  poinsot::test::count_allocation(count * size);
   return __libc_calloc(count, size);
 }
 void* realloc(void* block, std::size_t size) noexcept {
-  ++poinsot::test::allocation_count;
+  poinsot::test::count_allocation(size);
   return __libc_realloc(block, size);
 }
 void* memalign(std::size_t alignment, std::size_t size) noexcept {
-  ++poinsot::test::allocation_count;
+  poinsot::test::count_allocation(size);
   return __libc_memalign(alignment, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
