@@ -148,19 +148,22 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead, bool
   }
   const double lasts = std::min(angle(limit) + kStays * soon, angle(kFlat));
   const double most = std::min(1 / std::tan(lasts), kGathered);
-  const bool exchanged = has_coefficients() && std::isfinite(worst_) ? exchange(most) : choose_clearest(space);
+  const bool exchanged = has_coefficients() && std::isfinite(worst_) ? exchange(most, asked) : choose_clearest(space);
   given_ = std::isfinite(worst_) ? kGrowth * worst_ : 0;
   worn_ = std::max(limit, given_);
   good_for_ = turn_until_worst(kTurnsMost);
   return exchanged;
 }
 
-bool BlockChoice::exchange(double most) {
+bool BlockChoice::exchange(double most, bool asked) {
   std::vector<SparseEntries> vectors = unit_null_vectors(0);
   if (vectors.empty()) return false;
   std::vector<int> chosen = left_out_;
   for (SparseEntries& z : vectors) drop_nothing(z);  // what rounding leaves of coefficients far away
-  repair(std::move(vectors), chosen, grouped_, most);
+  if (asked)
+    chosen = separate(std::move(vectors));  // of however many joints
+  else
+    repair(std::move(vectors), chosen, grouped_, most);
   std::ranges::sort(chosen);
   return chosen != left_out_ && take(chosen, HUGE_VAL);
 }

@@ -28,6 +28,7 @@ RadauStepper::RadauStepper(Problem& problem, LinearSystems& systems, double rtol
       nv_(problem.nv()),
       n_(problem.nv() + problem.nc()),
       statistics_(statistics),
+      revision_(problem.revision()),
       state_(problem),
       next_(problem),
       sample_(problem),
@@ -49,10 +50,10 @@ Status RadauStepper::start(const State& state) {
 Status RadauStepper::settle() {
   consistent_.stand(state_);
   bool rewritten = false;
-  const int revision = problem_.revision();
   if (Status status = accept(problem_, state_, rewritten); !status.ok()) return status;
   if (rewritten) forget();
-  if (problem_.revision() != revision) {
+  if (problem_.revision() != revision_) {  // also by others that step with the same problem
+    forget();
     if (Status status = take_rows(); !status.ok()) return status;
   }
   if (!fast_) step_.h = 0;
@@ -76,6 +77,7 @@ void RadauStepper::forget() {
 }
 
 Status RadauStepper::take_rows() {
+  revision_ = problem_.revision();
   step_ = Linearized(problem_), within_ = Linearized(problem_);
   in_solver_ = nullptr;
   return prepare();

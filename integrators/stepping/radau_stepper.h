@@ -111,6 +111,7 @@ class RadauStepper {
   const double rtol_, atol_;
   const Eigen::Index nv_, n_;
   Statistics& statistics_;
+  int revision_;  // of the rows that step_ and within_ are of
 
   State state_, next_, sample_, before_, stage_;  // before_: where the completed step began
   Columns Z_, V_, dQ_;                            // (a, λ), velocity and δq of the stages
