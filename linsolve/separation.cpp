@@ -251,15 +251,16 @@ std::vector<int> gather(std::vector<SparseEntries>&& vectors, const Grouped& col
   return separation.take_pivots();
 }
 
-void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, const Grouped& columns, double most) {
+void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, const Grouped& columns, double most,
+            double of_all) {
   const auto of_group = [&](int column) { return columns.group[index(column)]; };
   const std::vector<int> before = pivots;
   Separation separation(std::move(vectors), std::move(pivots));
   if (!separation.too_long()) {
-    separation.flatten(most, kGathered, columns.group);
+    separation.flatten(most, of_all, columns.group);
     if (!std::ranges::equal(before, separation.pivots(), {}, of_group, of_group)) {
       separation.gather(columns);
-      separation.flatten(most, kGathered, columns.group);
+      separation.flatten(most, of_all, columns.group);
     }
   }
   pivots = separation.take_pivots();

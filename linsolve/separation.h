@@ -28,8 +28,9 @@ struct Grouped {
 std::vector<int> gather(std::vector<SparseEntries>&& vectors, const Grouped& columns);
 
 // The vectors have their pivots, and entries that have grown since. Others take the place of as few of them as lead
-// back to entries of at most `most` in the pivots' groups, at most kGathered in all.
-void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, const Grouped& columns, double most);
+// back to entries of at most `most` in the pivots' groups, at most `of_all` in all.
+void repair(std::vector<SparseEntries>&& vectors, std::vector<int>& pivots, const Grouped& columns, double most,
+            double of_all);
 
 // The parts that are negligible beside the largest entry are left out.
 double largest(const SparseEntries& z);

@@ -50,17 +50,19 @@ TEST(Separation, GathersInOneGroup) {
 
 TEST(Separation, RepairsWithinTheGroup) {
   const Grouped columns{{0, 0, 1, 1}, std::vector<int>(4)};
-  const auto repaired = [&](std::vector<double> entries, double most) {
+  const auto repaired = [&](std::vector<double> entries, double most, double of_all = kGathered) {
     SparseEntries vector;
     for (int k = 0; k < 4; ++k) vector.emplace_back(k, entries[static_cast<std::size_t>(k)]);
     std::vector<int> pivots{1};
-    repair({vector}, pivots, columns, most);
+    repair({vector}, pivots, columns, most, of_all);
     return pivots.front();
   };
   EXPECT_EQ(repaired({1.6, 1, 3, 0.5}, 3), 1);    // nothing has grown to more than it may
   EXPECT_EQ(repaired({1.6, 1, 3, 0.5}, 1.5), 0);  // of the own group
   EXPECT_EQ(repaired({1.6, 1, 9, 0.5}, 3), 0);
   EXPECT_EQ(repaired({1.2, 1, 9, 0.5}, 3), 2);  // 9/1.2 would be too large again
+  EXPECT_EQ(repaired({1.2, 1, 5, 0.5}, 3), 1);  // in another group
+  EXPECT_EQ(repaired({1.2, 1, 5, 0.5}, 3, 4), 2);
 }
 
 }  // namespace

@@ -148,14 +148,16 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead, bool
   }
   const double lasts = std::min(angle(limit) + kStays * soon, angle(kFlat));
   const double most = std::min(1 / std::tan(lasts), kGathered);
-  const bool exchanged = has_coefficients() && std::isfinite(worst_) ? exchange(most, asked) : choose_clearest(space);
+  const bool exchanged =
+      has_coefficients() && std::isfinite(worst_) ? exchange(most, limit, asked) : choose_clearest(space);
   given_ = std::isfinite(worst_) ? kGrowth * worst_ : 0;
   worn_ = std::max(limit, given_);
   good_for_ = turn_until_worst(kTurnsMost);
+  if (limit < kWorn) good_for_ = std::min(good_for_, turn_until_worn());
   return exchanged;
 }
 
-bool BlockChoice::exchange(double most, bool asked) {
+bool BlockChoice::exchange(double most, double limit, bool asked) {
   std::vector<SparseEntries> vectors = unit_null_vectors(0);
   if (vectors.empty()) return false;
   std::vector<int> chosen = left_out_;
@@ -163,7 +165,7 @@ bool BlockChoice::exchange(double most, bool asked) {
   if (asked)
     chosen = separate(std::move(vectors));  // of however many joints
   else
-    repair(std::move(vectors), chosen, grouped_, most);
+    repair(std::move(vectors), chosen, grouped_, most, std::min(limit, kGathered));
   std::ranges::sort(chosen);
   return chosen != left_out_ && take(chosen, HUGE_VAL);
 }

@@ -75,7 +75,7 @@ class BlockChoice {
   bool find_small(int refinements);
   Eigen::VectorXd small_shares(const Eigen::VectorXd& f, const Eigen::VectorXd& forces);
   void keep_others(const std::vector<int>& left_out);
-  bool exchange(double most, bool asked);
+  bool exchange(double most, double limit, bool asked);
   bool choose_clearest(const RowSpace& space);
   bool take(const std::vector<int>& chosen, double limit);
   std::vector<SparseEntries> unit_null_vectors(int refinements) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/turning.h"
@@ -46,6 +47,7 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
       nv_(static_cast<std::size_t>(problem.nv())),
       last_(static_cast<Eigen::Index>(pair.stages.size())),
       error_needs_last_(std::ranges::any_of(pair.error, [&](const Term& term) { return term.stage == last_; })),
+      revision_(problem.revision()),
       state_(problem),
       next_(problem),
       sample_(problem),
@@ -72,6 +74,7 @@ Status ExplicitStepper::settle() {
   bool rewritten = false;
   if (Status status = accept(problem_, state_, rewritten); !status.ok()) return status;
   if (rewritten) consistent_.forget_approach();
+  if (std::exchange(revision_, problem_.revision()) != problem_.revision()) passage_.stand_on_rows(state_);
   component_sizes(problem_, span(state_.q), span(state_.v), span(sizes_));
   return {};
 }
@@ -80,6 +83,8 @@ bool ExplicitStepper::choose_rows() {
   consistent_.stand(state_);
   if (!problem_.choose_rows_here(state_.t, span(state_.q), span(state_.v), state_.lambda())) return false;
   consistent_.forget_approach();
+  revision_ = problem_.revision();
+  passage_.stand_on_rows(state_);
   return true;
 }
 

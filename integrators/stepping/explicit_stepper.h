@@ -98,6 +98,7 @@ class ExplicitStepper {
   const std::size_t nv_;
   const Eigen::Index last_;  // index of k_{s+1}
   const bool error_needs_last_;
+  int revision_;  // of the rows that the state is on
   bool project_stages_ = false;
   bool settled_ = false;  // the last state evaluated lay beside a singular position and was made the limit there
 

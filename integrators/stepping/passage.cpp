@@ -186,6 +186,12 @@ Status Passage::complete(State& at) {
   return settled ? Status{} : consistent_.complete(at);
 }
 
+void Passage::stand_on_rows(State& at) {
+  if (complete(at).ok()) return;
+  at = given_;
+  consistent_.stand(at);
+}
+
 Status Passage::complete_sample(State& at) {
   Status status = complete(at);
   if (status.ok() && !settled_ && consistent_.made_of_rounding(at)) status = {Failure::singular_position, at.t, {}};

@@ -43,6 +43,9 @@ class Passage {
   bool settle_end(State& at, const Eigen::VectorXd& v_n);
   // The consistent state beside (q, v), λ included: Consistent's, or the limit.
   Status complete(State& at);
+  // Where other rows are kept than before: what steps have left of these, which no shorter step would make smaller,
+  // goes where it can; else the state stays as it is. The problem stands at `at`, before and after.
+  void stand_on_rows(State& at);
   // The same of a sample, which is refused where it is made of rounding, as singular_position.
   Status complete_sample(State& at);
   // How far the last one was moved, δq and then δv; by Consistent, where it was not settled.

@@ -80,7 +80,9 @@ Status RadauStepper::take_rows() {
   revision_ = problem_.revision();
   step_ = Linearized(problem_), within_ = Linearized(problem_);
   in_solver_ = nullptr;
-  return prepare();
+  if (Status status = prepare(); !status.ok()) return status;
+  passage_.stand_on_rows(state_);
+  return {};
 }
 
 Status RadauStepper::cross(double t) {
