@@ -10,6 +10,7 @@
 #include "integrators/start/loop_rows.h"
 #include "integrators/start/rank.h"
 #include "integrators/start/violation.h"
+#include "tests/scale.h"
 #include "tests/support/random_model.h"
 #include "tests/support/simulation.h"
 
@@ -119,7 +120,7 @@ inline Scene random_scene(unsigned seed) {
   return scene;
 }
 
-inline constexpr unsigned kScenes = 300;
+inline constexpr int kScenes = 300;
 
 // All of G by a dense decomposition.
 struct Dense {
@@ -155,16 +156,17 @@ struct Analyzed {
 };
 
 inline void for_random_scenes(const std::function<void(const Scene&, const Analyzed&)>& look) {
+  const int scenes = scaled(kScenes);
   int looked_at = 0;
-  for (unsigned seed = 0; seed < kScenes; ++seed) {
+  for (int seed = 0; seed < scenes; ++seed) {
     SCOPED_TRACE(fmt::format("seed {}", seed));
-    const Scene scene = random_scene(seed);
+    const Scene scene = random_scene(static_cast<unsigned>(seed));
     const Analyzed a(scene);
     if (!a.dense.clear || a.rank.singular_position()) continue;
     ++looked_at;
     look(scene, a);
   }
-  EXPECT_GT(looked_at, static_cast<int>(kScenes) / 2);
+  EXPECT_GT(looked_at, scenes / 2);
 }
 
 }  // namespace poinsot::test::grounded
