@@ -18,6 +18,7 @@ constexpr int kWide = 300;            // entries of a row that fronts do without
 constexpr double kNegligible = 1e-9;  // of a sum beside the largest entry of its vector
 constexpr double kMentioned = 1e-6;   // of a coefficient beside that of the dependent column
 constexpr double kGrown = 1e6;        // times: rounding of 1e-12, as projections leave it, is 1e-6 of a column then
+constexpr double kExploded = 1e10;    // times: and so is rounding of A itself
 constexpr double kMostWork = 2e9;     // operations with what wide rows leave of columns
 
 // A z at the wide rows, as entries behind those of the columns: combined like them, and zero for a null vector of A.
@@ -110,8 +111,8 @@ struct Decomposed {
 };
 
 // Where the columns kept by their order are barely independent, and rounding of A decides about what is left of others,
-// those are kept that are clearest; unless `enough` of them are dependent all the same. So, too, beside wide rows: what
-// these hold is found by sums along null vectors, which such columns make long.
+// those are kept that are clearest, or calmest where these are no better; unless `enough` of them are dependent all the
+// same. So, too, beside wide rows: what these hold is found by sums along null vectors, which such columns make long.
 Decomposed decomposed(const Sparse& A, const WideRows& wide, double tolerance, std::size_t most, std::size_t enough) {
   const auto choose = [&](FrontQr::Choice choice, std::size_t vectors) {
     FrontQr qr(A, wide.left_out, tolerance, choice, vectors);
@@ -121,9 +122,13 @@ Decomposed decomposed(const Sparse& A, const WideRows& wide, double tolerance, s
   if (wide.count > 0) return choose(FrontQr::Choice::clearest, SIZE_MAX);
   Decomposed first = choose(FrontQr::Choice::by_order, most);
   if (first.qr.growth() <= kGrown || first.qr.dependent().size() >= enough) return first;
-  Decomposed other = choose(FrontQr::Choice::clearest, most);
-  first.from = other.from = std::max(first.from, other.from);
-  return other.qr.growth() < first.qr.growth() ? std::move(other) : std::move(first);
+  for (const auto choice : {FrontQr::Choice::clearest, FrontQr::Choice::calmest}) {
+    if (choice == FrontQr::Choice::calmest && first.qr.growth() <= kExploded) break;
+    Decomposed other = choose(choice, most);
+    first.from = other.from = std::max(first.from, other.from);
+    if (other.qr.growth() < first.qr.growth()) first = std::move(other);
+  }
+  return first;
 }
 
 // Null vectors of A, by the last column of each.

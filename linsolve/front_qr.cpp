@@ -6,6 +6,7 @@
 #include <cmath>
 #include <queue>
 #include <random>
+#include <ranges>
 #include <utility>
 
 #include "core/check.h"
@@ -19,6 +20,7 @@ constexpr double kNothing = 1e-13;  // of a coefficient, or of what is left of a
 constexpr double kClear = 0.2;      // of a column of unit length: it need not wait
 constexpr double kLeansOn = 1e-3;   // of a column of unit length
 constexpr double kFarApart = 100;   // |y| that a few bodies do not come to
+constexpr int kSigns = 3;           // vectors of signs by which columns that lean far are found
 constexpr Eigen::Index kMostWait = 16;  // columns of a front
 
 }  // namespace
@@ -33,7 +35,9 @@ FrontQr::FrontQr(const Sparse& A, const std::vector<char>& left_out, double tole
       grown_(column_.size()),
       local_(2 * column_.size()) {
   std::mt19937 random(1);
-  for (double& b : known_) b = random() % 2 == 0 ? 1 : -1;
+  const auto sign = [&] { return random() % 2 == 0 ? 1.0 : -1.0; };
+  std::ranges::generate(known_, sign);
+  if (choice_ == Choice::calmest) leaning_ = Eigen::MatrixXd::NullaryExpr(kSigns, A.cols(), sign);
   const int n = static_cast<int>(A.cols());
   Sparse kept = A;
   kept.prune([&](Eigen::Index row, Eigen::Index, double value) { return value != 0 && !left_out[index(row)]; });
@@ -109,15 +113,28 @@ void FrontQr::reduce(Front& front) {
     front.top = front.first = 0;
   }
   const double norm = front.left().col(0).norm();
-  if (choice_ == Choice::clearest && norm > kNothing && norm < kClear)
+  if (choice_ != Choice::by_order && norm > kNothing && clarity(front, 0, norm) < kClear)
     wait(front);
   else
     take(front, 0, norm);
-  if (choice_ == Choice::clearest) settle_waiting(front);
+  if (choice_ != Choice::by_order) settle_waiting(front);
+}
+
+int FrontQr::column_at(const Front& front, Eigen::Index k) const {
+  const int place = front.places[index(front.first + k)];
+  return waits(place) ? place - static_cast<int>(column_.size()) : column_[index(place)];
+}
+
+// What is left of column k, which is `norm`, for the calmest less where its y would be above kFarApart: kept one after
+// the other such columns make y grow with the power of their number, though enough is left of each.
+double FrontQr::clarity(const Front& front, Eigen::Index k, double norm) const {
+  if (choice_ != Choice::calmest) return norm;
+  const double known = leaning_.col(column_at(front, k)).cwiseAbs().maxCoeff();
+  return norm * std::min(1.0, kFarApart * kClear / known);
 }
 
 void FrontQr::wait(Front& front) {
-  front.places.push_back(static_cast<int>(column_.size()) + column_[index(front.places[index(front.first)])]);
+  front.places.push_back(static_cast<int>(column_.size()) + column_at(front, 0));
   front.rows.conservativeResize(Eigen::NoChange, front.rows.cols() + 1);
   front.rows.rightCols(1) = front.rows.col(front.first);
   ++front.first;
@@ -131,27 +148,28 @@ void FrontQr::settle_waiting(Front& front) {
   };
   while (front.left().cols() > first_waiting()) {
     const Eigen::Index first = first_waiting(), count = front.left().cols() - first;
-    Eigen::Index least = 0, most = 0;
+    Eigen::Index least = 0;
     const Eigen::RowVectorXd norms = front.left().rightCols(count).colwise().norm();
-    const double smallest = norms.minCoeff(&least), largest = norms.maxCoeff(&most);
+    const double smallest = norms.minCoeff(&least), largest = norms.maxCoeff();
     if (largest <= tolerance_) most_left_ = std::max(most_left_, largest);
-    if (!(smallest > kNothing))
+    if (!(smallest > kNothing)) {
       take(front, first + least, smallest);
-    else if (first == 0 || count > (largest > tolerance_ ? kMostWait : 4 * kMostWait))
-      take(front, first + most, largest);
-    else
+    } else if (first == 0 || count > (largest > tolerance_ ? kMostWait : 4 * kMostWait)) {
+      const auto worth = [&](Eigen::Index k) {
+        return std::pair(norms[k] > tolerance_, clarity(front, first + k, norms[k]));
+      };
+      const Eigen::Index clearest = *std::ranges::max_element(std::views::iota(Eigen::Index{0}, count), {}, worth);
+      take(front, first + clearest, norms[clearest]);
+    } else {
       return;
+    }
   }
 }
 
 // Column k of what is left, whose norm that is.
 void FrontQr::take(Front& front, Eigen::Index k, double norm) {
-  const auto column_at = [&](Eigen::Index j) {
-    const int place = front.places[index(front.first + j)];
-    return waits(place) ? place - static_cast<int>(column_.size()) : column_[index(place)];
-  };
   const int row = static_cast<int>(order_.size());
-  order_.push_back(column_at(k));
+  order_.push_back(column_at(front, k));
   auto left = front.left();
   if (norm > tolerance_) {
     double tau = 0, beta = 0;
@@ -163,19 +181,21 @@ void FrontQr::take(Front& front, Eigen::Index k, double norm) {
     left(0, k) = beta;
     const double y = known_[index(order_.back())] / beta;
     growth_ = std::max(growth_, std::abs(y));
+    const Eigen::VectorXd others = choice_ == Choice::calmest ? leaning_.col(order_.back()) / beta : Eigen::VectorXd();
     for (Eigen::Index j = 0; j < left.cols(); ++j) {
       if (left(0, j) == 0) continue;
-      known_[index(column_at(j))] -= left(0, j) * y;
-      if (std::abs(left(0, j)) > kLeansOn)
-        grown_[index(column_at(j))] = std::max(grown_[index(column_at(j))], std::abs(y));
-      if (has_R_) R_.push_back({row, column_at(j), left(0, j)});
+      const int column = column_at(front, j);
+      known_[index(column)] -= left(0, j) * y;
+      if (choice_ == Choice::calmest) leaning_.col(column) -= left(0, j) * others;
+      if (std::abs(left(0, j)) > kLeansOn) grown_[index(column)] = std::max(grown_[index(column)], std::abs(y));
+      if (has_R_) R_.push_back({row, column, left(0, j)});
     }
     ++front.top;
   } else {
     most_left_ = std::max(most_left_, norm);
     const double grown = grown_[index(order_.back())];
     if (grown > kFarApart && norm > kNothing) ++stretched_;
-    dependent_.push_back(column_at(k));
+    dependent_.push_back(order_.back());
     if (dependent_.size() > most_) std::vector<Entry>().swap(R_), has_R_ = false;
   }
   if (!waits(front.places[index(front.first + k)])) {

@@ -7,7 +7,8 @@
 //
 // Which columns are kept is then decided by the order, and those may be barely independent. Where that matters a column
 // of which little is left can wait while others of its fronts are taken, of which it may turn out a combination: a few
-// at a time, for fronts to stay small.
+// at a time, for fronts to stay small. Columns of which enough is left may still lean on each other more and more along
+// a mechanism, tenfold with each cell; the calmest are had where those wait, too, that numbers would grow by.
 //
 // Eigen's SparseQR takes 420 ms for Gᵀ of a ladder of 1000 bodies and 3.0 s for a chain's, this 3.7 and 1.9 ms (Intel
 // Xeon, release build): it goes by columns, with no fronts.
@@ -27,7 +28,7 @@ using SparseEntries = std::vector<std::pair<int, double>>;  // by index
 class FrontQr {
  public:
   using Sparse = Eigen::SparseMatrix<double>;
-  enum class Choice { by_order, clearest };
+  enum class Choice { by_order, clearest, calmest };
   // `left_out`: rows of A that are passed over. Null vectors can be asked for, and R is kept, where no more than `most`
   // columns are dependent.
   FrontQr(const Sparse& A, const std::vector<char>& left_out, double tolerance, Choice choice, std::size_t most);
@@ -65,6 +66,8 @@ class FrontQr {
 
   Front assemble(int place, const RowMajor& A, std::span<const int> begins, std::vector<Front> parts);
   void reduce(Front& front);
+  int column_at(const Front& front, Eigen::Index k) const;
+  double clarity(const Front& front, Eigen::Index k, double norm) const;
   void wait(Front& front);
   void settle_waiting(Front& front);
   void take(Front& front, Eigen::Index k, double norm);
@@ -82,6 +85,7 @@ class FrontQr {
   double growth_ = 0;
   std::size_t stretched_ = 0;
   std::vector<double> known_;  // by column: b less what the rows of R so far take off
+  Eigen::MatrixXd leaning_;    // likewise of other signs, to choose the calmest by; y of the same would tell less
   std::vector<double> grown_;  // by column: the largest |y| of these rows
   std::vector<int> local_;     // place within the front being assembled
   std::vector<double> work_;   // by place, zero between calls

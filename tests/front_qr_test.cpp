@@ -1,0 +1,44 @@
+// What is kept of a long mechanism does not depend on all that comes before it more and more.
+#include "linsolve/front_qr.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "core/index.h"
+#include "core/model.h"
+#include "integrators/start/loop_rows.h"
+#include "integrators/start/rank.h"
+#include "integrators/start/row_space.h"
+#include "integrators/start/violation.h"
+#include "tests/support/large_scenes.h"
+
+namespace poinsot::test {
+namespace {
+
+// Enough is left of each column that is kept, but loads are 1e41 times as large at one end of this net as at the other
+// where columns are taken by their order, and still 5e10 times where the clearest are.
+TEST(FrontQr, KeepsRowsThatNumbersDoNotGrowAlong) {
+  constexpr int kRows = 391, kBodiesOfRow = 13, kFollowing = 18;  // of the net
+  const auto model = std::make_shared<const Model>(compile(grid(kRows * kBodiesOfRow)));
+  RowSpace space = all_rows(model, 0, given_state(*model));
+  space.keep(loop_rows(*model, space));
+  const std::vector<char> none(index(space.columns().rows()), 0);
+  const FrontQr kept(space.columns(), none, kIndependent, FrontQr::Choice::calmest, 0);
+  const FrontQr clear(space.columns(), none, kIndependent, FrontQr::Choice::clearest, 0);
+  EXPECT_EQ(kept.dependent().size(), kFollowing * (kRows - 1));
+  EXPECT_LT(kept.growth(), 1e7);
+  EXPECT_GT(clear.growth(), 1e10);
+}
+
+// Its other end could not be put back onto rows of the net, and seemed to have another rank beside.
+TEST(FrontQr, ANetOf8000RodsIsRegular) {
+  const auto model = std::make_shared<const Model>(compile(grid(7995)));
+  const RankAnalysis found = analyze_rank(model, given_state(*model), RankNames::none);
+  EXPECT_EQ(found.degrees_of_freedom(), 627);  // one a row and twelve
+  EXPECT_TRUE(found.singular.empty());
+}
+
+}  // namespace
+}  // namespace poinsot::test
