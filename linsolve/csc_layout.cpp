@@ -87,22 +87,38 @@ class Matching {
  private:
   static constexpr int kNone = -1, kFar = std::numeric_limits<int>::max();
 
-  // Columns with few rows choose first: multipliers take the bodies' equations, which are many.
+  // Multipliers, which have nothing on the diagonal, choose first, then columns with few rows. Of those that are left
+  // a column takes the one that fewest others could, along a tree that of the body it leads to; where the structure is
+  // symmetric the column of that row takes the row of this column in exchange.
   int greedy() {
-    std::vector<int> order(index(layout_.n));
+    std::vector<int> order(index(layout_.n)), choices(index(layout_.n), 0);  // by row: columns that have it
+    for (const int i : layout_.row) ++choices[index(i)];
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, {}, [&](int j) { return layout_.start[index(j) + 1] - layout_.start[index(j)]; });
+    std::ranges::stable_partition(order, [&](int j) { return !has(j, j); });
     int matched = 0;
-    for (const int j : order)
+    for (const int j : order) {
+      if (row_of_[index(j)] != kNone) continue;
+      int least = kNone;
       for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k)
-        if (const int i = layout_.row[index(k)]; column_of_[index(i)] == kNone) {
-          match(i, j);
-          ++matched;
-          break;
-        }
+        if (const int i = layout_.row[index(k)];
+            column_of_[index(i)] == kNone && (least == kNone || choices[index(i)] < choices[index(least)]))
+          least = i;
+      if (least == kNone) continue;
+      match(least, j);
+      ++matched;
+      if (row_of_[index(least)] != kNone || column_of_[index(j)] != kNone || !has(j, least)) continue;
+      match(j, least);
+      ++matched;
+    }
     return matched;
   }
 
+  bool has(int i, int j) const {
+    const auto first = layout_.row.begin() + layout_.start[index(j)],
+               last = layout_.row.begin() + layout_.start[index(j) + 1];
+    return std::binary_search(first, last, i);
+  }
   void match(int i, int j) { column_of_[index(i)] = j, row_of_[index(j)] = i; }
 
   // Distance of columns from the free columns along alternating paths.
