@@ -95,7 +95,7 @@ class Matching {
     for (const int i : layout_.row) ++choices[index(i)];
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, {}, [&](int j) { return layout_.start[index(j) + 1] - layout_.start[index(j)]; });
-    std::ranges::stable_partition(order, [&](int j) { return !has(j, j); });
+    std::stable_partition(order.begin(), order.end(), [&](int j) { return !has(j, j); });
     int matched = 0;
     for (const int j : order) {
       if (row_of_[index(j)] != kNone) continue;

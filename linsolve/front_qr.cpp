@@ -6,7 +6,6 @@
 #include <cmath>
 #include <queue>
 #include <random>
-#include <ranges>
 #include <utility>
 
 #include "core/check.h"
@@ -158,7 +157,9 @@ void FrontQr::settle_waiting(Front& front) {
       const auto worth = [&](Eigen::Index k) {
         return std::pair(norms[k] > tolerance_, clarity(front, first + k, norms[k]));
       };
-      const Eigen::Index clearest = *std::ranges::max_element(std::views::iota(Eigen::Index{0}, count), {}, worth);
+      Eigen::Index clearest = 0;
+      for (Eigen::Index k = 1; k < count; ++k)
+        if (worth(clearest) < worth(k)) clearest = k;
       take(front, first + clearest, norms[clearest]);
     } else {
       return;
