@@ -13,7 +13,8 @@ namespace poinsot {
 namespace {
 
 constexpr double kLookedAgain = 1;  // rad, at the latest
-constexpr double kLost = 1e-5;      // of a body's size: far above what steps leave, far below what opens to the eye
+constexpr double kShrunk = 0.05;  // of the longest step since the last look: rows may wear out where steps creep up to
+constexpr double kLost = 1e-5;    // of a body's size: far above what steps leave, far below what opens to the eye
 // Of what kept rows are off, which a tolerance leaves off: rows that follow from them add them up.
 constexpr double kAsKept = 100;
 
@@ -184,10 +185,13 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
   const double h = std::max(t - std::exchange(accepted_at_, t), 0.0), ahead = h * kept_->fastest_turn();
   const double good_for = std::min(choice_->rows.good_for(), kLookedAgain);
   way_ += std::max(ahead, std::exchange(ahead_, ahead));
-  if (way_ + ahead < good_for) return {};
+  longest_ = std::max(longest_, h);
+  const bool creeps = h > 0 && h < kShrunk * longest_;
+  if (!creeps && way_ + ahead < good_for) return {};
   kept_->to_bodies(a, now_);
   way_ = turned();
-  if (way_ + ahead < good_for) return {};
+  if (!creeps && way_ + ahead < good_for) return {};
+  longest_ = h;
   const bool others = choice_->rows.renew(t, now_, std::exchange(way_, 0.0), ahead);
   choice_->at = now_;
   if (!others) return {};

@@ -119,6 +119,7 @@ class OverConstrained final : public Problem {
   std::vector<double> kept_rates_, kept_positions_;
   double t_ = 0;                // where the problem stands
   double accepted_at_ = 0;      // the last step's end
+  double longest_ = 0;          // s, step since the last look
   double way_ = 0, ahead_ = 0;  // rad, what the fastest body has turned by since the last look, about; its last part
   mutable std::vector<BodyState> now_;
   std::vector<double> no_accelerations_;

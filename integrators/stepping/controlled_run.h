@@ -22,10 +22,8 @@ namespace poinsot {
 template <class Method, class Leave>
 Status controlled_steps(Method& method, const StepRule& rule, Course& course, const Leave& leave) {
   constexpr double kForgotten = 0.8;
-  // Rejections in a row, and part of the longest step since asked last: of redundant rows the kept ones may all but
-  // depend on one another ahead, where steps creep up to.
-  constexpr int kAsksForRows = 4;
-  constexpr double kShrunk = 0.05;
+  constexpr int kAsksForRows =
+      4;  // rejections: of redundant rows the kept ones may all but depend on one another ahead
   const double end = course.end(), smallest = 16 * std::numeric_limits<double>::epsilon() * end;
   SampleTimes& times = course.times;
   StepController controller(rule);
@@ -34,18 +32,12 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
   course.begin_laws(method.state());
   double h = method.first_step(end, singular_for);
   double usual = singular_for > 0 ? h : 0;  // length of the steps so far, those long ago forgotten
-  double longest = h;                       // since rows were asked for
   int rejections = 0;                       // in a row
   double asked_at = -1;
   bool cut = false;  // h is what laws leave of a step
   while (method.state().t < end) {
     const double t = method.state().t;
     if (interruption_requested) return interrupted(t);
-    longest = std::max(longest, h);
-    if (rejections == 0 && !cut && h < kShrunk * longest) {
-      method.choose_rows();
-      longest = h;
-    }
     const SwitchTimes::Switch turn = course.switches.first(t, std::min(t + 1.01 * h, end));
     const double stop = std::min(turn.before, end), beyond_law = course.law_switches.beyond();
     const bool leads = beyond_law < stop;  // to a switch of a law that is as near as that
@@ -128,7 +120,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
       controller = StepController(rule);
       creeping = Creeping(end);
       course.begin_anew(method.state());
-      h = longest = method.first_step(end, 0);
+      h = method.first_step(end, 0);
     }
     if (leave()) return {};
   }
