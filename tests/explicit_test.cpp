@@ -50,6 +50,7 @@ TEST_P(Explicit, DoesNotCreepUpToSingularPositions) {
     EXPECT_EQ(r.outcome.status.failure, Failure::step_size_too_small);
     EXPECT_THAT(r.outcome.status.message, HasSubstr("singular position"));
   }
+  EXPECT_LT(r.outcome.statistics.steps, 10'000);
   EXPECT_LT(r.outcome.statistics.rejected_steps, 1000);
 }
 
