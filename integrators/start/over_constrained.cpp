@@ -13,8 +13,8 @@ namespace poinsot {
 namespace {
 
 constexpr double kLookedAgain = 1;  // rad, at the latest
-constexpr double kShrunk = 0.05;  // of the longest step since the last look: rows may wear out where steps creep up to
-constexpr double kLost = 1e-5;    // of a body's size: far above what steps leave, far below what opens to the eye
+constexpr double kShrunk = 0.05;    // of the longest step since the last look: steps may creep up to worn rows
+constexpr double kLost = 1e-5;      // of a body's size: far above what steps leave, far below what opens to the eye
 // Of what kept rows are off, which a tolerance leaves off: rows that follow from them add them up.
 constexpr double kAsKept = 100;
 
