@@ -19,7 +19,8 @@ double least_jump(double f) {
 
 }  // namespace
 
-DriverJumps::DriverJumps(const Model& model, double end) : model_(model), shortest_(kLeastStretch * end) {
+DriverJumps::DriverJumps(const Model& model, double end)
+    : model_(model), shortest_(kLeastStretch * end), lengths_(model, end) {
   const auto add = [&](const Expression& f, std::size_t row) {
     if (f.is_constant() || f.is_function()) return;
     const Jet2<Bounds> over = f.range({{0, end}, Bounds::unknown(), Bounds::unknown()});
@@ -48,7 +49,7 @@ Status DriverJumps::look(double to) {
     Value from = std::exchange(of.at, next);
     if (jumps(*of.f, from, of.at)) return jump_of_positions(from.t, describe_row(model_, of.row));
   }
-  return {};
+  return lengths_.look(to);
 }
 
 // `from` is moved to where it does.

@@ -7,6 +7,8 @@
 // in. One that it stays in down to a stretch of 1e-10 of the run is a jump. Functions without a sign or step whose ḟ
 // interval arithmetic bounds so that they change by no more than 1e-6 in such a stretch are not looked at, which are
 // most.
+//
+// Distances that come to zero, beyond which no motion is told either, are looked for along with them.
 #pragma once
 
 #include <cmath>
@@ -14,6 +16,7 @@
 
 #include "core/model.h"
 #include "core/status.h"
+#include "integrators/stepping/closing_lengths.h"
 
 namespace poinsot {
 
@@ -22,8 +25,9 @@ class DriverJumps {
   // Of the expressions of the model, which has to live as long, up to a time `end`.
   DriverJumps(const Model& model, double end);
 
-  bool none() const { return functions_.empty(); }  // that may
-  // From the time looked up to before, first 0, to this one; fails where a prescribed position jumps.
+  bool none() const { return functions_.empty() && lengths_.none(); }  // that may
+  // From the time looked up to before, first 0, to this one; fails where a prescribed position jumps, or a distance
+  // comes to zero.
   Status look(double to);
 
  private:
@@ -44,6 +48,7 @@ class DriverJumps {
   const double shortest_;
   double looked_to_ = 0;
   std::vector<Function> functions_;
+  ClosingLengths lengths_;
 };
 
 }  // namespace poinsot
