@@ -30,7 +30,7 @@ Scene driven(const std::string& length) {
 }
 
 // Where it is seen to close in steps of h over a second; none: infinity.
-double seen(const std::string& length, double h) {
+double closes_at(const std::string& length, double h) {
   const Model model = compile(driven(length));
   ClosingLengths lengths(model, 1);
   for (int n = 1; n * h <= 1; ++n)
@@ -42,13 +42,13 @@ TEST(ClosingLengths, AreSeenWhateverTheStep) {
   const double at = 0.37;
   for (const char* f : {"abs(1 - t/0.37)", "(1 - t/0.37)^2", "sqrt((1 - t/0.37)^2)", "1 - t/0.37", "0.37 - t",
                         "cos(pi*t/0.74)^2", "1 - exp(-(200*(t - 0.37))^2)", "min(1, 1e6*abs(t - 0.37))"})
-    for (const double h : {1e-3, 0.011, 0.1, 0.37}) EXPECT_NEAR(seen(f, h), at, 1e-8) << f << ' ' << h;
+    for (const double h : {1e-3, 0.011, 0.1, 0.37}) EXPECT_NEAR(closes_at(f, h), at, 1e-8) << f << ' ' << h;
 }
 
 TEST(ClosingLengths, AreNotWhereTheyStayPositive) {
   for (const char* f : {"1", "1 + 0.5*sin(9*t)", "1e-7 + (1 - t/0.37)^2", "1 + t*sin(20*t)", "1e-3 + abs(1 - t/0.37)",
                         "sin(9*t)^2 + cos(9*t)^2", "1/(1 + 1e4*(t - 0.37)^2)", "1 - 0.999*exp(-(200*(t - 0.37))^2)"})
-    for (const double h : {1e-3, 0.1}) EXPECT_EQ(seen(f, h), HUGE_VAL) << f << ' ' << h;
+    for (const double h : {1e-3, 0.1}) EXPECT_EQ(closes_at(f, h), HUGE_VAL) << f << ' ' << h;
 }
 
 TEST(ClosingLengths, EndEveryRun) {

@@ -2,47 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
-#include "core/body_sizes.h"
 #include "formulations/gradient.h"
+#include "integrators/stepping/unit_rows.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
 namespace {
-
-// G with rows of unit length, a turn counted as the way it makes at the body's size: whatever the unit of lengths.
-struct UnitRows {
-  Eigen::VectorXd lengths;
-  Eigen::MatrixXd inverse;  // of G Gᵀ
-
-  // Of every row, how much of its length is independent of the others.
-  Eigen::VectorXd shares() const {
-    return inverse.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();  // rounding may make such a row's negative
-  }
-};
-UnitRows unit_rows(Problem& problem, double t, std::span<const double> q) {
-  problem.set_position(t, q);
-  problem.set_velocity(std::vector<double>(static_cast<std::size_t>(problem.nv()), 0.0));
-  const std::vector<Eigen::Triplet<double>> entries = gradient(problem);
-  Eigen::SparseMatrix<double> sparse(problem.nc(), problem.nv());
-  sparse.setFromTriplets(entries.begin(), entries.end());
-  Eigen::MatrixXd G = sparse;
-  const std::vector<double> sizes = body_sizes(problem.model());
-  const Eigen::Index per_body = problem.bodies() > 0 ? problem.nv() / problem.bodies() : 0;
-  for (std::size_t b = 0; b < sizes.size(); ++b)
-    G.middleCols(static_cast<Eigen::Index>(b) * per_body + 3, per_body - 3) /= sizes[b];
-  const Eigen::VectorXd lengths = G.rowwise().norm();
-  G.rowwise().normalize();
-  Eigen::MatrixXd square = G * G.transpose();
-  square.diagonal().array() += 8 * std::numeric_limits<double>::epsilon();  // regular where a row depends altogether
-  return {lengths, square.ldlt().solve(Eigen::MatrixXd::Identity(problem.nc(), problem.nc()))};
-}
 
 // Whether drivers bar the position (t, q), where the problem stands and `row` all but depends on others. What they ask
 // for is measured by what they asked for before: a driver that comes to rest with the mechanism bars nothing. Where
@@ -56,9 +26,9 @@ bool bars(Problem& problem, const UnitRows& rows, Eigen::Index row, double t, st
     problem.nu(span(nu));
     usual = usual.cwiseMax(nu.cwiseAbs());
   }
-  const auto mu = rows.inverse.col(row);
-  return std::abs(mu.dot(nu.cwiseQuotient(rows.lengths))) >
-         (kNone + kTimesShare * rows.shares()[row]) * mu.norm() * usual.cwiseQuotient(rows.lengths).norm();
+  const Eigen::VectorXd mu = rows.dependence(row);
+  return std::abs(mu.dot(nu.cwiseQuotient(rows.lengths()))) >
+         (kNone + kTimesShare * rows.shares()[row]) * mu.norm() * usual.cwiseQuotient(rows.lengths()).norm();
 }
 
 // Of one body at least. The problem stands at the state.
@@ -84,12 +54,6 @@ double about_distance(const Model& model, const Row& row) {
   return std::max({i, j, start_length(model, row)});
 }
 
-constexpr int kLargest = 600;  // of G: a second's work
-
-}  // namespace
-
-namespace {
-
 // Where the problem stands.
 Eigen::VectorXd shares_of(Problem& problem, const UnitRows& here, int rows) {
   Eigen::VectorXd shares = here.shares().head(rows);
@@ -107,14 +71,14 @@ Eigen::VectorXd shares_of(Problem& problem, const UnitRows& here, int rows) {
 }  // namespace
 
 Eigen::VectorXd independent_shares(Problem& problem, int rows, double t, std::span<const double> q) {
-  if (rows < 1 || problem.nc() > kLargest) return {};
-  return shares_of(problem, unit_rows(problem, t, q), rows);
+  if (rows < 1 || !UnitRows::has(problem)) return {};
+  return shares_of(problem, UnitRows(problem, t, q), rows);
 }
 
 DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q) {
-  if (rows < 1 || problem.nc() > kLargest) return {};
+  if (rows < 1 || !UnitRows::has(problem)) return {};
   Eigen::Index row = 0;
-  const UnitRows here = unit_rows(problem, t, q);
+  const UnitRows here(problem, t, q);
   const double share = shares_of(problem, here, rows).minCoeff(&row);
   return {static_cast<int>(row), share, bars(problem, here, row, t, q)};
 }
@@ -122,9 +86,9 @@ DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<
 NearSingular near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
                                     std::span<const double> q) {
   constexpr double kNear = 0.05, kThere = 1e-3;
-  if (rows < 2 || problem.nc() > kLargest) return {};
-  const Eigen::VectorXd before = unit_rows(problem, 0, q_start).shares();
-  const UnitRows here = unit_rows(problem, t, q);
+  if (rows < 2 || !UnitRows::has(problem)) return {};
+  const Eigen::VectorXd before = UnitRows(problem, 0, q_start).shares();
+  const UnitRows here(problem, t, q);
   const Eigen::VectorXd now = here.shares();
   Eigen::Index row = 0;
   const double share = now.cwiseQuotient(before).head(rows).minCoeff(&row);

@@ -1,9 +1,8 @@
 // Whether a run that stopped did so beside a singular position of its mechanism, and which constraint row says so.
 //
-// Of a row g of G, with rows of unit length, the part independent of the others is as long as
-//   1/sqrt((G Gᵀ)⁻¹_gg)
-// which goes to 0 with the distance from a position where the row depends on the others. How small it is elsewhere is a
-// matter of the mechanism (of its lengths, of the number of its loops): it is compared with what it was at the start.
+// The part of a row that is independent of the others (unit_rows.h) goes to 0 with the distance from a position where
+// the row depends on them. How small it is elsewhere is a matter of the mechanism (of its lengths, of the number of its
+// loops): it is compared with what it was at the start.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +15,7 @@
 namespace poinsot {
 
 // The row of the first `rows` of G that is the least independent of the others at (t, q), and the part of its length
-// that is; row −1 where the mechanism is too large to look at densely. The problem stands there afterwards, at rest.
+// that is; row −1 where thousands of rows hold one body. The problem stands there afterwards, at rest.
 struct DependentRow {
   int row = -1;
   double share = 1;
@@ -25,11 +24,11 @@ struct DependentRow {
   bool barred = false;
 };
 DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<const double> q);
-// Of all of these rows that part; none where the mechanism is too large.
+// Of all of these rows that part; none where thousands of rows hold one body.
 Eigen::VectorXd independent_shares(Problem& problem, int rows, double t, std::span<const double> q);
 
-// A sentence; empty where every row is as independent as at the start, or nearly, and for mechanisms too large to look
-// at densely. `rows`: rows of G that are constraints of the scene (before normalizations). The problem stands at (t, q)
+// A sentence; empty where every row is as independent as at the start, or nearly, and where thousands of rows hold one
+// body. `rows`: rows of G that are constraints of the scene (before normalizations). The problem stands at (t, q)
 // afterwards, at rest.
 struct NearSingular {
   std::string sentence;
