@@ -1,6 +1,8 @@
 // Kinks and jumps of drivers and forces: found ahead, stepped onto by error control, told by fixed steps.
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "core/scene_reader.h"
 #include "integrators/stepping/switch_times.h"
 #include "tests/support/controlled_ways.h"
@@ -75,6 +77,20 @@ TEST(SwitchTimes, AreNotMadeByRounding) {
   }
   // Flat at its zero: a kink, not a swarm of them.
   EXPECT_THAT(switches("abs(t^3 - 1.5*t^2 + 0.75*t - 0.125)", 1), ElementsAre(DoubleNear(0.5, 1e-4)));
+}
+
+// Arguments that rounding makes zero at a few times in a row.
+TEST(SwitchTimes, LeadOnToTheOtherSide) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> size(0.5, 5);
+  for (int k = 0; k < 500; ++k) {
+    const std::string text = fmt::format("abs({:.4g} - {:.4g}*t)", size(random), size(random));
+    const Model model = compile(pushed(text.c_str()));
+    const SwitchTimes::Switch found = SwitchTimes(model, 10).first(0, 10);
+    ASSERT_LT(found.before, 10) << text;
+    const Expression f = Expression::parse(text);
+    EXPECT_EQ(f.at(found.after).fd, -f.at(found.before).fd) << text;
+  }
 }
 
 TEST(SwitchTimes, TellOfASignThatRoundingDecides) {
@@ -258,6 +274,15 @@ TEST_P(Switches, RatesThatJumpStrikeTheBodies) {
   EXPECT_EQ(found[2].bodies[1].w.x(), 0);
   EXPECT_EQ(found[3].t, 0.3);
   EXPECT_NEAR(found[3].bodies[1].w.x(), -0.5 * 0.5 / 0.35, 1e-6);
+}
+
+TEST_P(Switches, RatesThatTurnRoundAreFollowed) {
+  for (const char* angle :
+       {"t^2*abs(1 - 2.003*t)", "t^2*abs(1 - 2.1*t)", "t^2*abs(1 - 3*t)", "t^2*min(0.3, 1 - 1.7*t)"}) {
+    const auto found = motion(driven(angle), settings(1e-8, 0.8, 0.8));
+    const double w = Expression::parse(angle).at(0.8).fd;
+    EXPECT_NEAR(found.back().bodies[0].w.x(), w, 1e-6) << angle;
+  }
 }
 
 TEST_P(Switches, AreTakenFromFixedStepsBySayingSo) {

@@ -89,9 +89,12 @@ SwitchTimes::Switch SwitchTimes::between(const Switching& of, double from, doubl
   };
   for (double middle; middle = from + (to - from) / 2, from < middle && middle < to && to - from > instant_;)
     (beyond(middle) ? to : from) = middle;
-  if (computed_side(of, to) == Side::on) to = std::nextafter(to, HUGE_VAL);  // neither: one further is beyond
-  if (to <= begin) return {};                                                // behind
-  if (from - begin < kLeastStep * resolution_) from = begin;                 // no step leads there
+  // At zero it is on neither side; rounding may make it zero at several times in a row.
+  for (double next = std::nextafter(to, HUGE_VAL) - to; computed_side(of, to) == Side::on && next < resolution_;
+       next *= 2)
+    to += next;
+  if (to <= begin) return {};                                 // behind
+  if (from - begin < kLeastStep * resolution_) from = begin;  // no step leads there
   return {from, to};
 }
 
