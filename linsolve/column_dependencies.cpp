@@ -18,8 +18,9 @@ constexpr int kWide = 300;            // entries of a row that fronts do without
 constexpr double kNegligible = 1e-9;  // of a sum beside the largest entry of its vector
 constexpr double kMentioned = 1e-6;   // of a coefficient beside that of the dependent column
 constexpr double kGrown = 1e6;        // times: rounding of 1e-12, as projections leave it, is 1e-6 of a column then
-constexpr double kExploded = 1e10;    // times: and so is rounding of A itself
-constexpr double kMostWork = 2e9;     // operations with what wide rows leave of columns
+// Times the square of the number of columns: loads along a mechanism grow with the square of its length.
+constexpr double kExploded = 0.01;
+constexpr double kMostWork = 2e9;  // operations with what wide rows leave of columns
 
 // A z at the wide rows, as entries behind those of the columns: combined like them, and zero for a null vector of A.
 // `from` grows to the largest that passes for zero, beside the largest of z.
@@ -122,8 +123,9 @@ Decomposed decomposed(const Sparse& A, const WideRows& wide, double tolerance, s
   if (wide.count > 0) return choose(FrontQr::Choice::clearest, SIZE_MAX);
   Decomposed first = choose(FrontQr::Choice::by_order, most);
   if (first.qr.growth() <= kGrown || first.qr.dependent().size() >= enough) return first;
+  const double natural = kExploded * std::pow(static_cast<double>(A.cols()), 2);
   for (const auto choice : {FrontQr::Choice::clearest, FrontQr::Choice::calmest}) {
-    if (choice == FrontQr::Choice::calmest && first.qr.growth() <= kExploded) break;
+    if (choice == FrontQr::Choice::calmest && first.qr.growth() <= std::max(kGrown, natural)) break;
     Decomposed other = choose(choice, most);
     first.from = other.from = std::max(first.from, other.from);
     if (other.qr.growth() < first.qr.growth()) first = std::move(other);
