@@ -13,6 +13,8 @@
 // degrees of freedom and klu the whole matrix).
 //
 // Where solves outnumber factorizations (jacobian "kept") the pick is the same: linsolve/README.md has the figures.
+#include <utility>
+
 #include "linsolve/back_ends.h"
 #include "linsolve/registry.h"
 
@@ -50,13 +52,13 @@ class Auto final : public LinearSolver {
   Helper helper() const override { return solver_ ? solver_->helper() : Helper(); }
 
  private:
-  LinearStatus do_analyze(const Pattern& pattern) override {
+  LinearStatus do_analyze(Pattern&& pattern) override {
     constexpr int kOneBody = 7;  // coordinates, at most
     picked_ = workload() != Workload::transposed && saddle_point(pattern) ? "block"
               : pattern.n <= kOneBody                                     ? "dense"
                                                                           : "klu";
     solver_ = linear_solvers().require(picked_).make();
-    return solver_->analyze(pattern, workload());
+    return solver_->analyze(std::move(pattern), workload());
   }
   LinearStatus do_factor() override { return solver_->factor(); }
   LinearStatus do_solve(std::span<double> b) override { return solver_->solve(b); }

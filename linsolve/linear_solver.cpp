@@ -1,6 +1,7 @@
 #include "linsolve/linear_solver.h"
 
 #include <new>
+#include <utility>
 
 #include "core/check.h"
 #include "core/index.h"
@@ -31,13 +32,13 @@ bool fits(const Pattern& pattern) {
 
 }  // namespace
 
-LinearStatus LinearSolver::analyze(const Pattern& pattern, Workload workload) {
+LinearStatus LinearSolver::analyze(Pattern pattern, Workload workload) {
   check(fits(pattern), "every block of a pattern lies in its matrix, and every unknown has a node");
   state_ = State::empty;
   n_ = pattern.n;
   workload_ = workload;
   ++statistics_.analyses;
-  LinearStatus status = guarded([&] { return do_analyze(pattern); });
+  LinearStatus status = guarded([&] { return do_analyze(std::move(pattern)); });
   if (status.ok()) state_ = State::analyzed;
   return status;
 }

@@ -56,7 +56,7 @@ class LinearSolver {
 
   virtual ~LinearSolver() = default;
 
-  LinearStatus analyze(const Pattern& pattern, Workload workload = Workload::factorizations);
+  LinearStatus analyze(Pattern pattern, Workload workload = Workload::factorizations);
   LinearStatus factor();
   LinearStatus solve(std::span<double> b);
   LinearStatus solve_transposed(std::span<double> b);
@@ -75,8 +75,9 @@ class LinearSolver {
   virtual const LinearStatistics& statistics() const { return statistics_; }
 
  protected:
-  // Sets up slots_ and values_ (usually by CscLayout) and everything symbolic.
-  virtual LinearStatus do_analyze(const Pattern& pattern) = 0;
+  // Sets up slots_ and values_ (usually by CscLayout) and everything symbolic. The pattern's room may be given back
+  // before: of large systems it is a twentieth of all that lives.
+  virtual LinearStatus do_analyze(Pattern&& pattern) = 0;
   virtual LinearStatus do_factor() = 0;
   virtual LinearStatus do_solve(std::span<double> b) = 0;
   virtual LinearStatus do_solve_transposed(std::span<double> b);

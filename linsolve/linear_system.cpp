@@ -48,26 +48,28 @@ LinearSystem::LinearSystem(const LinearChoice& choice, Workload workload)
   may_reduce_ = linear_systems().require(choice.system).square_jacobian && solver_->takes_jacobian;
 }
 
-LinearStatus LinearSystem::analyze(const Pattern& pattern) {
+LinearStatus LinearSystem::analyze(Pattern pattern) {
   constexpr int kSmall = 20'000;  // unknowns
   const bool served = std::exchange(factored_, false) && !(whole_ && whole_->helper().solver);
   if (served && pattern == pattern_) return {};
   let_go();
-  LinearStatus status = analyze_anew(pattern);
-  if (jacobian_ || (status.ok() && pattern.n <= kSmall)) pattern_ = pattern;
+  if (pattern.n <= kSmall) pattern_ = pattern;
+  LinearStatus status = analyze_anew(std::move(pattern));
+  if (!jacobian_ && !status.ok()) pattern_ = {};
   return status;
 }
 
-LinearStatus LinearSystem::analyze_anew(const Pattern& pattern) {
+LinearStatus LinearSystem::analyze_anew(Pattern&& pattern) {
   if (may_reduce_ && SquareJacobian::fits(pattern)) {
     auto jacobian = std::make_unique<SquareJacobian>(solver_->make());
     if (jacobian->analyze(pattern)) {
       jacobian_ = std::move(jacobian);
+      pattern_ = std::move(pattern);
       return {};
     }
   }
   whole_ = solver_->make();
-  return whole_->analyze(pattern, workload_);
+  return whole_->analyze(std::move(pattern), workload_);
 }
 
 LinearStatus LinearSystem::factor() {

@@ -44,7 +44,7 @@ class LinearSystem {
   // Where the pattern is that of before and the solver factored its last values by itself, what it found out stays:
   // pivots are examined anew only where the next values need others. Of small systems; others would keep their patterns
   // for nothing.
-  LinearStatus analyze(const Pattern& pattern);
+  LinearStatus analyze(Pattern pattern);
   LinearStatus factor();
   LinearStatus solve(std::span<double> b) { return by_jacobian_ ? jacobian_->solve(b) : whole_->solve(b); }
 
@@ -62,7 +62,7 @@ class LinearSystem {
   }
 
  private:
-  LinearStatus analyze_anew(const Pattern& pattern);
+  LinearStatus analyze_anew(Pattern&& pattern);
   LinearStatus factor_at_hand();
   LinearStatus factor_whole_instead();
 

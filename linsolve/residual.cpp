@@ -62,14 +62,16 @@ void Residual::resize(const CscLayout& layout) {
   panels_.shrink_to_fit();
   std::vector<int> entries(index(layout.n), 0);
   for (const int row : layout.row) ++entries[index(row)];
+  terms_.clear();
+  if (entries.empty() || *std::ranges::max_element(entries) <= kFewTerms) return;
   terms_.resize(entries.size());
   std::ranges::transform(entries, terms_.begin(), [](int count) { return std::max(1.0, count / kFewTerms); });
 }
 
 void Residual::measure_by(std::span<const double> rows, std::span<const double> columns) {
   rows_.assign(rows.begin(), rows.end());
-  by_terms_.resize(rows.size());
-  std::ranges::transform(rows, terms_, by_terms_.begin(), std::divides());
+  by_terms_.resize(terms_.size());
+  if (!terms_.empty()) std::ranges::transform(rows, terms_, by_terms_.begin(), std::divides());
   per_column_.resize(columns.size());
   std::ranges::transform(columns, per_column_.begin(), [](double column) { return 1 / column; });
 }
@@ -104,7 +106,8 @@ void Residual::find(const CscLayout& layout, std::span<const double> values, std
 double Residual::size(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
                       std::span<const double> x) {
   find(layout, values, b, x);
-  const double size_x = largest(x, per_column_), size_b = largest(b, rows_), size_r = largest(r_, by_terms_);
+  const double size_x = largest(x, per_column_), size_b = largest(b, rows_),
+               size_r = largest(r_, by_terms_.empty() ? rows_ : by_terms_);
   if (!all_finite(r_)) return HUGE_VAL;
   return size_r == 0 ? 0 : size_r / (size_x + size_b);
 }

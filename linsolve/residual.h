@@ -27,8 +27,9 @@ class Residual {
 
  private:
   std::vector<int> panels_;    // columns in a row that have the same rows, and are taken together
-  std::vector<double> terms_;  // by row: how many times more entries than few
-  std::vector<double> rows_, by_terms_, per_column_, r_;
+  std::vector<double> terms_;  // by row: how many times more entries than few; empty where all have few
+  std::vector<double> rows_, per_column_, r_;
+  std::vector<double> by_terms_;  // rows by their terms; empty where all have few
 };
 
 }  // namespace poinsot

@@ -16,7 +16,7 @@ LinearStatus ScaledLu::singular(int unknown) {
   return {LinearFailure::singular, unknown, "the matrix is singular to working precision"};
 }
 
-LinearStatus ScaledLu::do_analyze(const Pattern& pattern) {
+LinearStatus ScaledLu::do_analyze(Pattern&& pattern) {
   scaling_known_ = pivots_known_ = examined_ = false;
   if (LinearStatus status = layout_.build(pattern); !status.ok()) return status;
   if (LinearStatus status = layout_.matching(); !status.ok()) return status;

@@ -54,7 +54,7 @@ class ScaledLu : public LinearSolver {
   static LinearStatus singular(int unknown);
 
  private:
-  LinearStatus do_analyze(const Pattern& pattern) final;
+  LinearStatus do_analyze(Pattern&& pattern) final;
   LinearStatus do_factor() final;
   LinearStatus do_solve(std::span<double> b) final;
   LinearStatus do_solve_transposed(std::span<double> b) final;

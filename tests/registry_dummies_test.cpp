@@ -4,6 +4,8 @@
 // the three before the suites are made from the tables, so that they run over them as well.
 #include <gmock/gmock.h>
 
+#include <utility>
+
 #include "core/input_error.h"
 #include "formulations/derivative_checker.h"
 #include "formulations/formulation_entry.h"
@@ -51,9 +53,9 @@ class DummyLinearSolver final : public LinearSolver {
   const LinearStatistics& statistics() const override { return inner_->statistics(); }
 
  private:
-  LinearStatus do_analyze(const Pattern& pattern) override {
+  LinearStatus do_analyze(Pattern&& pattern) override {
     if (pattern.n > kLargest) return {LinearFailure::refused, -1, "dummy_linear_solver takes small systems only"};
-    return inner_->analyze(pattern);
+    return inner_->analyze(std::move(pattern));
   }
   LinearStatus do_factor() override { return inner_->factor(); }
   LinearStatus do_solve(std::span<double> b) override { return inner_->solve(b); }

@@ -89,7 +89,7 @@ double NewtonLoop::steepness(double t, double position) {
 
 void NewtonLoop::measure_gradient() {
   Vector sums = Vector::Zero(problem_.nv());
-  for (const Eigen::Triplet<double>& entry : gradient(problem_)) sums[entry.col()] += std::abs(entry.value());
+  for_each_entry_of_gradient(problem_, [&](int, int col, double value) { sums[col] += std::abs(value); });
   gradient_ = max_norm(sums);
 }
 

@@ -34,8 +34,8 @@ Status RadauStepper::prepare() {
   }
   write_stages(step_, 1, n, problem_.nv(), EntryRecorder{stages.blocks});
   write_filter(step_, 1, problem_.nv(), EntryRecorder{filter.blocks});
-  if (Status status = system_.prepare(stages, std::move(unknowns)); !status.ok()) return status;
-  if (Status status = filter_.prepare(filter); !status.ok()) return status;
+  if (Status status = system_.prepare(std::move(stages), std::move(unknowns)); !status.ok()) return status;
+  if (Status status = filter_.prepare(std::move(filter)); !status.ok()) return status;
   return consistent_.prepare();
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/index.h"
@@ -31,9 +32,9 @@ std::string of_fastest(const Problem& problem) {
 TimedSystem::TimedSystem(const Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock)
     : problem_(problem), linear_(linear), statistics_(statistics), clock_(clock) {}
 
-Status TimedSystem::prepare(const Pattern& pattern, std::vector<int> unknowns) {
+Status TimedSystem::prepare(Pattern pattern, std::vector<int> unknowns) {
   unknowns_ = std::move(unknowns);
-  return explained(0, linear_.analyze(pattern));
+  return explained(0, linear_.analyze(std::move(pattern)));
 }
 
 Status TimedSystem::factor(double t) {

@@ -21,7 +21,7 @@ class TimedSystem {
 
   // Analyses the pattern. Call once, before the clock starts. unknowns[k]: which of the problem's unknowns the system's
   // k-th belongs to, for messages; empty: they are the same.
-  Status prepare(const Pattern& pattern, std::vector<int> unknowns = {});
+  Status prepare(Pattern pattern, std::vector<int> unknowns = {});
   // write(slots, values) sets the matrix; then it is factored. The time up to the call belongs to
   // Phase::other.
   template <class Write>

@@ -96,20 +96,22 @@ class Solver final : public LinearSolver {
   std::span<double> values() override { return bodies_first() ? schur_.values() : LinearSolver::values(); }
 
  private:
-  LinearStatus do_analyze(const Pattern& pattern) override {
+  LinearStatus do_analyze(Pattern&& pattern) override {
     if (LinearStatus status = layout_.build(pattern); !status.ok()) return status;
     if (LinearStatus status = layout_.matching(); !status.ok()) return status;
-    node_ = pattern.node;
+    const bool symmetric = symmetry(layout_) >= kSymmetric;
+    bool fits = symmetric && schur_.lay_out(pattern, layout_);
+    node_ = std::move(pattern.node);
+    pattern = {};
     residual_.resize(layout_);
     values_.assign(index(layout_.nonzeros()), 0);
     statistics_.nonzeros = layout_.nonzeros();
     klu_.reset();
     helped_ = 0;
     fused_.assign(index(1 + *std::ranges::max_element(node_)), -1);
-    const bool symmetric = symmetry(layout_) >= kSymmetric;
     if (symmetric) fuse_with_hubs(layout_, node_, fused_);
     answer_ = symmetric && order() ? Answer::open : Answer::handed_over;
-    const bool fits = answer_ == Answer::open && schur_.lay_out(pattern, layout_);
+    fits = fits && answer_ == Answer::open;
     bodies_first_ = fits ? BodiesFirst::unexamined : BodiesFirst::unfit;
     if (fits) examination_.resize(layout_.n), sizes_.resize(index(layout_.n)), b_.reserve(sizes_.size());
     slots_ = std::exchange(layout_.slots, {});
@@ -192,6 +194,7 @@ class Solver final : public LinearSolver {
       near_ = Answer::checked;
     }
     if (!schedule_) answer_ = Answer::handed_over;
+    std::vector<double>().swap(weight_);
     if (last != Pivots::good) return factor_by_klu();
     answer_ = near_;
     drift_ = looked_ = {};
@@ -345,7 +348,7 @@ class Solver final : public LinearSolver {
       for (int j = 0; j < layout_.n; ++j)
         for (int k = layout_.start[index(j)]; k < layout_.start[index(j) + 1]; ++k)
           columns.blocks.push_back({layout_.row[index(k)], j, 1, 1});
-      if (LinearStatus status = klu_->analyze(columns); !status.ok()) return status;
+      if (LinearStatus status = klu_->analyze(std::move(columns)); !status.ok()) return status;
     }
     ++statistics_.handed_over;
     if (answer_ != Answer::handed_over) answer_ = ++helped_ < kPatience ? Answer::helped : Answer::handed_over;
@@ -368,7 +371,7 @@ class Solver final : public LinearSolver {
   std::unique_ptr<LinearSolver> klu_;
   Residual residual_;
   std::vector<double> b_;
-  std::vector<double> weight_;  // of rows in the choice of pivots
+  std::vector<double> weight_;  // of rows in the choice of pivots, within factor_fresh()
   Answer answer_ = Answer::open;
   Answer near_ = Answer::trusted;  // with pivots near those of the last fresh factorization, by what that one left
   Drift drift_, looked_;           // of the pivots at hand, and of those whose last solution was seen to be good
