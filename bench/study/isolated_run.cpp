@@ -36,9 +36,9 @@ Answer answer(const SceneGenerator& generator, int bodies, const Settings& setti
   try {
     const double before = resident_kilobytes();
     const Scene scene = generator.make(bodies);
-    Settings first_step = settings;
-    first_step.end = first_step.every = settings.step;
-    const Outcome first = simulate(scene, first_step, {});
+    Settings untimed = settings;
+    untimed.end = untimed.every = kUntimedSteps * settings.step;
+    const Outcome first = simulate(scene, untimed, {});
     const auto began = Clock::now();
     const Outcome outcome = simulate(scene, settings, {});
     const double all = std::chrono::duration<double>(Clock::now() - began).count();
@@ -50,12 +50,13 @@ Answer answer(const SceneGenerator& generator, int bodies, const Settings& setti
     const int made = static_cast<int>(scene.bodies.size());
     const double units = static_cast<double>(s.newton_iterations - s1.newton_iterations) * made * 1e-6;
     const auto later = [&](double Seconds::*phase) { return (s.seconds.*phase - s1.seconds.*phase) / units; };
+    const double iterations = static_cast<double>(s.newton_iterations) * made * 1e-6 * later(&Seconds::total);
     out.figures = {.us_per_body = later(&Seconds::total),
                    .assembly = later(&Seconds::assembly),
                    .factor = later(&Seconds::factor),
                    .solve = later(&Seconds::solve),
                    .rest = later(&Seconds::other),
-                   .start = all - s.seconds.total + s1.seconds.total,
+                   .start = all - iterations,
                    .kilobytes_per_body = (resident_kilobytes() - before) / made,
                    .seconds = all,
                    .bodies = made};
