@@ -71,9 +71,10 @@ bool take_too_long(const std::vector<IsolatedRun>& runs) {
   return good(runs) && 10 * runs.front().seconds > kLongestOfSize;
 }
 
-// Few steps where a step is long: about as much work for every size, 5 to 200 steps after the first ten.
+// Few steps where a step is long: about as much work for every size, 20 to 200 steps after the first ten. Fewer would
+// be less than what two runs differ by in their starts.
 double end_of(int bodies, double step) {
-  return step * (kUntimedSteps + std::clamp(20000 / bodies, 5, 200));
+  return step * (kUntimedSteps + std::clamp(20000 / bodies, 20, 200));
 }
 
 constexpr std::string_view kLeftOut = "left out";
