@@ -9,9 +9,9 @@
 
 #include "core/body_sizes.h"
 #include "core/scene_generator.h"
-#include "formulations/gradient.h"
 #include "formulations/registry.h"
 #include "integrators/start/violation.h"
+#include "tests/support/dense_problem.h"
 #include "tests/support/large_scenes.h"
 #include "tests/support/loops.h"
 #include "tests/support/simulation.h"
@@ -40,8 +40,7 @@ Placed placed(const Scene& scene, std::string_view formulation) {
 
 // G Gᵀ of rows of unit length.
 Eigen::MatrixXd whole_square(Problem& problem) {
-  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(problem.nc(), problem.nv());
-  for (const Eigen::Triplet<double>& entry : gradient(problem)) G(entry.row(), entry.col()) += entry.value();
+  MatrixX G = gradient(problem);
   const std::vector<double> sizes = body_sizes(problem.model());
   const Eigen::Index per_body = problem.nv() / problem.bodies();
   for (Eigen::Index j = 0; j < G.cols(); ++j)
