@@ -39,7 +39,8 @@ Status ClosingLengths::look(double to) {
                        fmt::format("at t = {:.9g} s {}: the {} '{}' comes to 0, where it does not say in which "
                                    "direction the points come together or part",
                                    t, describe_row(model_, of.row), what, of.f->text()),
-                       "end the run before, or change the function");
+                       "three CD constraints in its place, one for each axis, do; else end the run before, or change "
+                       "the function");
   }
   return {};
 }

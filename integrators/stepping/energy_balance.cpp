@@ -31,6 +31,7 @@ EnergyBalance::EnergyBalance(const Problem& problem) : parts_(problem), of_(part
   none_ = std::ranges::none_of(of_, &Mechanism::conserves);
   if (none_) return;
   momentum_.resize(problem.nv());
+  bodies_.resize(problem.model().bodies.size());
   x_first_.reserve(problem.model().springs.size() + problem.model().torsions.size());
 }
 
@@ -53,17 +54,16 @@ void EnergyBalance::look(const Problem& problem, const Eigen::VectorXd& v) {
 void EnergyBalance::add_energies(const Sample& at, double Mechanism::*sum) {
   constexpr double kRounding = 1e3 * std::numeric_limits<double>::epsilon();
   const Model& model = at.problem.model();
-  std::vector<BodyState> bodies(model.bodies.size());
-  at.problem.to_bodies(at.a, bodies);
+  at.problem.to_bodies(at.a, bodies_);
   for (Mechanism& of : of_) of.*sum = of.loads = 0;
   const auto add = [&](Mechanism& of, double energy, double load) {
     of.*sum += energy;
     of.loads += std::abs(load);
     of.rounding += kRounding * std::abs(energy);
   };
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Body& body = model.bodies[b];
-    const BodyState& state = bodies[b];
+    const BodyState& state = bodies_[b];
     Mechanism& of = of_[parts_.of_body(static_cast<int>(b))];
     add(of, 0.5 * (body.mass * state.rd.squaredNorm() + state.w.dot(body.inertia * state.w)), 0);
     add(of, -body.mass * model.gravity.dot(state.r), body.mass * model.gravity.norm());
@@ -81,7 +81,7 @@ void EnergyBalance::add_energies(const Sample& at, double Mechanism::*sum) {
       add(of, 0.5 * spring.stiffness * x * x, spring.stiffness * x);
   };
   for (const Spring& spring : model.springs) {
-    const Vector3 d = place(bodies, spring.j, spring.s_j) - place(bodies, spring.i, spring.s_i);
+    const Vector3 d = place(bodies_, spring.j, spring.s_j) - place(bodies_, spring.i, spring.s_i);
     add_spring(spring, d.norm() - spring.length);
   }
   for (std::size_t k = 0; k < model.torsions.size(); ++k) {

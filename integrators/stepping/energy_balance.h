@@ -57,6 +57,7 @@ class EnergyBalance {
   std::vector<Mechanism> of_;
   std::vector<double> x_first_;  // of springs and torsion springs, from where laws have done work
   Eigen::VectorXd momentum_;
+  std::vector<BodyState> bodies_;
   bool none_ = true, ended_ = false;
   int since_ = 0;
 };
