@@ -193,10 +193,31 @@ class Parser {
       tape.resize(first);
       tape.push_back({TapeOp::constant, value});
     } else if (op == TapeOp::power && constant(1)) {
-      tape.back().op = TapeOp::power_constant;
+      const double exponent = tape.back().value;
+      tape.pop_back();
+      raise(exponent);
+    } else if (op == TapeOp::sqrt && is_even_power()) {
+      raise(0.5);
     } else {
       tape.push_back(instruction);
     }
+  }
+
+  bool is_even_power() const {
+    const TapeInstruction& last = parsed_.tape.back();
+    return last.op == TapeOp::power_constant && last.value > 0 && std::fmod(last.value, 2) == 0;
+  }
+
+  // The topmost value to a constant power. A root of an even power is one of |x|, whose kink is known as such.
+  void raise(double exponent) {
+    std::vector<TapeInstruction>& tape = parsed_.tape;
+    if (is_even_power() && std::trunc(exponent) != exponent) {
+      exponent *= tape.back().value;
+      tape.pop_back();
+      if (std::fmod(exponent, 2) != 0) tape.push_back({TapeOp::abs, 0});
+      if (exponent == 1) return;
+    }
+    tape.push_back({TapeOp::power_constant, exponent});
   }
 
   void push(const TapeInstruction& instruction) {

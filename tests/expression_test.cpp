@@ -70,6 +70,11 @@ TEST(Expression, knows_derivatives_exactly) {
       {"exp(2*t)", 0, 1, 2, 4},
       {"log(t)", 2, std::log(2.0), 0.5, -0.25},
       {"abs(t)", -2, 2, -1, 0},
+      {"sqrt(t^2)", -2, 2, -1, 0},
+      {"sqrt(t^2)", 0, 0, 1, 0},
+      {"(t^4)^0.5", -2, 4, -4, 2},
+      {"(t^2)^1.5", -2, 8, -12, 12},
+      {"(t^2)^3", -1, 1, -6, 30},
       {"min(t, t^2)", 0.5, 0.25, 1, 2},
       {"max(t, t^2)", 0.5, 0.5, 1, 0},
       {"atan2(t, 1)", 1, pi / 4, 0.5, -0.5},
@@ -83,6 +88,13 @@ TEST(Expression, knows_derivatives_exactly) {
     EXPECT_NEAR(jet.fd, c.fd, 4e-15 * (1 + std::abs(c.fd))) << c.text;
     EXPECT_NEAR(jet.fdd, c.fdd, 4e-15 * (1 + std::abs(c.fdd))) << c.text;
   }
+}
+
+TEST(Expression, knows_the_kinks_of_roots_of_even_powers) {
+  for (const char* text : {"sqrt((t - 1)^2)", "((t - 1)^2)^0.5", "pow((t - 1)^2, 0.5)", "sqrt((t - 1)^6)"})
+    EXPECT_EQ(Expression::parse(text).switch_count(), 1) << text;
+  for (const char* text : {"sqrt((t - 1)^4)", "sqrt((t - 1)^3)", "((t - 1)^2)^2", "sqrt((t - 1)^2 + 1)", "(t^0.5)^2"})
+    EXPECT_EQ(Expression::parse(text).switch_count(), 0) << text;
 }
 
 // Both sides of an identity are the same function, so their derivatives agree.
