@@ -20,7 +20,7 @@ class StillWatch {
  public:
   StillWatch(const Problem& problem, std::function<void(const std::string&)> tell);  // steps allocate nothing
 
-  // The end of a step. The problem is not touched. In mechanisms too large to look at densely nothing is seen.
+  // The end of a step. The problem is not touched. Where thousands of rows hold one body nothing is seen.
   void look(const Problem& problem, const State& at);
 
  private:
