@@ -46,7 +46,11 @@ class LinearSystem {
   // for nothing.
   LinearStatus analyze(Pattern pattern);
   LinearStatus factor();
-  LinearStatus solve(std::span<double> b) { return by_jacobian_ ? jacobian_->solve(b) : whole_->solve(b); }
+  LinearStatus solve(std::span<double> b) {
+    LinearStatus status = by_jacobian_ ? jacobian_->solve(b) : whole_->solve(b);
+    factored_ = status.ok();
+    return status;
+  }
 
   std::span<const int> slots() const { return jacobian_ ? jacobian_->slots() : whole_->slots(); }
   std::span<double> values() { return jacobian_ ? jacobian_->values() : whole_->values(); }

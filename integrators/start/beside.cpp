@@ -48,7 +48,7 @@ Trial Beside::begin(const std::vector<int>& without, int directions) const {
   if (!trial.regular) return trial;
   trial.problem->set_position(0, start.q);
   trial.problem->set_velocity(start.v);
-  trial.regular = trial.consistent->project_velocity(0, start.v).ok();
+  trial.regular = trial.consistent->correct_velocity(0, start.v).ok();
   bool solved = trial.regular;
   for (int k = 0; k < directions; ++k) {
     trial.random.emplace_back();
@@ -89,30 +89,43 @@ double Beside::distance(std::span<const double> q, std::span<const double> from)
   return extent(difference);
 }
 
-std::optional<PlaceBeside> Beside::along_velocities(Trial& trial) {
-  const PlaceBeside& start = trial.start;
+std::optional<Beside::Move> Beside::along(const PlaceBeside& start) const {
   const double speed = extent(start.v);
   const bool driven = std::ranges::any_of(model_->rows, [](const Row& row) { return !row.f.is_constant(); });
   if (speed == 0 && !driven) return {};
-  PlaceBeside place = start;
-  place.t = speed > 0 ? std::min(kMove / speed, 1.0) : kShortWhile;
-  std::vector<double> dq = start.v;
-  for (double& x : dq) x *= place.t;
-  return settle(trial, std::move(place), dq, speed > 0 && kMove / speed <= 1.0);
+  const double t = speed > 0 ? std::min(kMove / speed, 1.0) : kShortWhile;
+  Move move{t, start.v, speed > 0 && kMove / speed <= 1.0};
+  for (double& x : move.dq) x *= t;
+  return move;
+}
+
+std::optional<PlaceBeside> Beside::along_velocities(Trial& trial) {
+  const std::optional<Move> move = along(trial.start);
+  return move ? settle(trial, *move) : std::nullopt;
 }
 
 std::optional<PlaceBeside> Beside::at_random(Trial& trial, int direction) {
-  const std::vector<double>& move = trial.random[index(direction)];
-  return move.empty() ? std::nullopt : settle(trial, trial.start, move, true);
+  const std::vector<double>& free = trial.random[index(direction)];
+  return free.empty() ? std::nullopt : settle(trial, {0, free, true});
 }
 
-// Moves by dq, puts the mechanism back onto the problem's rows, and looks at all of them.
-std::optional<PlaceBeside> Beside::settle(Trial& trial, PlaceBeside place, std::span<const double> dq, bool must_move) {
+std::optional<PlaceBeside> Beside::anywhere(Trial& trial, int direction) {
+  std::optional<Move> move = along(trial.start);
+  const std::vector<double>& free = trial.random[index(direction)];
+  if (!move || free.empty()) return {};
+  for (std::size_t k = 0; k < free.size(); ++k) move->dq[k] += free[k];
+  return settle(trial, *move);
+}
+
+// Moves, puts the mechanism back onto the problem's rows, and looks at all of them.
+std::optional<PlaceBeside> Beside::settle(Trial& trial, const Move& move) {
   const PlaceBeside& start = trial.start;
-  trial.problem->retract(start.q, dq, place.q);
+  PlaceBeside place = start;
+  place.t = move.t;
+  trial.problem->retract(start.q, move.dq, place.q);
   const double moved = distance(place.q, start.q);
   if (!trial.put_back(place)) return {};
-  if (must_move && distance(place.q, start.q) < kPulledBack * moved) return {};
+  if (move.must_stay && distance(place.q, start.q) < kPulledBack * moved) return {};
   look(trial, place);
   return place;
 }
@@ -159,7 +172,10 @@ bool Beside::all_follow(Trial& trial, double t) const {
 
 void Beside::look(Trial& trial, PlaceBeside& place) {
   stand(*trial.problem, place);
-  if (trial.without.size() == suspects_ && all_follow(trial, place.t)) {
+  // The factors at hand belong to a position as far away as the last correction was large: not nothing in long scenes,
+  // where rounding of coordinates alone moves their middle by micrometres.
+  const auto all_follow_here = [&] { return trial.consistent->factor(place.t).ok() && all_follow(trial, place.t); };
+  if (trial.without.size() == suspects_ && (all_follow(trial, place.t) || all_follow_here())) {
     place.dependent = suspects_;
   } else {
     place.columns = space_.columns();

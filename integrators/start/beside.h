@@ -51,7 +51,10 @@ struct Trial {
       : without(std::move(left_out)),
         problem(std::move(of)),
         consistent(std::make_unique<Consistent>(*problem, LinearChoice{})) {}
-  bool put_back(PlaceBeside& place) { return consistent->project_position(place.t, place.q).ok(); }
+  bool put_back(PlaceBeside& place) {
+    return (regular ? consistent->project_nearby(place.t, place.q) : consistent->project_position(place.t, place.q))
+        .ok();
+  }
 };
 
 class Beside {
@@ -67,6 +70,8 @@ class Beside {
   // Nothing where it does not move, or the projection pulls it back.
   std::optional<PlaceBeside> along_velocities(Trial& trial);
   std::optional<PlaceBeside> at_random(Trial& trial, int direction);
+  // Both at once; nothing where either is none.
+  std::optional<PlaceBeside> anywhere(Trial& trial, int direction);
   // Whether the mechanism, moved on along its velocities, comes to a position where all rows hold and are independent
   // but those left out.
   bool leads_on(const PlaceBeside& start, const PlaceBeside& along, const std::vector<int>& without);
@@ -75,7 +80,13 @@ class Beside {
 
  private:
   bool free_direction(Trial& trial, int seed, std::vector<double>& move) const;
-  std::optional<PlaceBeside> settle(Trial& trial, PlaceBeside place, std::span<const double> dq, bool must_move);
+  struct Move {
+    double t;
+    std::vector<double> dq;
+    bool must_stay;  // most of it after the projection, or it was none
+  };
+  std::optional<Move> along(const PlaceBeside& start) const;
+  std::optional<PlaceBeside> settle(Trial& trial, const Move& move);
   void stand(Problem& problem, const PlaceBeside& place);
   void look(Trial& trial, PlaceBeside& place);
   void look_at_rates(Trial& trial, PlaceBeside& place);

@@ -23,7 +23,7 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr double kNoLoad = 1e-7;   // of a null vector on unit rows
-constexpr int kManyRows = 20'000;  // of loops: one random direction is looked at in the place of two
+constexpr int kManyRows = 20'000;  // of loops: places are looked at one for two
 
 class Examination {
  public:
@@ -73,7 +73,8 @@ class Examination {
     const std::size_t suspects = here_.columns.size();  // how many rows may be dependent
     const std::vector<int>& surely = surely_.columns;
     beside_.emplace(model_, states_, *space_, suspects);
-    const int directions = static_cast<int>(space_->rows().size()) > kManyRows ? 1 : 2;
+    const bool many_rows = static_cast<int>(space_->rows().size()) > kManyRows;
+    const int directions = many_rows ? 1 : 2;
     Trial trial = beside_->begin(without_, directions);
     if (trial.regular) find_conflicts(trial, without_);
     if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
@@ -88,7 +89,12 @@ class Examination {
     }
     const PlaceBeside& start = trial.start;
     std::optional<PlaceBeside> best, along;
-    if (trial.regular && result_.conflicts.empty()) {
+    bool everywhere = false;  // one place that is as good as both others says that as many rows follow there
+    if (trial.regular && result_.conflicts.empty() && many_rows) {
+      const std::optional<PlaceBeside> place = beside_->anywhere(trial, 0);
+      everywhere = place && place->dependent == suspects && place->holds;
+    }
+    if (trial.regular && result_.conflicts.empty() && !everywhere) {
       along = beside_->along_velocities(trial);
       best = along;
       for (int k = 0; k < directions && (!best || best->dependent > 0); ++k) {

@@ -96,8 +96,7 @@ Status Consistent::velocity_correction(double t) {
   return system_.solve(t, span(rhs_));
 }
 
-Status Consistent::project_position(double t, std::span<double> q, std::span<double> moved) {
-  double before = HUGE_VAL;
+Status Consistent::onto_positions(double t, std::span<double> q, std::span<double> moved, double before) {
   for (int k = 0; k < kFarCorrections; ++k) {
     problem_.set_position(t, q);
     problem_.set_velocity(std::span<const double>(span(zeros_)).first(nv_));
@@ -113,16 +112,48 @@ Status Consistent::project_position(double t, std::span<double> q, std::span<dou
     // next one would be rounding: as many times the square of this one as this one is of the one before, of the first
     // as many as rows can make of it that are hardly independent.
     const double scale = std::max(1.0, largest(q));
-    const double times = k == 0 ? kMostCurved : correction / (before * before);
-    if (correction <= kFarNegligible * scale || (correction < 1e-9 * scale && correction >= 0.5 * before)) return {};
+    const double times = std::isinf(before) ? kMostCurved : correction / (before * before);
+    if (correction <= kFarNegligible * scale || (k > 0 && correction < 1e-9 * scale && correction >= 0.5 * before))
+      return {};
     if (correction < 1e-9 * scale && times * correction * correction <= kFarNegligible * scale) return {};
     before = correction;
   }
   return {Failure::inconsistent_state, t, {}};  // who asks knows what for
 }
 
+double Consistent::draw_near(double t, std::span<double> q) {
+  if (!system_.ready()) return HUGE_VAL;
+  constexpr int kMost = 8;
+  constexpr double kShrinks = 0.1;
+  const std::vector<double> from(q.begin(), q.end());
+  double first = 0, before = HUGE_VAL;
+  for (int k = 0; k < kMost; ++k) {
+    problem_.set_position(t, q);
+    const bool solved = position_correction(t).ok();
+    const double correction = solved ? largest(moves()) : HUGE_VAL;
+    if (!(correction < kShrinks * before)) {
+      if (before < kShrinks * first) break;  // as near as rounding lets it
+      std::ranges::copy(from, q.begin());
+      return HUGE_VAL;
+    }
+    problem_.retract(q, moves(), span(q_moved_));
+    std::ranges::copy(q_moved_, q.begin());
+    // One correction from there leaves nothing (project_position).
+    const double enough = std::sqrt(kFarNegligible * std::max(1.0, largest(q)) / kMostCurved);
+    const bool near = correction * (k == 0 ? 1 : correction / before) <= enough;
+    if (k == 0) first = correction;
+    before = correction;
+    if (near) break;
+  }
+  return before;
+}
+
 Status Consistent::project_velocity(double t, std::span<double> v) {
   if (Status status = factor(t); !status.ok()) return status;
+  return correct_velocity(t, v);
+}
+
+Status Consistent::correct_velocity(double t, std::span<double> v) {
   for (int k = 0; k < 2; ++k) {  // the second pass takes out the rounding of large corrections
     if (Status status = velocity_correction(t); !status.ok()) return status;
     for (std::size_t i = 0; i < nv_; ++i) v[i] += moves()[i];

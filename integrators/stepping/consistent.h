@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <utility>
@@ -41,9 +42,15 @@ class Consistent {
   Status accelerations(double t, std::span<double> z);
   // Moves q onto Φ = 0 to rounding; the problem stands at the result. Fails with inconsistent_state where it cannot.
   // `moved`, where it is asked for, is what it adds up its corrections in.
-  Status project_position(double t, std::span<double> q, std::span<double> moved = {});
+  Status project_position(double t, std::span<double> q, std::span<double> moved = {}) {
+    return onto_positions(t, q, moved, HUGE_VAL);
+  }
+  // The same from nearby the position whose factorization is at hand: that leads most of the way.
+  Status project_nearby(double t, std::span<double> q) { return onto_positions(t, q, {}, draw_near(t, q)); }
   // The problem stands at (t, q) and (·, v); v and the problem are moved onto G v = ν.
   Status project_velocity(double t, std::span<double> v);
+  // With the factorization at hand, of the same position but for a correction.
+  Status correct_velocity(double t, std::span<double> v);
 
   // The same for a state, `at`.
   void stand(const State& at);
@@ -119,6 +126,10 @@ class Consistent {
   bool jumps(const State& at, std::size_t part) const;
   void approach(const State& at, std::size_t part);
 
+  // With the factorization at hand; the last correction. Where it does not lead onto Φ = 0, q stays and it is infinite.
+  double draw_near(double t, std::span<double> q);
+  // `before`: the size of the correction that led to q.
+  Status onto_positions(double t, std::span<double> q, std::span<double> moved, double before);
   // δq and δv for the constraints' residuals at the problem's point, in moves().
   Status position_correction(double t);
   Status velocity_correction(double t);

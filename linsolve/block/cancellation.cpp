@@ -18,9 +18,16 @@ struct Sized {
 // A whole front, (p + m) × (p + m).
 class Square {
  public:
-  void clear(int n) {
-    n_ = index(n);
+  // From the store of D, L and U.
+  void set(const Front& f, const std::vector<Sized>& store) {
+    const int p = f.pivots, m = f.others;
+    n_ = index(p + m);
     entries_.assign(n_ * n_, {});
+    const Sized *D = store.data(), *L = D + p * p, *U = L + p * f.rows;
+    for (int j = 0; j < p + m; ++j) {
+      std::copy_n(j < p ? D + j * p : U + (j - p) * p, p, &(*this)(0, j));
+      if (j < p) std::copy_n(L + j * f.rows, m, &(*this)(0, j) + p);
+    }
   }
   Sized& operator()(int i, int j) { return entries_[index(j) * n_ + index(i)]; }
 
@@ -67,26 +74,24 @@ void eliminate(Square& a, int p, int n, std::span<double> weight, std::vector<Si
 Cancelled cancelled_pivots(const Schedule& s, std::span<const double> values, std::span<const double> weight,
                            double part) {
   Cancelled found;
-  std::vector<std::vector<Sized>> updates(s.fronts.size());  // m × m, until the parent takes them
+  std::vector<Sized> updates(index(s.stack_size));  // m × m, until the parent takes them
+  std::vector<Sized> store;
   Square a;
   std::vector<int> places;
   std::vector<double> units;
   std::vector<Sized> multipliers;
   const Strip* strip = s.strips.data();
   const int* child = s.children.data();
-  for (std::size_t k = 0; k < s.fronts.size(); ++k) {
-    const Front& f = s.fronts[k];
+  for (const Front& f : s.fronts) {
     const int p = f.pivots, m = f.others, n = p + m;
-    a.clear(n);
+    store.assign(index(p * (p + f.rows + m)), {});
     for (const Strip* end = s.strips.data() + f.strips.back(); strip != end; ++strip)
       for (unsigned i = 0; i < strip->length; ++i) {
-        // Back from the store of D, L and U to rows and columns.
-        const int t = static_cast<int>(strip->target + i), l = t - p * p, u = l - p * f.rows;
-        Sized& entry = l < 0 ? a(t % p, t / p) : u < 0 ? a(p + l % f.rows, l / f.rows) : a(u % p, p + u / p);
         const double value = values[index(strip->source) + i];
-        entry.value += value;
-        entry.size += std::abs(value);
+        store[strip->target + i].value += value;
+        store[strip->target + i].size += std::abs(value);
       }
+    a.set(f, store);
     for (const int* end = s.children.data() + f.children; child != end; ++child) {
       const Front& c = s.fronts[index(*child)];
       places.resize(index(c.others));
@@ -95,15 +100,14 @@ Cancelled cancelled_pivots(const Schedule& s, std::span<const double> values, st
         for (int i = 0; i < stretch.length; ++i)
           places[index(stretch.from + i)] = stretch.to + i + (r < c.first_outer_stretch ? 0 : p);
       }
-      const auto place = [&](int i) { return places[index(i)]; };
-      const std::vector<Sized>& update = updates[index(*child)];
-      for (int j = 0; j < c.others; ++j)
-        for (int i = 0; i < c.others; ++i) {
-          Sized& entry = a(place(i), place(j));
-          entry.value += update[index(j * c.others + i)].value;
-          entry.size += update[index(j * c.others + i)].size;
+      const Sized* update = updates.data() + c.update;
+      for (int j = 0; j < c.others; ++j) {
+        Sized* column = &a(0, places[index(j)]);
+        for (int i = 0; i < c.others; ++i, ++update) {
+          column[places[index(i)]].value += update->value;
+          column[places[index(i)]].size += update->size;
         }
-      std::vector<Sized>().swap(updates[index(*child)]);
+      }
     }
     units.resize(index(p));
     for (int i = 0; i < p; ++i) units[index(i)] = weight[index(s.unknown[index(f.first + i)])];
@@ -113,8 +117,7 @@ Cancelled cancelled_pivots(const Schedule& s, std::span<const double> values, st
       found.pivots.push_back(f.first + i);
       return true;
     });
-    updates[k].reserve(index(m) * index(m));
-    for (int j = p; j < n; ++j) updates[k].insert(updates[k].end(), &a(p, j), &a(p, j) + m);
+    for (int j = 0; j < m; ++j) std::copy_n(&a(p, p + j), m, updates.data() + f.update + j * m);
   }
   return found;
 }

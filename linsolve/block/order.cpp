@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <queue>
 #include <span>
 #include <utility>
 
 #include "core/check.h"
 #include "core/index.h"
 #include "linsolve/block/eliminated.h"
+#include "linsolve/block/least_first.h"
 
 namespace poinsot::block {
 namespace {
@@ -26,7 +25,8 @@ class MinimumDegree {
         leading_to_none_(leading_to_none),
         eliminated_(graph),
         begin_(1, 0),
-        atoms_(index(graph.atoms())) {
+        atoms_(index(graph.atoms())),
+        line_(graph.atoms()) {
     int top = 0;
     for (int a = 0; a < graph.atoms(); ++a) {
       const std::span<const int> neighbours = graph.neighbours[a];
@@ -56,8 +56,6 @@ class MinimumDegree {
   double products() const { return products_; }
 
  private:
-  // Degree and atom as one number: least degree first, then least atom.
-  static std::uint64_t entry(int degree, int atom) { return index(degree) << 32 | index(atom); }
   static constexpr std::size_t kLong = 256;
 
   struct State {
@@ -85,7 +83,7 @@ class MinimumDegree {
   void push(int a) {
     State& state = atoms_[index(a)];
     state.degree = degree(a) + (eliminated_.is_early(a) ? early_ : 0) + (state.waited ? leading_to_none_ : 0);
-    queue_.push(entry(state.degree, a));
+    line_.put(a, state.degree);
   }
 
   // Unknowns outside a that its elimination couples. Exact while a sees little, else an upper bound; hubs come
@@ -118,11 +116,7 @@ class MinimumDegree {
   }
 
   int next() {
-    while (!queue_.empty()) {
-      const std::uint64_t first = queue_.top();
-      const int a = static_cast<int>(first & UINT32_MAX);
-      queue_.pop();
-      if (atoms_[index(a)].done || first != entry(atoms_[index(a)].degree, a)) continue;
+    for (int a = line_.take(); a >= 0; a = line_.take()) {
       State& state = atoms_[index(a)];
       if (!eliminated_.may_be_pivot(a)) {
         state.degree = -1;  // comes back when something next to it is eliminated
@@ -202,7 +196,7 @@ class MinimumDegree {
   std::vector<State> atoms_;
   int stamp_ = 0, unknowns_ = 0;
   int newest_ = -1, front_weight_ = 0;  // of the newest front: its pivot, and what its atoms weigh
-  std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>> queue_;
+  LeastFirst line_;
 };
 
 }  // namespace

@@ -238,10 +238,13 @@ class Solver final : public LinearSolver {
     const auto cancelled = [&](std::span<const double> weight, double part) {
       return cancelled_pivots(*schedule_, values_, weight, part);
     };
-    Cancelled found = cancelled(rows, kCancelled);
+    constexpr double kNone = 1 / kSingularCondition;
+    Cancelled found = cancelled(rows, kRounding);
     // Solutions need not tell what is nothing but rounding, and looking at them takes as long as all else.
-    const bool trusted = found.least > 1 / kSingularCondition && trustworthy();
-    if (trusted && (found.least <= kCancelled || !std::ranges::equal(weight_, rows)))
+    const bool trusted = found.least > kNone && trustworthy();
+    if (!trusted)
+      found = cancelled(rows, kCancelled);
+    else if (!std::ranges::equal(weight_, rows))
       found = cancelled(weight_, kRounding);  // above, they may pass for pivots, as of very different masses
     bad = std::move(found.pivots);
     if (!trusted) return Pivots::bad;
@@ -249,7 +252,7 @@ class Solver final : public LinearSolver {
     near_ = std::max(near_, Answer::sampled);
     if (bad.empty()) return Pivots::good;
     near_ = Answer::checked;
-    return cancelled(weight_, 1 / kSingularCondition).pivots.empty() ? Pivots::doubtful : Pivots::bad;
+    return cancelled(weight_, kNone).pivots.empty() ? Pivots::doubtful : Pivots::bad;
   }
 
   // Factorizes with pivots chosen in the units of the equilibrated matrix and, where that does not serve, in those the
