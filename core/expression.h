@@ -97,7 +97,8 @@ class Expression {
   bool depends_on_time() const { return !constant_ && parsed_->with_time; }
 
   // The values whose change of sign marks a kink or a jump of f: x of abs(x), sign(x) and step(x), x − y of min(x, y)
-  // and max(x, y), in the order they are computed. Constant parts have none, and neither have tables.
+  // and max(x, y), in the order they are computed; and those of core/expression_kinks.h. Constant parts have none, and
+  // neither have tables.
   int switch_count() const { return constant_ ? 0 : parsed_->switches; }
   void switches(const Arguments<double>& at, std::span<double> values) const {  // of size switch_count()
     if (!constant_) tape_switches(parsed_->tape, at, values);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "core/expression.h"
+#include "core/expression_kinks.h"
 
 namespace poinsot {
 namespace {
@@ -195,29 +196,14 @@ class Parser {
     } else if (op == TapeOp::power && constant(1)) {
       const double exponent = tape.back().value;
       tape.pop_back();
-      raise(exponent);
-    } else if (op == TapeOp::sqrt && is_even_power()) {
-      raise(0.5);
+      if (std::trunc(exponent) == exponent || !take_root(tape, exponent))
+        tape.push_back({TapeOp::power_constant, exponent});
+    } else if ((op == TapeOp::sqrt && take_root(tape, 0.5)) ||
+               ((op == TapeOp::asin || op == TapeOp::acos) && take_arc(tape, op))) {
+      return;
     } else {
       tape.push_back(instruction);
     }
-  }
-
-  bool is_even_power() const {
-    const TapeInstruction& last = parsed_.tape.back();
-    return last.op == TapeOp::power_constant && last.value > 0 && std::fmod(last.value, 2) == 0;
-  }
-
-  // The topmost value to a constant power. A root of an even power is one of |x|, whose kink is known as such.
-  void raise(double exponent) {
-    std::vector<TapeInstruction>& tape = parsed_.tape;
-    if (is_even_power() && std::trunc(exponent) != exponent) {
-      exponent *= tape.back().value;
-      tape.pop_back();
-      if (std::fmod(exponent, 2) != 0) tape.push_back({TapeOp::abs, 0});
-      if (exponent == 1) return;
-    }
-    tape.push_back({TapeOp::power_constant, exponent});
   }
 
   void push(const TapeInstruction& instruction) {

@@ -83,6 +83,12 @@ Taylor function(const TapeInstruction& instruction, Bounds x) {
     }
     case TapeOp::abs:
       return {magnitude(x), x.least >= 0 ? one : x.most <= 0 ? -one : Bounds{-1, 1}, level};
+    case TapeOp::fold: {
+      const Bounds c = cosine(x), s = sine(x);
+      const Bounds f =
+          rising(-Bounds{std::max(c.least, -1.0), std::min(c.most, 1.0)}, [](double a) { return std::acos(-a); });
+      return {f, s.least >= 0 ? one : s.most <= 0 ? -one : Bounds{-1, 1}, level};
+    }
     case TapeOp::sign:
       return {{x.least < 0 ? -1.0 : x.least > 0 ? 1.0 : 0.0, x.most > 0 ? 1.0 : x.most < 0 ? -1.0 : 0.0}, level, level};
     case TapeOp::step:
@@ -182,7 +188,8 @@ Bounds tape_switch_range(std::span<const TapeInstruction> tape, const Arguments<
   run(tape, at, TapeOp::time, [&](const TapeInstruction& instruction, Bounds x, Bounds y) {
     if (!has_switch(instruction.op) || k-- > 0) return false;
     const bool known = !x.is_unknown() && !y.is_unknown();
-    if (known) found = arity(instruction.op) == 1 ? x : x - y;
+    if (!known) return true;
+    found = instruction.op == TapeOp::fold ? sine(x) : arity(instruction.op) == 1 ? x : x - y;
     return true;
   });
   return found;

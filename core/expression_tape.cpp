@@ -81,6 +81,10 @@ Jet2<T> function(const TapeInstruction& instruction, const Jet2<T>& x) {
       return level(x, T(x.f > 0) - T(x.f < 0));
     case TapeOp::step:
       return level(x, T(x.f >= 0));
+    case TapeOp::fold: {
+      const T s = std::sin(x.f);
+      return compose(x, std::atan2(std::abs(s), std::cos(x.f)), T(s < 0 ? -1 : 1), T(0));
+    }
     case TapeOp::table:
       return instruction.table->at(x);
     default:
@@ -174,7 +178,7 @@ template Jet2<long double> run_tape(std::span<const TapeInstruction>, const Argu
 void tape_switches(std::span<const TapeInstruction> tape, const Arguments<double>& at, std::span<double> out) {
   std::size_t k = 0;
   run<double>(tape, constants(at), [&](const TapeInstruction& instruction, double x, double y) {
-    if (has_switch(instruction.op)) out[k++] = x - y;
+    if (has_switch(instruction.op)) out[k++] = instruction.op == TapeOp::fold ? std::sin(x) : x - y;
   });
 }
 

@@ -3,9 +3,9 @@
 // The tape is a program for a stack machine: a constant or a variable pushes a value, a function replaces the topmost
 // value, an operator the topmost two. With x the argument and φ the function,
 //   f = φ(x),   ḟ = φ'(x) ẋ,   f̈ = φ''(x) ẋ² + φ'(x) ẍ,
-// and correspondingly for two arguments. Where φ has a kink or a jump (abs, sign, step, min, max) the derivatives are
-// those of one side, and the value whose sign tells the sides apart is a switch of the tape. What is not a number stays
-// so, whatever it is combined with.
+// and correspondingly for two arguments. Where φ has a kink or a jump (abs, sign, step, fold, min, max) the derivatives
+// are those of one side, and the value whose sign tells the sides apart is a switch of the tape. What is not a number
+// stays so, whatever it is combined with.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +24,7 @@ enum class TapeOp : unsigned char {
   negate,
   // clang-format off
   sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, sqrt, abs, sign, step,
+  fold,            // acos(cos x)
   power_constant,  // of one argument; the exponent stands in the instruction
   table,           // of one argument; the table stands in the instruction
   add, subtract, multiply, divide, power, atan2, min, max,
@@ -35,7 +36,8 @@ inline int arity(TapeOp op) {
 }
 
 inline bool has_switch(TapeOp op) {
-  return op == TapeOp::abs || op == TapeOp::sign || op == TapeOp::step || op == TapeOp::min || op == TapeOp::max;
+  return op == TapeOp::abs || op == TapeOp::sign || op == TapeOp::step || op == TapeOp::fold || op == TapeOp::min ||
+         op == TapeOp::max;
 }
 
 struct TapeInstruction {
@@ -58,7 +60,8 @@ struct Arguments {
 template <class T>
 Jet2<T> run_tape(std::span<const TapeInstruction> tape, const Arguments<Jet2<T>>& at);
 
-// The switches, in the order of the tape: x of abs(x), sign(x) and step(x), x − y of min(x, y) and max(x, y).
+// The switches, in the order of the tape: x of abs(x), sign(x) and step(x), x − y of min(x, y) and max(x, y), sin(x) of
+// acos(cos(x)).
 void tape_switches(std::span<const TapeInstruction> tape, const Arguments<double>& at, std::span<double> out);
 
 // A table asked for a value that it does not have.

@@ -97,6 +97,48 @@ TEST(Expression, knows_the_kinks_of_roots_of_even_powers) {
     EXPECT_EQ(Expression::parse(text).switch_count(), 0) << text;
 }
 
+// Of roots and arcs that touch the end of their domain and turn back.
+TEST(Expression, knows_the_kinks_of_waves_under_roots_and_arcs) {
+  for (const char* text : {"acos(cos(3*t))", "asin(sin(t))", "acos(sin(t^2))", "asin(cos(t))", "sqrt(1 - cos(t))",
+                           "sqrt(1 + cos(t))", "sqrt(2 - 2*cos(t))", "sqrt(3*(1 - sin(2*t)))", "sqrt((1 + sin(t))/2)",
+                           "(1 - cos(t))^1.5", "sqrt(1 - sin(t)^2)", "sqrt(4 - 4*cos(t)^2)", "sqrt(-cos(t) + 1)",
+                           "sqrt(-(cos(t) - 1))", "sqrt(cos(t)/2 + 0.5)"})
+    EXPECT_EQ(Expression::parse(text).switch_count(), 1) << text;
+  for (const char* text : {"acos(t)", "asin(sin(t)/2)", "acos(cos(t)*cos(t))", "sqrt(2 - cos(t))", "sqrt(cos(t) - 1)",
+                           "sqrt(1 - cos(t)^3)", "sqrt(1 - t)", "sqrt(sin(t) + cos(t))", "(1 - cos(t))^2"})
+    EXPECT_EQ(Expression::parse(text).switch_count(), 0) << text;
+}
+
+// Right at the kink, too, where the arcs' and the roots' own formulas would divide by rounding.
+TEST(Expression, takes_waves_under_roots_and_arcs_to_rounding) {
+  struct Case {
+    const char* text;
+    double t, f, fd, fdd;
+  };
+  const double at = 1e-9;
+  for (const Case& c : {Case{"acos(cos(3*t))", at, 3 * at, 3, 0}, Case{"acos(cos(3*t))", -at, 3 * at, -3, 0},
+                        Case{"sqrt(1 - cos(t))", at, at / std::sqrt(2.0), 1 / std::sqrt(2.0), 0},
+                        Case{"sqrt(1 - cos(t))", -at, at / std::sqrt(2.0), -1 / std::sqrt(2.0), 0},
+                        Case{"sqrt(8 - 8*cos(t)^2)", at, std::sqrt(8) * at, std::sqrt(8.0), 0}}) {
+    const Jet2<double> f = Expression::parse(c.text).at(c.t);
+    EXPECT_NEAR(f.f, c.f, 1e-24) << c.text;
+    EXPECT_NEAR(f.fd, c.fd, 1e-15 * std::abs(c.fd)) << c.text;
+    EXPECT_NEAR(f.fdd, c.fdd, 1e-8) << c.text;
+  }
+}
+
+// Where there is no room for one more number on the stack, they stay what they are.
+TEST(Expression, nests_waves_in_arcs_as_deep_as_all_else) {
+  std::string text = "t", sums = "asin(sin(t))";
+  for (int k = 0; k < 25; ++k) text = "acos(cos(" + text + "))";
+  EXPECT_NEAR(Expression::parse(text).at(1.0).f, 1, 1e-12);
+  for (int k = 0; k < 31; ++k) {
+    EXPECT_NEAR(Expression::parse(sums).at(1.0).f, 1 + k, 1e-12) << k;
+    sums = "(1 + " + sums + ")";
+  }
+  EXPECT_EQ(Expression::parse(sums).switch_count(), 0);
+}
+
 // Both sides of an identity are the same function, so their derivatives agree.
 TEST(Expression, keeps_identities) {
   const std::pair<const char*, const char*> identities[] = {
@@ -113,6 +155,17 @@ TEST(Expression, keeps_identities) {
       {"abs(t - 5)", "max(t - 5, 5 - t)"},
       {"sqrt(1 + t^2)", "(1 + t^2)^0.5"},
       {"cos(pi/2 + (pi/4)*cos(2*t))", "-sin((pi/4)*cos(2*t))"},
+      {"acos(cos(3*t))", "min(abs(3*t), 2*pi - abs(3*t))"},
+      {"asin(sin(3*t))", "max(min(3*t, pi - 3*t), -pi - 3*t)"},
+      {"acos(sin(2*t + 1))", "pi/2 - max(min(2*t + 1, pi - 2*t - 1), -pi - 2*t - 1)"},
+      {"asin(cos(2*t + 1))", "pi/2 - min(abs(2*t + 1), 2*pi - abs(2*t + 1))"},
+      {"sqrt(1 - cos(3*t))", "sqrt(2)*abs(sin(1.5*t))"},
+      {"sqrt(3 + 3*cos(3*t))", "sqrt(6)*abs(cos(1.5*t))"},
+      {"sqrt((1 - sin(2*t))/2)", "abs(sin(t - pi/4))"},
+      {"sqrt((1 + sin(2*t))/2)", "abs(sin(t + pi/4))"},
+      {"(2 - 2*cos(t))^1.5", "8*abs(sin(t/2))^3"},
+      {"sqrt(1 - sin(2*t)^2)", "abs(cos(2*t))"},
+      {"sqrt(5*(1 - cos(2*t)^2))", "sqrt(5)*abs(sin(2*t))"},
   };
   constexpr unsigned kSeed = 3;
   std::mt19937_64 random(kSeed);
