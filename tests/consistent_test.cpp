@@ -55,7 +55,9 @@ TEST(Consistent, PositionsNearbyAreProjectedByTheFactorsAtHand) {
     const auto nearby = statistics.factorizations - before;
     problem->position_residual(rows);
     for (const double row : rows) EXPECT_LT(std::abs(row), 1e-14) << off;
-    if (off < 0.1) EXPECT_EQ(nearby, 1) << off;
+    if (off < 0.1) {
+      EXPECT_EQ(nearby, 1) << off;
+    }
     ASSERT_TRUE(consistent.project_position(0, anew).ok());
     for (std::size_t k = 0; k < anew.size(); ++k) EXPECT_NEAR(moved[k], anew[k], 3 * off * off + 1e-14) << off;
   }
