@@ -55,27 +55,47 @@ FrontQr::FrontQr(const Sparse& A, const std::vector<char>& left_out, double tole
     for (int row = 0; row < by_row.outerSize(); ++row)
       if (const RowMajor::InnerIterator first(by_row, row); first) emit(static_cast<int>(first.col()), row);
   });
-  std::vector<std::vector<Front>> parts(index(n));
+  std::vector<Parts> parts(index(n));
   R_.reserve(2 * index(kept.nonZeros()));  // what most come to
   for (int place = 0; place < n; ++place) {
-    Front front = assemble(place, by_row, begin[place], std::move(parts[index(place)]));
+    const int at = assemble(place, by_row, begin[place], parts[index(place)]);
+    Front& front = fronts_[index(at)];
     reduce(front);
-    if (front.left().size() > 0) parts[index(front.places[index(front.first)])].push_back(std::move(front));
+    if (front.left().size() == 0) {
+      free_.push_back(at);
+      continue;
+    }
+    Parts& to = parts[index(front.places[index(front.first)])];
+    (to.first < 0 ? to.first : fronts_[index(to.last)].next) = at;
+    to.last = at;
   }
+  std::vector<Front>().swap(fronts_);
+  std::vector<int>().swap(free_);
   column_ = std::move(order_);
   for (int k = 0; k < n; ++k) place_[index(column_[index(k)])] = k;
   for (Entry& entry : R_) entry.place = place_[index(entry.place)];
 }
 
-// All rows that begin at `place`. A part alone is taken as it is: the columns of one joint share a front.
-FrontQr::Front FrontQr::assemble(int place, const RowMajor& A, std::span<const int> begins, std::vector<Front> parts) {
-  if (begins.empty() && parts.size() == 1) return std::move(parts.front());
-  Front front;
-  Eigen::Index rows = static_cast<Eigen::Index>(begins.size());
+// All rows that begin at `place`: which of the fronts they are. A part alone is taken as it is: the columns of one
+// joint share a front.
+int FrontQr::assemble(int place, const RowMajor& A, std::span<const int> begins, const Parts& parts) {
+  if (begins.empty() && parts.first >= 0 && parts.first == parts.last) return parts.first;
+  if (free_.empty()) {
+    free_.push_back(static_cast<int>(fronts_.size()));
+    fronts_.emplace_back();
+  }
+  const int at = free_.back();
+  free_.pop_back();
+  Front& front = fronts_[index(at)];
+  front.places.clear();
+  front.height = static_cast<Eigen::Index>(begins.size());
+  front.top = front.first = 0;
+  front.next = -1;
   for (const int row : begins)
     for (RowMajor::InnerIterator it(A, row); it; ++it) front.places.push_back(static_cast<int>(it.col()));
-  for (Front& part : parts) {
-    rows += part.left().rows();
+  for (int p = parts.first; p >= 0; p = fronts_[index(p)].next) {
+    Front& part = fronts_[index(p)];
+    front.height += part.left().rows();
     front.places.insert(front.places.end(), part.places.begin() + part.first, part.places.end());
   }
   std::sort(front.places.begin(), front.places.end());
@@ -83,19 +103,21 @@ FrontQr::Front FrontQr::assemble(int place, const RowMajor& A, std::span<const i
   if (front.places.empty()) front.places.push_back(place);
   for (std::size_t k = 0; k < front.places.size(); ++k) local_[index(front.places[k])] = static_cast<int>(k);
 
-  front.rows.setZero(rows, static_cast<Eigen::Index>(front.places.size()));
+  front.numbers.assign(index(front.height * front.width()), 0.0);
   Eigen::Index next = 0;
   for (const int row : begins) {
-    for (RowMajor::InnerIterator it(A, row); it; ++it) front.rows(next, local_[index(it.col())]) = it.value();
+    for (RowMajor::InnerIterator it(A, row); it; ++it) front.column(local_[index(it.col())])[next] = it.value();
     ++next;
   }
-  for (Front& part : parts) {
+  for (int p = parts.first; p >= 0; p = fronts_[index(p)].next) {
+    Front& part = fronts_[index(p)];
     const auto left = part.left();
     for (Eigen::Index k = 0; k < left.cols(); ++k)
-      front.rows.col(local_[index(part.places[index(part.first + k)])]).segment(next, left.rows()) = left.col(k);
+      front.column(local_[index(part.places[index(part.first + k)])]).segment(next, left.rows()) = left.col(k);
     next += left.rows();
+    free_.push_back(p);
   }
-  return front;
+  return at;
 }
 
 // Takes the first column off the front, or lets it wait.
@@ -105,9 +127,11 @@ void FrontQr::reduce(Front& front) {
   if (2 * front.left().rows() > 3 * front.left().cols()) {
     const Eigen::Index columns = front.left().cols();
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(front.left());
-    front.rows = qr.matrixQR().topRows(columns).triangularView<Eigen::Upper>();
     front.places.erase(front.places.begin(), front.places.begin() + front.first);
+    front.numbers.assign(index(columns * columns), 0.0);
+    front.height = columns;
     front.top = front.first = 0;
+    front.left().triangularView<Eigen::Upper>() = qr.matrixQR().topRows(columns);
   }
   const double norm = front.left().col(0).norm();
   if (choice_ != Choice::by_order && norm > kNothing && clarity(front, 0, norm) < kClear)
@@ -132,8 +156,8 @@ double FrontQr::clarity(const Front& front, Eigen::Index k, double norm) const {
 
 void FrontQr::wait(Front& front) {
   front.places.push_back(static_cast<int>(column_.size()) + column_at(front, 0));
-  front.rows.conservativeResize(Eigen::NoChange, front.rows.cols() + 1);
-  front.rows.rightCols(1) = front.rows.col(front.first);
+  front.numbers.resize(index(front.height * front.width()));
+  front.column(front.width() - 1) = front.column(front.first);
   ++front.first;
 }
 
@@ -201,10 +225,10 @@ void FrontQr::take(Front& front, Eigen::Index k, double norm) {
     ++front.first;
     return;
   }
+  front.column(front.first + k) = front.column(front.width() - 1);
   front.places[index(front.first + k)] = front.places.back();
   front.places.pop_back();
-  front.rows.col(front.first + k) = front.rows.rightCols(1);
-  front.rows.conservativeResize(Eigen::NoChange, front.rows.cols() - 1);
+  front.numbers.resize(index(front.height * front.width()));
 }
 
 }  // namespace poinsot

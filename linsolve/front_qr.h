@@ -56,15 +56,27 @@ class FrontQr {
   Sums times_null_vectors(const Eigen::MatrixXd& b);
 
  private:
+  // What is left of it: from `top` and `first` on.
   struct Front {
-    std::vector<int> places;  // of its columns by fill, ascending; of columns that wait, behind all of these
-    Eigen::MatrixXd rows;     // what is left of it: from `top` and `first` on
-    Eigen::Index top = 0, first = 0;
-    auto left() { return rows.bottomRightCorner(rows.rows() - top, rows.cols() - first); }
+    std::vector<int> places;      // of its columns by fill, ascending; of columns that wait, behind all of these
+    std::vector<double> numbers;  // by columns, `height` of each
+    Eigen::Index height = 0, top = 0, first = 0;
+    int next = -1;  // the next part of the front that takes it in
+
+    Eigen::Index width() const { return static_cast<Eigen::Index>(places.size()); }
+    auto column(Eigen::Index k) { return Eigen::VectorXd::Map(numbers.data() + k * height, height); }
+    auto left() {
+      return Eigen::MatrixXd::Map(numbers.data() + first * height + top, height - top, width() - first,
+                                  Eigen::OuterStride<>(height));
+    }
+  };
+  // Parts of the front at a place, in the order they came.
+  struct Parts {
+    int first = -1, last = -1;
   };
   using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-  Front assemble(int place, const RowMajor& A, std::span<const int> begins, std::vector<Front> parts);
+  int assemble(int place, const RowMajor& A, std::span<const int> begins, const Parts& parts);
   void reduce(Front& front);
   int column_at(const Front& front, Eigen::Index k) const;
   double clarity(const Front& front, Eigen::Index k, double norm) const;
@@ -87,6 +99,8 @@ class FrontQr {
   std::vector<double> known_;  // by column: b less what the rows of R so far take off
   Eigen::MatrixXd leaning_;    // likewise of other signs, to choose the calmest by; y of the same would tell less
   std::vector<double> grown_;  // by column: the largest |y| of these rows
+  std::vector<Front> fronts_;  // with room to be used again
+  std::vector<int> free_;      // of these
   std::vector<int> local_;     // place within the front being assembled
   std::vector<double> work_;   // by place, zero between calls
   Eigen::VectorXd reflected_;
