@@ -12,6 +12,7 @@
 #include "integrators/start/initial_state.h"
 #include "integrators/start/row_space.h"
 #include "tests/support/hubs.h"
+#include "tests/support/large_scenes.h"
 #include "tests/support/scene_transform.h"
 
 namespace poinsot::test {
@@ -275,6 +276,26 @@ TEST(Rank, OfABodyWithAllButNoArms) {
     EXPECT_EQ(rank.aside.size(), 3u) << off;
     EXPECT_EQ(rank.doubtful, -1) << off;
     EXPECT_GT(body_sizes(compile(scene))[1], 0.01) << off;
+  }
+}
+
+// Each of them as if it were alone, however many stand in one scene: of straight toggles the one row that meets the
+// others without crossing them.
+TEST(Rank, OfManyMechanismsIsThatOfEach) {
+  for (const int count : {1, 300, 1400}) {  // of the last 21 000 rows
+    Rods made;
+    for (int k = 0; k < count; ++k) {
+      const Vector3 p(0, 3.0 * k, 0), q = p + Vector3::UnitX(), r = q + Vector3::UnitX();
+      const int first = made.rod(p, q), second = made.rod(q, r);
+      made.join(kGround, first, p);
+      made.join(first, second, q);
+      made.join(second, kGround, r);
+    }
+    const auto model = std::make_shared<const Model>(compile(made.scene));
+    const RankAnalysis rank = analyze_rank(model, given_state(*model), RankNames::none);
+    EXPECT_EQ(rank.degrees_of_freedom(), 0) << count;
+    EXPECT_EQ(rank.singular.size(), static_cast<std::size_t>(count));
+    EXPECT_EQ(rank.aside.size(), 3u * static_cast<std::size_t>(count));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/body_sizes.h"
 #include "core/index.h"
+#include "core/mechanisms.h"
 #include "formulations/registry.h"
 #include "integrators/settings.h"
 #include "linsolve/column_dependencies.h"
@@ -69,10 +70,22 @@ bool Beside::free_direction(Trial& trial, int seed, std::vector<double>& move) c
   const double asked = extent(std::span<const double>(x).first(nv));
   if (!trial.consistent->solve(0, x).ok()) return false;
   x.resize(nv);
-  const double length = extent(x);
-  if (!(length > 1e-6 * asked)) return true;  // it cannot move
-  for (double& part : x) part *= kMove / length;
-  move = std::move(x);
+  // Each mechanism of the scene by itself: of thousands some would hardly move beside the one that moves most.
+  const std::vector<int> mechanism = mechanisms(*model_);
+  std::vector<double> length(mechanism_count(mechanism), 0.0);
+  const auto of_body = [&](std::size_t b) { return std::span(x).subspan(6 * b, 6); };
+  for (std::size_t b = 0; b < sizes_.size(); ++b)
+    for (std::size_t k = 0; k < 6; ++k)
+      length[index(mechanism[b])] =
+          std::max(length[index(mechanism[b])], std::abs(of_body(b)[k]) / (k < 3 ? sizes_[b] : 1.0));
+  bool moves = false;
+  for (std::size_t b = 0; b < sizes_.size(); ++b) {
+    const double most = length[index(mechanism[b])];
+    const bool can = most > 1e-6 * asked;
+    moves = moves || can;
+    for (double& part : of_body(b)) part = can ? part * (kMove / most) : 0;
+  }
+  if (moves) move = std::move(x);
   return true;
 }
 
@@ -114,6 +127,7 @@ std::optional<PlaceBeside> Beside::anywhere(Trial& trial, int direction) {
   const std::vector<double>& free = trial.random[index(direction)];
   if (!move || free.empty()) return {};
   for (std::size_t k = 0; k < free.size(); ++k) move->dq[k] += free[k];
+  move->must_stay = true;  // that at random, however slow the other
   return settle(trial, *move);
 }
 
