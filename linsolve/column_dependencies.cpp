@@ -218,13 +218,14 @@ std::vector<int> dependent_columns(const Sparse& A, double tolerance, std::size_
   return Echelon(A, tolerance, wide, of, 0).dependent;
 }
 
-NullSpace null_space(const Sparse& A, double tolerance, std::size_t most, ColumnDependencies* named) {
+NullSpace null_space(const Sparse& A, double tolerance, std::size_t most, const AlsoOfDecomposition& also) {
   const WideRows wide(A);
-  Decomposed of = decomposed(A, wide, tolerance, named ? kMostNamed : most, SIZE_MAX);
-  if (named) *named = dependencies(Echelon(A, tolerance, wide, of, kMostNamed));
+  Decomposed of = decomposed(A, wide, tolerance, also.keep ? SIZE_MAX : also.named ? kMostNamed : most, SIZE_MAX);
+  if (also.named) *also.named = dependencies(Echelon(A, tolerance, wide, of, kMostNamed));
   Echelon space(A, tolerance, wide, of, most);
-  NullSpace found{std::move(space.dependent), {}, space.from, space.stretched};
+  NullSpace found{std::move(space.dependent), {}, space.from, space.stretched, nullptr};
   for (auto& [column, z] : space.by_last) found.vectors.push_back(std::move(z));
+  if (also.keep && wide.count == 0) found.decomposition = std::make_shared<FrontQr>(std::move(of.qr));
   return found;
 }
 

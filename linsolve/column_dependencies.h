@@ -12,6 +12,7 @@
 
 #include <Eigen/SparseCore>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "linsolve/front_qr.h"
@@ -49,9 +50,14 @@ struct NullSpace {
   std::vector<SparseEntries> vectors;
   double from = 0;            // the least tolerance at which it is the same
   std::size_t stretched = 0;  // as good as dependent by the length of the mechanism: FrontQr::stretched
+  // With its R, where that was asked for and no wide row was left out.
+  std::shared_ptr<FrontQr> decomposition;
 };
-// `named`: given column_dependencies() of the same decomposition.
+struct AlsoOfDecomposition {
+  ColumnDependencies* named = nullptr;  // is given column_dependencies()
+  bool keep = false;                    // NullSpace::decomposition
+};
 NullSpace null_space(const Eigen::SparseMatrix<double>& A, double tolerance, std::size_t most,
-                     ColumnDependencies* named = nullptr);
+                     const AlsoOfDecomposition& also = {});
 
 }  // namespace poinsot

@@ -54,6 +54,10 @@ class FrontQr {
     Eigen::VectorXd sizes;  // of the largest terms of each, added up
   };
   Sums times_null_vectors(const Eigen::MatrixXd& b);
+  // Each row of b, which has a column for each of A, ← (A_KᵀA_K)⁻¹ b by R alone, K being the columns that are
+  // independent; 0 at the others. Of what it is used for, x = A_K (A_KᵀA_K)⁻¹ b is as accurate as by Q (C. C. Paige, An
+  // error analysis of a method for solving matrix equations, 1973).
+  void solve_normal_equations(Eigen::MatrixXd& b);
 
  private:
   // What is left of it: from `top` and `first` on.

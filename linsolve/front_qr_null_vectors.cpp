@@ -1,4 +1,4 @@
-// Null vectors by back substitution with R, and sums over all of them.
+// What R is for: null vectors by back substitution, sums over all of them, the normal equations.
 #include <algorithm>
 #include <cmath>
 #include <queue>
@@ -82,6 +82,40 @@ FrontQr::Sums FrontQr::times_null_vectors(const Eigen::MatrixXd& b) {
     sums.sizes[k] = sizes[place];
   }
   return sums;
+}
+
+void FrontQr::solve_normal_equations(Eigen::MatrixXd& b) {
+  check(has_R_, "R of a decomposition that keeps it");
+  if (start_.empty()) store_by_column();
+  const auto last = [&](std::size_t place) { return start_[place + 1] - 1; };
+  // Of a dependent column R has no diagonal, and no row.
+  const auto independent = [&](std::size_t place) {
+    return start_[place] < start_[place + 1] && R_[last(place)].row == static_cast<int>(place);
+  };
+  const Eigen::Index count = b.rows();
+  Eigen::MatrixXd y = Eigen::MatrixXd::Zero(count, b.cols());
+  const auto of = [&](Eigen::MatrixXd& all, int column) { return all.data() + column * count; };
+  for (std::size_t place = 0; place < place_.size(); ++place) {
+    if (!independent(place)) continue;
+    double* sum = of(y, static_cast<int>(place));
+    std::copy_n(of(b, column_[place]), count, sum);
+    for (std::size_t k = start_[place]; k < last(place); ++k) {
+      const double* known = of(y, R_[k].row);
+      for (Eigen::Index c = 0; c < count; ++c) sum[c] -= R_[k].value * known[c];
+    }
+    for (Eigen::Index c = 0; c < count; ++c) sum[c] /= R_[last(place)].value;
+  }
+  for (std::size_t place = place_.size(); place-- > 0;) {
+    double* x = of(y, static_cast<int>(place));
+    if (independent(place)) {
+      for (Eigen::Index c = 0; c < count; ++c) x[c] /= R_[last(place)].value;
+      for (std::size_t k = start_[place]; k < last(place); ++k) {
+        double* before = of(y, R_[k].row);
+        for (Eigen::Index c = 0; c < count; ++c) before[c] -= R_[k].value * x[c];
+      }
+    }
+    std::copy_n(x, count, of(b, column_[place]));
+  }
 }
 
 }  // namespace poinsot

@@ -12,6 +12,7 @@
 namespace poinsot {
 namespace {
 
+constexpr double kRounding = 1e-14;
 constexpr int kTogether = 4;       // columns at most
 constexpr double kFewTerms = 300;  // of a row; its sums are compared with its largest term
 
@@ -109,7 +110,26 @@ double Residual::size(const CscLayout& layout, std::span<const double> values, s
   const double size_x = largest(x, per_column_), size_b = largest(b, rows_),
                size_r = largest(r_, by_terms_.empty() ? rows_ : by_terms_);
   if (!all_finite(r_)) return HUGE_VAL;
-  return size_r == 0 ? 0 : size_r / (size_x + size_b);
+  const double size = size_r == 0 ? 0 : size_r / (size_x + size_b);
+  return terms_.empty() || size <= kRounding ? size : in_sums(layout, values, b, x, size_x + size_b);
+}
+
+double Residual::in_sums(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
+                         std::span<const double> x, double size) {
+  sums_.resize(r_.size());
+  std::ranges::transform(b, sums_.begin(), [](double part) { return std::abs(part); });
+  for (std::size_t j = 0; j < x.size(); ++j)
+    for (int k = layout.start[j]; k < layout.start[j + 1]; ++k)
+      if (const std::size_t row = index(layout.row[index(k)]); terms_[row] > 1)
+        sums_[row] += std::abs(values[index(k)] * x[j]);
+  double most = 0;
+  for (std::size_t i = 0; i < r_.size(); ++i) {
+    const double r = std::abs(r_[i]);
+    if (r == 0) continue;
+    const double of_all = r * by_terms_[i] / size;
+    most = std::max(most, terms_[i] > 1 ? std::min(of_all, r / sums_[i]) : of_all);
+  }
+  return most;
 }
 
 }  // namespace poinsot

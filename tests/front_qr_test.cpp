@@ -42,5 +42,25 @@ TEST(FrontQr, NetsOfThousandsOfRodsAreRegular) {
   }
 }
 
+// Of columns in the order of their lengths, some twice.
+TEST(FrontQr, SolvesNormalEquationsOfWhatIsKept) {
+  constexpr Eigen::Index kRows = 30, kColumns = 20, kSides = 3;
+  srand(1);
+  Eigen::MatrixXd A = Eigen::MatrixXd::Random(kRows, kColumns);
+  A = (A.array().abs() < 0.6).select(0, A);  // sparse
+  A.col(7) = A.col(3), A.col(15) = A.col(2) + A.col(11);
+  A.colwise().normalize();
+  FrontQr qr(A.sparseView(), std::vector<char>(kRows, 0), 1e-9, FrontQr::Choice::by_order, kColumns);
+  ASSERT_EQ(qr.dependent().size(), 2u);
+  Eigen::MatrixXd kept = A;
+  for (const int column : qr.dependent()) kept.col(column).setZero();
+  Eigen::MatrixXd y = Eigen::MatrixXd::Random(kSides, kColumns);
+  for (const int column : qr.dependent()) y.col(column).setZero();
+  Eigen::MatrixXd b = y * kept.transpose() * kept;
+  for (const int column : qr.dependent()) b.col(column).setConstant(7);  // passed over
+  qr.solve_normal_equations(b);
+  EXPECT_LT((b - y).cwiseAbs().maxCoeff(), 1e-11);
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -60,10 +60,32 @@ TEST(Residual, OfManyTermsIsRelativeToThemAll) {
   b[0] = static_cast<double>(std::accumulate(x.begin(), x.end(), 0.0L));
   b[1] = x[1];
   EXPECT_LT(residual.size(layout, values, b, x), 1e-15);
-  b[0] += 1e-8;
+  b[0] += 1e-7;
   EXPECT_GT(residual.size(layout, values, b, x), 1e-12);
-  b[0] -= 1e-8, b[1] += 1e-12;
+  b[0] -= 1e-7, b[1] += 1e-12;
   EXPECT_GT(residual.size(layout, values, b, x), 1e-14);
+}
+
+// Nor to all unknowns, where its own are larger: rods of a hub whose arms are long.
+TEST(Residual, OfManyTermsIsRelativeToTheirSum) {
+  constexpr int kTerms = 3'000;
+  constexpr double kArm = 1e5;
+  CscLayout layout;
+  ASSERT_TRUE(layout.build({kTerms, {{0, 0, 1, kTerms}, {1, 1, 1, 1}}, std::vector<int>(kTerms, 0)}).ok());
+  std::mt19937_64 random(1);
+  const std::vector<double> values(static_cast<std::size_t>(layout.nonzeros()), kArm),
+      ones(static_cast<std::size_t>(kTerms), 1), x = random_vector(kTerms, random);
+  Residual residual;
+  residual.resize(layout);
+  residual.measure_by(ones, ones);
+  std::vector<double> b(ones.size(), 0.0);
+  b[0] = kArm * static_cast<double>(std::accumulate(x.begin(), x.end(), 0.0L));
+  b[1] = kArm * x[1];
+  const double rounding = 1e-14 * kArm * kTerms;
+  b[0] += rounding;
+  EXPECT_LT(residual.size(layout, values, b, x), 3e-14);
+  b[0] += 100 * rounding;
+  EXPECT_GT(residual.size(layout, values, b, x), 1e-12);
 }
 
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(LinearSolvers);

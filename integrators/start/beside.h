@@ -8,13 +8,13 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/body_state.h"
 #include "core/model.h"
+#include "integrators/start/onto_rows.h"
 #include "integrators/start/row_space.h"
-#include "integrators/stepping/consistent.h"
+#include "linsolve/front_qr.h"
 
 namespace poinsot {
 
@@ -38,23 +38,12 @@ struct PlaceBeside {
   bool by_rate = false;
 };
 
-// The given state, put onto the rows of the model that are not left out.
+// The given state, put onto the rows that are not left out.
 struct Trial {
-  std::vector<int> without;  // rows of the model
-  std::unique_ptr<Problem> problem;
-  std::unique_ptr<Consistent> consistent;
+  std::unique_ptr<OntoRows> onto;
   PlaceBeside start;
   std::vector<std::vector<double>> random;  // moves along directions that the constraints leave free at the start
   bool regular = false;                     // it could be put there
-
-  Trial(std::vector<int> left_out, std::unique_ptr<Problem> of)
-      : without(std::move(left_out)),
-        problem(std::move(of)),
-        consistent(std::make_unique<Consistent>(*problem, LinearChoice{})) {}
-  bool put_back(PlaceBeside& place) {
-    return (regular ? consistent->project_nearby(place.t, place.q) : consistent->project_position(place.t, place.q))
-        .ok();
-  }
 };
 
 class Beside {
@@ -65,13 +54,15 @@ class Beside {
 
   // `directions`: how many random ones at_random() is to have.
   Trial begin(const std::vector<int>& without, int directions = 0) const;
+  // Without its dependent columns, of the space where it stands; with one direction.
+  Trial begin(std::shared_ptr<FrontQr> decomposition) const;
   // Makes the trial's start the one from which `holds` is judged: m that each row of the space is off there.
   std::span<const double> measure_start(Trial& trial);
   // Nothing where it does not move, or the projection pulls it back.
   std::optional<PlaceBeside> along_velocities(Trial& trial);
   std::optional<PlaceBeside> at_random(Trial& trial, int direction);
-  // Both at once; nothing where either is none.
-  std::optional<PlaceBeside> anywhere(Trial& trial, int direction);
+  // Both at once, as far as there are both.
+  std::optional<PlaceBeside> anywhere(Trial& trial);
   // Whether the mechanism, moved on along its velocities, comes to a position where all rows hold and are independent
   // but those left out.
   bool leads_on(const PlaceBeside& start, const PlaceBeside& along, const std::vector<int>& without);
@@ -79,6 +70,8 @@ class Beside {
   double extent(std::span<const double> dq) const;  // largest move of a body by dq, in its size
 
  private:
+  std::unique_ptr<OntoRows> by_motion(const std::vector<int>& without) const;
+  Trial begin(std::unique_ptr<OntoRows> onto, int directions) const;
   bool free_direction(Trial& trial, int seed, std::vector<double>& move) const;
   struct Move {
     double t;
@@ -87,17 +80,14 @@ class Beside {
   };
   std::optional<Move> along(const PlaceBeside& start) const;
   std::optional<PlaceBeside> settle(Trial& trial, const Move& move);
-  void stand(Problem& problem, const PlaceBeside& place);
   void look(Trial& trial, PlaceBeside& place);
   void look_at_rates(Trial& trial, PlaceBeside& place);
-  bool all_follow(Trial& trial, double t) const;
   double distance(std::span<const double> q, std::span<const double> from) const;
 
-  std::shared_ptr<const Model> model_, unit_;  // unit_: of bodies of unit mass
-  std::vector<BodyState> states_;
+  std::shared_ptr<const Model> model_;
   RowSpace& space_;
   std::size_t suspects_;
-  std::vector<double> sizes_, off_at_start_;
+  std::vector<double> sizes_, q_, v_, off_at_start_;  // q_, v_: the given state
 };
 
 }  // namespace poinsot

@@ -81,8 +81,9 @@ class Choice {
 
 }  // namespace
 
-NullSpace few_null_vectors(const Eigen::SparseMatrix<double>& columns, double tolerance, ColumnDependencies* named) {
-  return null_space(columns, tolerance, kMostChosen, named);
+NullSpace few_null_vectors(const Eigen::SparseMatrix<double>& columns, double tolerance,
+                           const AlsoOfDecomposition& also) {
+  return null_space(columns, tolerance, kMostChosen, also);
 }
 
 bool many(const NullSpace& null) {

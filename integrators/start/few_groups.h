@@ -19,7 +19,7 @@ std::vector<int> rows_of_few_groups(const Model& model, std::span<const int> row
 
 // The null space of columns, with vectors unless there are more of them than are worth their time.
 NullSpace few_null_vectors(const Eigen::SparseMatrix<double>& columns, double tolerance,
-                           ColumnDependencies* named = nullptr);
+                           const AlsoOfDecomposition& also = {});
 // It is without vectors.
 bool many(const NullSpace& null);
 

@@ -23,7 +23,8 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr double kNoLoad = 1e-7;   // of a null vector on unit rows
-constexpr int kManyRows = 20'000;  // of loops: places are looked at one for two
+constexpr int kManyRows = 20'000;  // of loops: one place beside is looked at for all
+constexpr int kDirections = 2;     // at random
 
 class Examination {
  public:
@@ -39,16 +40,19 @@ class Examination {
     result_.loops = loop_rows(*model_, *space_);
     if (result_.loops.empty()) return std::move(result_);
     if (result_.loops.size() < model_->rows.size()) space_->keep(result_.loops);
-    here_ = few_null_vectors(space_->columns(), kIndependent);
+    here_ = few_null_vectors(space_->columns(), kIndependent, {nullptr, many_rows()});
     const auto surely = [&] {
-      return few_null_vectors(space_->columns(), kDependent, names_ == RankNames::all ? &named_.emplace() : nullptr);
+      return few_null_vectors(space_->columns(), kDependent,
+                              {names_ == RankNames::all ? &named_.emplace() : nullptr, many_rows()});
     };
     surely_ = here_.from <= kDependent ? here_ : surely();
     // Rows that are barely independent by the length of the mechanism are so wherever it stands: not singular here.
     if (surely_.columns.size() + here_.stretched >= here_.columns.size()) here_ = surely_;
+    std::shared_ptr<FrontQr> decomposition = here_.decomposition;
+    here_.decomposition = surely_.decomposition = nullptr;
     if (here_.columns.empty()) return std::move(result_);
     without_ = here_.from <= kDependent ? gathered(space_->columns(), here_, kDependent) : chosen(here_);
-    look_beside();
+    look_beside(std::move(decomposition));
     return std::move(result_);
   }
 
@@ -68,39 +72,36 @@ class Examination {
     return columns;
   }
 
-  void look_beside() {
+  bool many_rows() const { return static_cast<int>(space_->rows().size()) > kManyRows; }
+
+  void look_beside(std::shared_ptr<FrontQr> decomposition) {
     const Sparse columns = space_->columns();
     const std::size_t suspects = here_.columns.size();  // how many rows may be dependent
     const std::vector<int>& surely = surely_.columns;
     beside_.emplace(model_, states_, *space_, suspects);
-    const bool many_rows = static_cast<int>(space_->rows().size()) > kManyRows;
-    const int directions = many_rows ? 1 : 2;
-    Trial trial = beside_->begin(without_, directions);
-    if (trial.regular) find_conflicts(trial, without_);
-    if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
     // Conflicts are told as a reader of the scene meets them: what contradicts rows before it.
     const auto by_order = [&] { return of_model(null_space(columns, kIndependent, space_->rows().size()).columns); };
-    if (!result_.conflicts.empty()) {
-      std::vector<Conflict> as_chosen = std::exchange(result_.conflicts, {});
-      const std::vector<int> without = by_order();
-      Trial other = beside_->begin(without);
-      if (other.regular) find_conflicts(other, without);
-      if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
-    }
-    const PlaceBeside& start = trial.start;
+    PlaceBeside start;
     std::optional<PlaceBeside> best, along;
-    bool everywhere = false;  // one place that is as good as both others says that as many rows follow there
-    if (trial.regular && result_.conflicts.empty() && many_rows) {
-      const std::optional<PlaceBeside> place = beside_->anywhere(trial, 0);
-      everywhere = place && place->dependent == suspects && place->holds;
-    }
-    if (trial.regular && result_.conflicts.empty() && !everywhere) {
-      along = beside_->along_velocities(trial);
-      best = along;
-      for (int k = 0; k < directions && (!best || best->dependent > 0); ++k) {
-        std::optional<PlaceBeside> place = beside_->at_random(trial, k);
-        if (place && (!best || place->dependent < best->dependent)) best = std::move(place);
+    if (!many_rows() || !all_follow_beside(std::move(decomposition))) {
+      Trial trial = beside_->begin(without_, kDirections);
+      if (trial.regular) find_conflicts(trial);
+      if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
+      if (!result_.conflicts.empty()) {
+        std::vector<Conflict> as_chosen = std::exchange(result_.conflicts, {});
+        Trial other = beside_->begin(by_order());
+        if (other.regular) find_conflicts(other);
+        if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
       }
+      if (trial.regular && result_.conflicts.empty()) {
+        along = beside_->along_velocities(trial);
+        best = along;
+        for (int k = 0; k < kDirections && (!best || best->dependent > 0); ++k) {
+          std::optional<PlaceBeside> place = beside_->at_random(trial, k);
+          if (place && (!best || place->dependent < best->dependent)) best = std::move(place);
+        }
+      }
+      start = std::move(trial.start);
     }
     if (best && best->dependent < suspects) {
       tell_redundant(best->columns, kFreeBeside, few_null_vectors(best->columns, kFreeBeside));
@@ -121,14 +122,25 @@ class Examination {
     }
   }
 
-  // The rows left out, where the others hold.
-  void find_conflicts(Trial& trial, const std::vector<int>& without) {
+  // Whether as many rows follow and hold in one place that is beside in every way at once. Where that cannot be said,
+  // who looks at each way by itself finds out why.
+  bool all_follow_beside(std::shared_ptr<FrontQr> decomposition) {
+    Trial trial = decomposition ? beside_->begin(std::move(decomposition)) : beside_->begin(without_, 1);
+    if (!trial.regular) return false;
+    find_conflicts(trial);
+    if (!std::exchange(result_.conflicts, {}).empty()) return false;
+    const std::optional<PlaceBeside> place = beside_->anywhere(trial);
+    return place && place->dependent == here_.columns.size() && place->holds;
+  }
+
+  // Of the rows left out, where the others hold.
+  void find_conflicts(Trial& trial) {
     const PlaceBeside& start = trial.start;
     const std::span<const double> off = beside_->measure_start(trial);
     std::vector<double> rate(off.size()), nu(off.size());
     space_->rates(start.v, rate, nu);
     const double speed = beside_->extent(start.v);
-    for (const int row : without) {
+    for (const int row : trial.onto->without()) {
       const std::size_t k = index(std::ranges::lower_bound(space_->rows(), row) - space_->rows().begin());
       const double size = space_->size_of_row(k), length = space_->norm_of_row(k);
       const double rate_off = std::abs(rate[k]) / length;

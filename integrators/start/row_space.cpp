@@ -57,14 +57,24 @@ RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
     const Row& row = model_->rows[index(k)];
     const bool of_directions = row.type == RowType::DP1 || row.type == RowType::angle;
     rounding_.push_back(of_directions ? kDependent * direction_terms(row) : 0);
+    if (row.type == RowType::D) at_.resize(sizes_.size());
   }
 }
 
 void RowSpace::stand(double t, std::span<const BodyState> states) {
   problem_->from_bodies(states, q_, v_);
+  stand_at(t, q_);
+}
+
+void RowSpace::move(double t, std::span<const double> q) {
+  problem_->set_position(t, q);
+}
+
+void RowSpace::stand_at(double t, std::span<const double> q) {
   std::ranges::fill(v_, 0.0);
-  problem_->set_position(t, q_);
+  problem_->set_position(t, q);
   problem_->set_velocity(v_);
+  if (!at_.empty()) problem_->to_bodies(v_, at_);
   problem_->assemble(MatrixKind::kinematic, {}, {}, {}, {}, layout_.slots, values_);
   for (int k = 0; k < Gt_.outerSize(); ++k) {
     const int begin = Gt_.outerIndexPtr()[k], end = Gt_.outerIndexPtr()[k + 1];
@@ -74,7 +84,7 @@ void RowSpace::stand(double t, std::span<const BodyState> states) {
       g[i] = values_[index(source_[index(i)])] * measure_[index(i)];
       sum += g[i] * g[i];
     }
-    const double rounding = rounding_of(index(k), states);
+    const double rounding = rounding_of(index(k));
     lengths_[index(k)] = (is_velocity_row(index(k)) ? kVelocityRow : 1) * std::max(std::sqrt(sum), rounding);
     const double by = sum > rounding * rounding ? 1 / lengths_[index(k)] : 0;
     for (int i = begin; i < end; ++i) g[i] *= by;
@@ -111,11 +121,11 @@ double RowSpace::direction_terms(const Row& row) const {
 
 // Where a gradient can cancel altogether, kDependent of the terms it is made of: the cross product of directions that
 // are parallel, the distance of points that coincide.
-double RowSpace::rounding_of(std::size_t k, std::span<const BodyState> states) const {
+double RowSpace::rounding_of(std::size_t k) const {
   const Row& row = model_->rows[index(rows_[k])];
   if (row.type != RowType::D) return rounding_[k];
   const auto place = [&](int body, const Vector3& s) {
-    return s.norm() + (body == kGround ? 0.0 : states[index(body)].r.norm());
+    return s.norm() + (body == kGround ? 0.0 : at_[index(body)].r.norm());
   };
   return kDependent * 2 * (place(row.i, row.s_i) + place(row.j, row.s_j));
 }

@@ -37,11 +37,15 @@ class RowSpace {
 
   // At rest.
   void stand(double t, std::span<const BodyState> states);
+  void stand_at(double t, std::span<const double> q);
+  // distances() and rates() are then those there, by gradients of where it stands.
+  void move(double t, std::span<const double> q);
   // Leaves these of its rows, ascending, as they stand: making another space of a large model takes as long as all that
   // it costs to carry the others along.
   void keep(std::vector<int> rows);
 
   const std::vector<int>& rows() const { return rows_; }
+  const Problem& problem() const { return *problem_; }  // for its coordinates: those of intrinsic_formulation()
   // Gᵀ, a column of unit length for each row; 0 where the gradient is nothing but rounding.
   const Eigen::SparseMatrix<double>& columns() const { return Gt_; }
   // ‖g‖ by row, of a velocity row kVelocityRow ‖g‖; of a row that vanishes, that of its terms.
@@ -61,7 +65,7 @@ class RowSpace {
  private:
   double direction_terms(const Row& row) const;
   void take_places(std::span<double> out) const;
-  double rounding_of(std::size_t k, std::span<const BodyState> states) const;
+  double rounding_of(std::size_t k) const;
 
   std::shared_ptr<const Model> model_;
   std::vector<int> rows_;
@@ -75,6 +79,7 @@ class RowSpace {
   std::vector<int> source_;
   std::vector<double> measure_;
   std::vector<double> rounding_;  // of rows of directions
+  std::vector<BodyState> at_;     // where there are distances
   Eigen::SparseMatrix<double> Gt_;
 };
 
