@@ -12,7 +12,7 @@
 namespace poinsot {
 namespace {
 
-constexpr double kRounding = 1e-14;
+constexpr double kGoodSize = 1e-14;
 constexpr int kTogether = 4;       // columns at most
 constexpr double kFewTerms = 300;  // of a row; its sums are compared with its largest term
 
@@ -111,7 +111,7 @@ double Residual::size(const CscLayout& layout, std::span<const double> values, s
                size_r = largest(r_, by_terms_.empty() ? rows_ : by_terms_);
   if (!all_finite(r_)) return HUGE_VAL;
   const double size = size_r == 0 ? 0 : size_r / (size_x + size_b);
-  return terms_.empty() || size <= kRounding ? size : in_sums(layout, values, b, x, size_x + size_b);
+  return terms_.empty() || size <= kGoodSize ? size : in_sums(layout, values, b, x, size_x + size_b);
 }
 
 double Residual::in_sums(const CscLayout& layout, std::span<const double> values, std::span<const double> b,

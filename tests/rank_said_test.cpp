@@ -141,6 +141,15 @@ TEST(RankSaid, DriversThatPartAfterTheStartContradict) {
     EXPECT_THAT(refused(scene, formulation.name), HasSubstr("driver 't + 20*t^2'"));
 }
 
+// From rest, but for the rounding of sin(2*pi), and they agree again a second later: where one would look that takes it
+// for a motion.
+TEST(RankSaid, DriversThatPartFromRestContradict) {
+  const Scene scene = twice_driven("0.1*(1 - cos(2*pi*(t + 1)))", "0.2*(1 - cos(2*pi*(t + 1)))");
+  const study::SceneCheck found = study::check_scene(scene);
+  ASSERT_EQ(found.rank.conflicts.size(), 1u);
+  EXPECT_EQ(found.rank.conflicts[0].level, Conflict::Level::later);
+}
+
 // Told apart in words, and for programs.
 TEST(RankSaid, ASingularRowIsNoRedundantOne) {
   const study::SceneCheck flat = study::check_scene(posts(1, 0, kSpin, true));

@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kMove = 1e-3;        // of a body's size
 constexpr double kShortWhile = 1e-3;  // s, where nothing moves yet
+constexpr double kNoSpeed = 1e-9;     // of a body's size in a second: speeds below are rounding of velocities
 constexpr double kPulledBack = 0.3;   // of the move that has to be left after the projection
 
 }  // namespace
@@ -106,8 +107,9 @@ double Beside::distance(std::span<const double> q, std::span<const double> from)
 }
 
 std::optional<Beside::Move> Beside::along(const PlaceBeside& start) const {
-  const double speed = extent(start.v);
+  double speed = extent(start.v);
   const bool driven = std::ranges::any_of(model_->rows, [](const Row& row) { return !row.f.is_constant(); });
+  if (driven && speed < kNoSpeed) speed = 0;
   if (speed == 0 && !driven) return {};
   const double t = speed > 0 ? std::min(kMove / speed, 1.0) : kShortWhile;
   Move move{t, start.v, speed > 0 && kMove / speed <= 1.0};

@@ -11,13 +11,13 @@
 namespace poinsot {
 namespace {
 
-constexpr int kCorrections = 8;
-constexpr double kShrinks = 0.1;        // corrections, each time: the decomposition leads on
-constexpr double kNegligible = 1e-14;   // relative to the largest coordinate: rounding
-constexpr double kLeftOut = 1e-13;      // entries of a column of unit length
-constexpr double kFewLeft = 1e-11;      // of a move: far less than is looked for in it
-constexpr double kMuch = 10;            // times a move
-constexpr double kNearRounding = 1e-9;  // likewise: where corrections may stop to shrink
+constexpr int kNewtonSteps = 8;
+constexpr double kShrinks = 0.1;          // corrections, each time: the decomposition leads on
+constexpr double kOfCoordinates = 1e-14;  // relative to the largest coordinate: rounding
+constexpr double kLeftOut = 1e-13;        // entries of a column of unit length
+constexpr double kFewLeft = 1e-11;        // of a move: far less than is looked for in it
+constexpr double kMuch = 10;              // times a move
+constexpr double kNearRounding = 1e-9;    // likewise: where corrections may stop to shrink
 
 // A correction after one that followed `before`, if they go on to shrink as they did.
 double next(double correction, double before) {
@@ -36,7 +36,7 @@ class ByDecomposition : public OntoRows {
     const double scale = std::max(1.0, largest(q));
     std::vector<double> moved(q.size()), dq(index(space_.columns().rows()));
     double before = HUGE_VAL;
-    for (int k = 0; k < kCorrections; ++k) {
+    for (int k = 0; k < kNewtonSteps; ++k) {
       space_.move(t, q);
       space_.distances(off_);
       least_move(dq);
@@ -45,7 +45,7 @@ class ByDecomposition : public OntoRows {
       if (!shrinks && !(correction <= kNearRounding * scale)) return false;
       space_.problem().retract(q, dq, moved);
       std::ranges::copy(moved, q.begin());
-      if (!shrinks || next(correction, before) <= kNegligible * scale) return true;
+      if (!shrinks || next(correction, before) <= kOfCoordinates * scale) return true;
       before = correction;
     }
     return false;
@@ -69,7 +69,7 @@ class ByDecomposition : public OntoRows {
     moves = moves * scales.asDiagonal();
     const double asked = moves.lpNorm<Eigen::Infinity>();
     double before = HUGE_VAL;
-    for (int k = 0; k < kCorrections; ++k) {
+    for (int k = 0; k < kNewtonSteps; ++k) {
       Eigen::MatrixXd y = moves * space_.columns();
       decomposition_->solve_normal_equations(y);
       const Eigen::MatrixXd held = y * space_.columns().transpose();
