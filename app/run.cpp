@@ -102,14 +102,12 @@ int run(const RunOptions& options) {
   Outcome outcome;
   std::optional<Verification> verification;
   const std::string how_accurate = accuracy(settings);
-  ColumnsByOption columns;
-  const auto record = [&](bool running) {
+  const auto record = [&](const ColumnsByOption& columns, bool running) {
     return to_json(RunRecord{options.scene, scene, to_json(settings), outcome, how_accurate,
                              verification ? &*verification : nullptr, running, columns});
   };
   RunFiles files({options.out, options.reactions, options.signals, options.save_state, record_file}, scene, content,
-                 [&] { return record(true); });
-  columns = files.unnamed_columns();
+                 [&](const ColumnsByOption& columns) { return record(columns, true); });
   const bool summary = !files.any() && !options.quiet;
   if (record_file.empty()) std::string().swap(scene.source);  // memory of large scenes
   LastState last;
@@ -142,7 +140,7 @@ int run(const RunOptions& options) {
     verification = verify(scene, settings);
   else if (options.verify)
     verification.emplace().failure = "the run did not come to its end";
-  files.commit(record_file.empty() ? "" : record(false));
+  files.commit(record_file.empty() ? "" : record(files.unnamed_columns(), false));
 
   if (summary) {
     fmt::print("{}", run_summary(scene, settings, outcome, last));

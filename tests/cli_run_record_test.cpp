@@ -22,6 +22,21 @@ TEST_F(RunRecord, TheRecordSaysWhichReactionsAreNotDetermined) {
   for (const char* hinge : {"lower", "middle", "upper"})
     EXPECT_EQ(record["undetermined_components"][hinge], (std::vector<std::string>{"fx", "fy", "fz", "nx", "ny"}))
         << hinge;
+  // The table says it behind the reactions themselves, of every sample.
+  const std::vector<std::string> table = lines(read("r.csv"));
+  std::string header = "t", flags;
+  for (const char* hinge : {"lower", "middle", "upper"}) {
+    for (const char* component : {"fx", "fy", "fz", "nx", "ny", "nz"})
+      header += fmt::format(",{}.{}", hinge, component);
+  }
+  for (const char* hinge : {"lower", "middle", "upper"}) {
+    for (const char* component : {"fx", "fy", "fz", "nx", "ny", "nz"})
+      header += fmt::format(",{}.{}.undetermined", hinge, component);
+    flags += ",1,1,1,1,1,0";
+  }
+  ASSERT_GT(table.size(), 2u);
+  EXPECT_EQ(table[0], header);
+  for (std::size_t k = 1; k < table.size(); ++k) EXPECT_TRUE(table[k].ends_with(flags)) << table[k];
 }
 
 TEST_F(RunRecord, TheRecordSaysWhereTheNumbersComeFrom) {

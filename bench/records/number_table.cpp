@@ -4,6 +4,8 @@
 
 #include <bit>
 
+#include "core/check.h"
+
 namespace poinsot::records {
 using namespace study;
 namespace {
@@ -20,8 +22,7 @@ std::string npy_header(std::int64_t rows, std::size_t columns) {
                      static_cast<char>(kLength >> 8), text);
 }
 
-BinaryRows rows_of(const std::filesystem::path& file, std::size_t columns) {
-  if (!is_npy(file)) return {};
+BinaryRows binary_rows(std::size_t columns) {
   return {NumberTable::kNpyHeader, columns * sizeof(double),
           [columns](std::int64_t rows) { return npy_header(rows, columns); }};
 }
@@ -32,9 +33,18 @@ bool is_npy(const std::filesystem::path& file) {
   return file.extension() == ".npy";
 }
 
-NumberTable::NumberTable(const std::filesystem::path& file, std::vector<std::string> columns)
-    : file_(file, rows_of(file, columns.size())), npy_(is_npy(file)), columns_(std::move(columns)) {
+NumberTable::NumberTable(const std::filesystem::path& file)
+    : file_(file, is_npy(file) ? Content::binary : Content::text), npy_(is_npy(file)) {}
+
+NumberTable::NumberTable(const std::filesystem::path& file, std::vector<std::string> columns) : NumberTable(file) {
+  begin(std::move(columns));
+}
+
+void NumberTable::begin(std::vector<std::string> columns) {
+  check(!begun() && !columns.empty(), "a table is begun once, with its columns");
+  columns_ = std::move(columns);
   if (npy_) {
+    file_.set_rows(binary_rows(columns_.size()));
     file_.write(npy_header(0, columns_.size()));
     return;
   }

@@ -19,9 +19,12 @@ class NumberTable {
  public:
   static constexpr std::size_t kNpyHeader = 128;
 
-  // Throws InputError. The first column's name is "t" or another that needs no quotes.
-  NumberTable(const std::filesystem::path& file, std::vector<std::string> columns);
+  explicit NumberTable(const std::filesystem::path& file);                           // throws InputError
+  NumberTable(const std::filesystem::path& file, std::vector<std::string> columns);  // begun
 
+  // Before the first number, once. The first column's name is "t" or another that needs no quotes.
+  void begin(std::vector<std::string> columns);
+  bool begun() const { return !columns_.empty(); }
   const std::vector<std::string>& columns() const { return columns_; }
   void write(double value);  // the next of the row, which ends with the last column
   study::OutputFile& file() { return file_; }
@@ -29,7 +32,7 @@ class NumberTable {
  private:
   study::OutputFile file_;
   const bool npy_;
-  const std::vector<std::string> columns_;
+  std::vector<std::string> columns_;
   std::size_t column_ = 0;  // next
 };
 

@@ -18,8 +18,7 @@ constexpr std::size_t kRecordGrows = 4096;  // bytes, at most, from its first to
 
 }  // namespace
 
-RunFiles::RunFiles(const Names& names, const Scene& scene, const TrajectoryContent& content,
-                   std::function<std::string()> running)
+RunFiles::RunFiles(const Names& names, const Scene& scene, const TrajectoryContent& content, RecordText running)
     : record_name_(names.record), running_(std::move(running)), next_(Clock::now() + kBetween) {
   if (!names.trajectory.empty()) trajectory_.emplace(names.trajectory, scene, content);
   if (!names.reactions.empty()) reactions_.emplace(names.reactions, compile(scene));
@@ -71,7 +70,7 @@ void RunFiles::make_sure_of_the_record() {
   with_files([&](OutputFile& file) { rows = rows || file.is_file(); });
   if (!rows || torn_) return;
   open_record();
-  if (!record_ || record_->reserve(running_().size() + kRecordGrows)) return;
+  if (!record_ || record_->reserve(running_(unnamed_columns()).size() + kRecordGrows)) return;
   lost_ = cannot_be_written(record_name_, std::strerror(ENOSPC));
   torn_ = true;
 }
@@ -84,7 +83,7 @@ void RunFiles::end_together() {
   std::int64_t lines = std::numeric_limits<std::int64_t>::max();
   for (const OutputFile* file : files) lines = std::min(lines, file->lines_given());
   open_record();
-  const std::size_t record = record_ ? running_().size() + kRecordGrows : 0;
+  const std::size_t record = record_ ? running_(unnamed_columns()).size() + kRecordGrows : 0;
   for (std::int64_t fewer = 1;; fewer = std::min(2 * fewer, 1 + lines / 8)) {
     bool room = true;
     for (OutputFile* file : files) room = file->end_at(lines) && room;
@@ -122,7 +121,7 @@ void RunFiles::flush() {
   with_files(&OutputFile::flush);
   if (!under_way_ && record_) {
     try {
-      record_->write(running_());
+      record_->write(running_(unnamed_columns()));
       record_->commit();
     } catch (const OutputError&) {  // the record at the end may find room, and says it otherwise
     }
@@ -133,6 +132,7 @@ void RunFiles::flush() {
 }
 
 void RunFiles::complete(bool ended) {
+  if (reactions_) guarded(reactions_->file(), [&] { reactions_->end(); });
   with_files(&OutputFile::drain);
   make_sure_of_the_record();
   if (torn_) end_together();

@@ -27,13 +27,13 @@ class RunFiles {
   struct Names {
     std::filesystem::path trajectory, reactions, signals, state, record;  // empty: not asked for
   };
+  using RecordText = std::function<std::string(const ColumnsByOption& unnamed)>;
   // `running`: the record's text while the run goes on. Throws InputError.
-  RunFiles(const Names& names, const Scene& scene, const TrajectoryContent& content,
-           std::function<std::string()> running);
+  RunFiles(const Names& names, const Scene& scene, const TrajectoryContent& content, RecordText running);
 
   bool any() const { return trajectory_ || reactions_ || signals_; }  // that grow with the run
-  ColumnsByOption unnamed_columns();
-  // Bytes of a row of all files together, at most; devices and pipes fill no disk.
+  ColumnsByOption unnamed_columns();                                  // complete when the run has begun
+  // Bytes of a row of all files together, at most, by the columns known now; devices and pipes fill no disk.
   double longest_row();
 
   void write(const Sample& sample);
@@ -60,7 +60,7 @@ class RunFiles {
   std::optional<StateSaver> state_;
   std::filesystem::path record_name_;
   std::optional<study::OutputFile> record_;
-  std::function<std::string()> running_;
+  RecordText running_;
   Clock::time_point next_;
   bool under_way_ = false;  // files have their names, and the record that says so stands
   bool torn_ = false;       // a file did not take everything

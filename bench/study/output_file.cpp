@@ -45,12 +45,13 @@ int open_descriptor(const fs::path& file) {
   return output_place(file).descriptor;
 }
 
-OutputFile::OutputFile(fs::path target, BinaryRows binary) : binary_(std::move(binary)), target_(std::move(target)) {
+OutputFile::OutputFile(fs::path target, Content content) : target_(std::move(target)) {
   if (target_.empty()) refuse("output", "the file name is empty");
   const OutputPlace place = output_place(target_);
   std::error_code error;
   if (place.error != 0) refuse(target_, std::strerror(place.error));
-  if (binary_.row > 0 && is_device(target_)) refuse(target_, "a file that is no text cannot go to a device or pipe");
+  if (content == Content::binary && is_device(target_))
+    refuse(target_, "a file that is no text cannot go to a device or pipe");
   if (place.descriptor >= 0) {
     std::fflush(stdout);  // in the order in which it was said
     descriptor_ = fcntl(place.descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);

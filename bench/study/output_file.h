@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace poinsot::study {
@@ -22,8 +23,10 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// A file that is no text: rows of so many bytes behind a header that says how many there are, and is made anew whenever
-// what was written is put on the disk.
+enum class Content { text, binary };
+
+// Of a file that is no text: rows of so many bytes behind a header that says how many there are, and is made anew
+// whenever what was written is put on the disk.
 struct BinaryRows {
   std::size_t header = 0, row = 0;                   // bytes; no row: text, whose rows are its lines
   std::function<std::string(std::int64_t)> renewed;  // the header of so many rows
@@ -32,11 +35,12 @@ struct BinaryRows {
 class OutputFile {
  public:
   // Throws InputError where the target cannot be written, and where one that is no text is a device.
-  explicit OutputFile(std::filesystem::path target, BinaryRows binary = {});
+  explicit OutputFile(std::filesystem::path target, Content content = Content::text);
   ~OutputFile();  // without flush() and commit() nothing remains
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
+  void set_rows(BinaryRows binary) { binary_ = std::move(binary); }  // before anything is written
   // These throw OutputError, once: of a file that did not take everything its complete lines are kept, and what is
   // written to it later is not.
   void write(std::string_view text);

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/index.h"
-#include "core/reaction_components.h"
 #include "integrators/start/beside.h"
 #include "integrators/start/few_groups.h"
 #include "integrators/start/loop_rows.h"
@@ -22,7 +21,6 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double kNoLoad = 1e-7;   // of a null vector on unit rows
 constexpr int kManyRows = 20'000;  // of loops: one place beside is looked at for all
 constexpr int kDirections = 2;     // at random
 
@@ -172,53 +170,11 @@ class Examination {
     result_.rank_here = result_.rank;
   }
 
-  using UnitLoad = Eigen::Matrix<double, 6, 1>;  // on a body at its centre, its moment in the body's frame and size
-
-  // A null vector loads a group where what its rows do to one of the bodies does not add up to nothing.
   void tell_undetermined(const Sparse& columns, const NullSpace& null) {
-    std::vector<Undetermined> of_groups(model_->groups.size());
-    std::vector<char> loaded(model_->groups.size(), 0);
-    const auto row = [&](int column) -> const Row& { return model_->rows[index(space_->rows()[index(column)])]; };
-    if (many(null)) {
-      for (int k = 0; k < columns.cols(); ++k) {
-        const std::size_t group = index(row(k).group);
-        loaded[group] = 1;
-        of_groups[group].loaded.fill(true);
-      }
-    } else {
-      for (const SparseEntries& z : null.vectors) {
-        const double size = largest(z);
-        for (auto first = z.begin(); first != z.end();) {
-          const int group = row(first->first).group;
-          const Row& of = row(first->first);
-          const int body = of.j != kGround ? of.j : of.i;
-          UnitLoad load = UnitLoad::Zero();
-          for (; first != z.end() && row(first->first).group == group; ++first)
-            for (Sparse::InnerIterator it(columns, first->first); it; ++it)
-              if (it.row() / 6 == body) load[it.row() % 6] += first->second * it.value();
-          if (!(load.norm() > kNoLoad * size)) continue;
-          loaded[index(group)] = 1;
-          load = at_point(model_->groups[index(group)], body, load);
-          for (std::size_t c = 0; c < 6; ++c)
-            if (std::abs(load[static_cast<Eigen::Index>(c)]) > kNoLoad * size) of_groups[index(group)].loaded[c] = true;
-        }
-      }
-    }
-    for (std::size_t g = 0; g < loaded.size(); ++g) {
-      if (!loaded[g]) continue;
-      of_groups[g].group = static_cast<int>(g);
-      result_.undetermined.push_back(of_groups[g]);
-    }
-  }
-  // The same at the point of the group, global; its moment still in the body's size.
-  UnitLoad at_point(const Group& group, int body, const UnitLoad& load) const {
-    const BodyState& of = states_[index(body)];
-    Vector3 point = group.point_j;
-    if (group.j != kGround) point = states_[index(group.j)].r + states_[index(group.j)].A * group.point_j;
-    UnitLoad there = load;
-    there.tail<3>() =
-        of.A * load.tail<3>() - (point - of.r).cross(Vector3(load.head<3>())) / space_->size_of_body(body);
-    return there;
+    LoadedGroups groups(*model_, *space_, states_);
+    if (many(null)) groups.add_all();
+    for (const SparseEntries& z : null.vectors) groups.add(columns, z);
+    result_.undetermined = groups.found();
   }
 
   // Of the rows that are kept, those that are no more than combinations of others at the given position.
@@ -277,14 +233,6 @@ class Examination {
 };
 
 }  // namespace
-
-std::vector<std::string> Undetermined::components(const Model& model) const {
-  std::vector<std::string> names;
-  if (model.groups[index(group)].kind == GroupKind::constraint) return names;
-  for (std::size_t c = 0; c < loaded.size(); ++c)
-    if (loaded[c]) names.emplace_back(kReactionComponents[c]);
-  return names;
-}
 
 std::vector<int> RankAnalysis::dependent_rows() const {
   std::vector<int> rows;

@@ -14,7 +14,6 @@
 // only (loop_rows.h). The cost grows with the number of rows (linsolve/column_dependencies.h).
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -22,6 +21,7 @@
 
 #include "core/body_state.h"
 #include "core/model.h"
+#include "integrators/start/undetermined.h"
 
 namespace poinsot {
 
@@ -40,16 +40,6 @@ struct Conflict {
 };
 
 std::string describe(const Conflict& conflict);  // "0.002 m (position)"
-
-// A group of the model whose reaction the equations of motion do not determine: a combination of multipliers that moves
-// nothing loads it.
-struct Undetermined {
-  int group;
-  std::array<bool, 6> loaded{};  // by kReactionComponents, where the mechanism stands
-
-  // Those loaded; of a constraint, which has a multiplier alone, none.
-  std::vector<std::string> components(const Model& model) const;
-};
 
 struct RankAnalysis {
   int variables = 0;                  // 6 per body

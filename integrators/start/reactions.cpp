@@ -36,18 +36,18 @@ void Reactions::update(const Sample& sample) {
   std::ranges::fill(lambda_, 0.0);
   const std::vector<int>& rows = problem_->model_rows();
   for (std::size_t k = 0; k < rows.size(); ++k) lambda_[index(rows[k])] = sample.lambda[k];
-  const std::vector<SparseEntries> null_vectors = choice_->null_vectors(sample.t, states_);
-  least_ = null_vectors.size() == choice_->aside().size();
-  if (null_vectors.empty()) return;  // as they are
-  make_least(null_vectors);
+  null_vectors_ = choice_->null_vectors(sample.t, states_);
+  least_ = null_vectors_.size() == choice_->aside().size();
+  if (null_vectors_.empty()) return;  // as they are
+  make_least();
 }
 
-void Reactions::make_least(const std::vector<SparseEntries>& null_vectors) {
+void Reactions::make_least() {
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t k = 0; k < null_vectors.size(); ++k)
-    for (const auto& [row, value] : null_vectors[k]) entries.emplace_back(row, static_cast<int>(k), value);
+  for (std::size_t k = 0; k < null_vectors_.size(); ++k)
+    for (const auto& [row, value] : null_vectors_[k]) entries.emplace_back(row, static_cast<int>(k), value);
   Eigen::SparseMatrix<double> N(static_cast<Eigen::Index>(lambda_.size()),
-                                static_cast<Eigen::Index>(null_vectors.size()));
+                                static_cast<Eigen::Index>(null_vectors_.size()));
   N.setFromTriplets(entries.begin(), entries.end());
   Eigen::Map<Eigen::VectorXd> lambda(lambda_.data(), N.rows());
   const Eigen::SparseMatrix<double> square = N.transpose() * N;
@@ -56,6 +56,24 @@ void Reactions::make_least(const std::vector<SparseEntries>& null_vectors) {
     const Eigen::VectorXd part = factors.solve(N.transpose() * lambda);
     lambda -= N * part;
   }
+}
+
+std::vector<Undetermined> Reactions::undetermined() const {
+  if (!whole_) return {};
+  const RowSpace& space = choice_->space();
+  LoadedGroups groups(problem_->model(), space, states_);
+  if (!least_) groups.add_all();
+  SparseEntries unit;
+  for (const SparseEntries& z : null_vectors_) {
+    unit.clear();
+    for (const auto& [row, value] : z) {
+      const auto k = std::ranges::lower_bound(space.rows(), row) - space.rows().begin();
+      unit.emplace_back(static_cast<int>(k), value * space.lengths()[index(k)]);
+    }
+    std::ranges::sort(unit);
+    groups.add(space.columns(), unit);
+  }
+  return groups.found();
 }
 
 void Reactions::of_group(int group, Vector3& force, Vector3& moment) const {

@@ -10,7 +10,7 @@
 //
 //   λ − N (NᵀN)⁻¹ Nᵀ λ
 //
-// Where no null vector loads a joint its reaction is the only one (integrators/start/rank.h says which). The cost grows
+// Where no null vector loads a joint its reaction is the only one (integrators/start/undetermined.h). The cost grows
 // linearly with the mechanism for a given number of redundant rows in a loop; of loops that hang together with more
 // than BlockChoice::kMostNull of them the reactions of the rows kept are given, and so where a null vector would leave
 // a body out of balance: given are reactions in balance, and least() says whether they are the least.
@@ -22,6 +22,7 @@
 
 #include "integrators/integrator.h"
 #include "integrators/start/row_choice.h"
+#include "integrators/start/undetermined.h"
 
 namespace poinsot {
 
@@ -34,16 +35,20 @@ class Reactions {
   double lambda(int model_row) const { return lambda_[static_cast<std::size_t>(model_row)]; }
   // Of all that are in balance, those given.
   bool least() const { return least_; }
+  // Of the sample: the groups that have other reactions, too, which are as right. Where too many loops hang together,
+  // all that are in a loop.
+  std::vector<Undetermined> undetermined() const;
   // Force (N, global) and moment about the group's point (N m, global) on body j.
   void of_group(int group, Vector3& force, Vector3& moment) const;
 
  private:
-  void make_least(const std::vector<SparseEntries>& null_vectors);
+  void make_least();
 
-  std::unique_ptr<Problem> whole_;   // with the rows that were set aside; null where there are none
-  std::optional<RowChoice> choice_;  // of the rows the problem keeps
-  int revision_ = 0;                 // of these
-  std::vector<double> q_, v_;        // where it stands
+  std::unique_ptr<Problem> whole_;           // with the rows that were set aside; null where there are none
+  std::optional<RowChoice> choice_;          // of the rows the problem keeps
+  int revision_ = 0;                         // of these
+  std::vector<SparseEntries> null_vectors_;  // at the sample
+  std::vector<double> q_, v_;                // where it stands
   std::vector<BodyState> states_;
   const Problem* problem_ = nullptr;
   bool least_ = true;

@@ -19,6 +19,7 @@ class RowChoice {
             Steps steps = Steps::fixed);
 
   const std::vector<int>& aside() const { return aside_; }
+  const RowSpace& space() const { return space_; }  // of its rows, where they were last looked at
   void look(double t, std::span<const BodyState> states);
   bool worn() const;  // where it was last looked at
   // Chooses anew where the present choice has worn out, or will within the next step: true where other rows are set
