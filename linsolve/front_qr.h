@@ -89,6 +89,8 @@ class FrontQr {
   void take(Front& front, Eigen::Index k, double norm);
   bool waits(int place) const { return place >= static_cast<int>(column_.size()); }
   void store_by_column();
+  template <int Count>
+  void solve_normal_equations_of(Eigen::MatrixXd& b) const;
 
   double tolerance_;
   Choice choice_;

@@ -6,6 +6,7 @@
 
 #include "core/check.h"
 #include "core/index.h"
+#include "linsolve/few_rows.h"
 #include "linsolve/front_qr.h"
 
 namespace poinsot {
@@ -87,34 +88,31 @@ FrontQr::Sums FrontQr::times_null_vectors(const Eigen::MatrixXd& b) {
 void FrontQr::solve_normal_equations(Eigen::MatrixXd& b) {
   check(has_R_, "R of a decomposition that keeps it");
   if (start_.empty()) store_by_column();
-  const auto last = [&](std::size_t place) { return start_[place + 1] - 1; };
+  with_count(b.rows(), [&]<int Count>(std::integral_constant<int, Count>) { solve_normal_equations_of<Count>(b); });
+}
+
+template <int Count>
+void FrontQr::solve_normal_equations_of(Eigen::MatrixXd& b) const {
+  using Rows = Eigen::Matrix<double, Count, Eigen::Dynamic>;
+  const auto last = [&](Eigen::Index place) { return start_[index(place + 1)] - 1; };
   // Of a dependent column R has no diagonal, and no row.
-  const auto independent = [&](std::size_t place) {
-    return start_[place] < start_[place + 1] && R_[last(place)].row == static_cast<int>(place);
+  const auto independent = [&](Eigen::Index place) {
+    return start_[index(place)] < start_[index(place + 1)] && R_[last(place)].row == place;
   };
-  const Eigen::Index count = b.rows();
-  Eigen::MatrixXd y = Eigen::MatrixXd::Zero(count, b.cols());
-  const auto of = [&](Eigen::MatrixXd& all, int column) { return all.data() + column * count; };
-  for (std::size_t place = 0; place < place_.size(); ++place) {
+  Rows y = Rows::Zero(b.rows(), b.cols());
+  for (Eigen::Index place = 0; place < y.cols(); ++place) {
     if (!independent(place)) continue;
-    double* sum = of(y, static_cast<int>(place));
-    std::copy_n(of(b, column_[place]), count, sum);
-    for (std::size_t k = start_[place]; k < last(place); ++k) {
-      const double* known = of(y, R_[k].row);
-      for (Eigen::Index c = 0; c < count; ++c) sum[c] -= R_[k].value * known[c];
-    }
-    for (Eigen::Index c = 0; c < count; ++c) sum[c] /= R_[last(place)].value;
+    typename Rows::ColXpr::PlainObject sum = b.col(column_[index(place)]);
+    for (std::size_t k = start_[index(place)]; k < last(place); ++k) sum -= R_[k].value * y.col(R_[k].row);
+    y.col(place) = sum / R_[last(place)].value;
   }
-  for (std::size_t place = place_.size(); place-- > 0;) {
-    double* x = of(y, static_cast<int>(place));
+  for (Eigen::Index place = y.cols(); place-- > 0;) {
     if (independent(place)) {
-      for (Eigen::Index c = 0; c < count; ++c) x[c] /= R_[last(place)].value;
-      for (std::size_t k = start_[place]; k < last(place); ++k) {
-        double* before = of(y, R_[k].row);
-        for (Eigen::Index c = 0; c < count; ++c) before[c] -= R_[k].value * x[c];
-      }
+      const typename Rows::ColXpr::PlainObject x = y.col(place) / R_[last(place)].value;
+      y.col(place) = x;
+      for (std::size_t k = start_[index(place)]; k < last(place); ++k) y.col(R_[k].row) -= R_[k].value * x;
     }
-    std::copy_n(x, count, of(b, column_[place]));
+    b.col(column_[index(place)]) = y.col(place);
   }
 }
 

@@ -26,26 +26,53 @@ class Choice {
     return gather(std::move(vectors), grouped_rows(model_, turns_, rows_));
   }
 
-  // `dependent`: as many as are to be found.
-  std::vector<int> by_block(const std::vector<int>& dependent, double tolerance) const {
+  // `null`: as many are to be found as it has columns.
+  std::vector<int> by_block(const NullSpace& null, double tolerance) const {
+    std::vector<char> dependent(rows_.size(), 0);
+    for (const int k : null.columns) dependent[index(k)] = 1;
     std::vector<int> of_all;
     for (int b = 0; b < blocks_.size(); ++b) {
+      const std::span<const int> block = blocks_[b];
       std::vector<int> of_block;
-      std::ranges::copy_if(blocks_[b], std::back_inserter(of_block),
-                           [&](int k) { return std::ranges::binary_search(dependent, k); });
-      if (!of_block.empty() && of_block.size() <= kMostChosen) choose(blocks_[b], tolerance, of_block);
+      std::ranges::copy_if(block, std::back_inserter(of_block), [&](int k) { return dependent[index(k)] != 0; });
+      if (!of_block.empty() && of_block.size() <= kMostChosen) {
+        std::vector<SparseEntries> vectors =
+            null.decomposition ? vectors_of(block, of_block, *null.decomposition) : vectors_of(block, tolerance);
+        // Unless a block by itself shows another number of them than it does among all.
+        if (vectors.size() == of_block.size()) of_block = chosen(block, std::move(vectors));
+      }
       of_all.insert(of_all.end(), of_block.begin(), of_block.end());
     }
     return of_all;
   }
 
  private:
-  // `dependent` ← others, unless a block by itself shows another number of them than it does among all.
-  void choose(std::span<const int> block, double tolerance, std::vector<int>& dependent) const {
-    NullSpace null = few_null_vectors(columns_of(block), tolerance);
-    if (null.vectors.size() != dependent.size()) return;
-    dependent = gather(std::move(null.vectors), grouped_rows(model_, turns_, rows_of(block)));
-    for (int& k : dependent) k = block[index(k)];
+  std::vector<int> chosen(std::span<const int> block, std::vector<SparseEntries>&& vectors) const {
+    std::vector<int> columns = gather(std::move(vectors), grouped_rows(model_, turns_, rows_of(block)));
+    for (int& k : columns) k = block[index(k)];
+    return columns;
+  }
+
+  // By place in the block. Fewer than there are `dependent` where one does not stay in it.
+  static std::vector<SparseEntries> vectors_of(std::span<const int> block, const std::vector<int>& dependent,
+                                               FrontQr& decomposition) {
+    std::vector<SparseEntries> vectors;
+    for (const int column : dependent) {
+      SparseEntries& z = vectors.emplace_back(decomposition.null_vector(column));
+      drop_nothing(z);
+      for (auto& [k, value] : z) {
+        const auto place = std::ranges::lower_bound(block, k);
+        if (place == block.end() || *place != k) {
+          vectors.pop_back();
+          return vectors;
+        }
+        k = static_cast<int>(place - block.begin());
+      }
+    }
+    return vectors;
+  }
+  std::vector<SparseEntries> vectors_of(std::span<const int> block, double tolerance) const {
+    return few_null_vectors(columns_of(block), tolerance).vectors;
   }
 
   // On its own bodies: the others of a large scene would cost time for each block.
@@ -93,7 +120,7 @@ bool many(const NullSpace& null) {
 std::vector<int> rows_of_few_groups(const Model& model, std::span<const int> rows, const Sparse& columns,
                                     NullSpace null, double tolerance) {
   const Choice choice(model, rows, columns);
-  return many(null) ? choice.by_block(null.columns, tolerance) : choice.at_once(std::move(null.vectors));
+  return many(null) ? choice.by_block(null, tolerance) : choice.at_once(std::move(null.vectors));
 }
 
 }  // namespace poinsot

@@ -12,8 +12,8 @@
 namespace poinsot {
 
 // `rows`: of the model; `columns`: their unit vectors, 6 numbers for each body, with null space `null` at `tolerance`.
-// Where that has no vectors each block of loops (row_blocks.h) is looked at by itself; of one that alone has too many,
-// `null.columns` are taken. Places in `rows`.
+// Where that has no vectors each block of loops (row_blocks.h) is looked at by itself, by the decomposition of all
+// where `null` has kept it; of one that alone has too many, `null.columns` are taken. Places in `rows`.
 std::vector<int> rows_of_few_groups(const Model& model, std::span<const int> rows,
                                     const Eigen::SparseMatrix<double>& columns, NullSpace null, double tolerance);
 

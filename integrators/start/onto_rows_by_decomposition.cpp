@@ -7,6 +7,7 @@
 #include "core/index.h"
 #include "integrators/start/onto_rows.h"
 #include "integrators/stepping/vectors.h"
+#include "linsolve/few_rows.h"
 
 namespace poinsot {
 namespace {
@@ -70,13 +71,14 @@ class ByDecomposition : public OntoRows {
     const double asked = moves.lpNorm<Eigen::Infinity>();
     double before = HUGE_VAL;
     for (int k = 0; k < kNewtonSteps; ++k) {
-      Eigen::MatrixXd y = moves * space_.columns();
+      Eigen::MatrixXd y = times(moves, space_.columns());
       decomposition_->solve_normal_equations(y);
-      const Eigen::MatrixXd held = y * space_.columns().transpose();
+      const Eigen::MatrixXd held = times_transposed(y, space_.columns());
       moves -= held;
       const double correction = held.lpNorm<Eigen::Infinity>();
       const double most = k == 0 ? kMuch * asked : kShrinks * before;  // or the decomposition does not lead there
       if (!(correction < most) || next(correction, before) <= kFewLeft * asked) break;
+      if (moves.lpNorm<Eigen::Infinity>() <= kFewLeft * asked) break;  // nothing is left of them
       before = correction;
     }
     moves = moves * scales.cwiseInverse().asDiagonal();
@@ -108,8 +110,8 @@ class ByDecomposition : public OntoRows {
   void least_move(std::span<double> move) {
     Eigen::MatrixXd y = Eigen::RowVectorXd::Map(off_.data(), static_cast<Eigen::Index>(off_.size()));
     decomposition_->solve_normal_equations(y);
-    const Eigen::RowVectorXd x = y * space_.columns().transpose();
-    for (Eigen::Index j = 0; j < x.size(); ++j) move[index(j)] = -x[j] / scaled(j);
+    const Eigen::MatrixXd x = times_transposed(y, space_.columns());
+    for (Eigen::Index j = 0; j < x.size(); ++j) move[index(j)] = -x(0, j) / scaled(j);
   }
 
   std::shared_ptr<FrontQr> decomposition_;

@@ -46,10 +46,10 @@ class Examination {
     surely_ = here_.from <= kDependent ? here_ : surely();
     // Rows that are barely independent by the length of the mechanism are so wherever it stands: not singular here.
     if (surely_.columns.size() + here_.stretched >= here_.columns.size()) here_ = surely_;
-    std::shared_ptr<FrontQr> decomposition = here_.decomposition;
-    here_.decomposition = surely_.decomposition = nullptr;
     if (here_.columns.empty()) return std::move(result_);
     without_ = here_.from <= kDependent ? gathered(space_->columns(), here_, kDependent) : chosen(here_);
+    std::shared_ptr<FrontQr> decomposition = here_.decomposition;
+    here_.decomposition = surely_.decomposition = nullptr;
     look_beside(std::move(decomposition));
     return std::move(result_);
   }
