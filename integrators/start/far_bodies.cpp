@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/index.h"
+#include "integrators/start/row_space.h"
 
 namespace poinsot {
 namespace {
@@ -41,7 +42,7 @@ double own_size(const Body& body) {
 }  // namespace
 
 void tell_far_bodies(const Model& model, std::vector<std::string>& notices) {
-  constexpr double kMatters = 1e-8;
+  constexpr double kMatters = kFarthest * kDependent / kRoundings;
   std::vector<double> size(model.bodies.size(), 0);
   const auto reaches = [&](int body, const Vector3& s) {
     if (body == kGround) return;

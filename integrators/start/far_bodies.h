@@ -10,8 +10,8 @@
 
 namespace poinsot {
 
-// A sentence where rounding of its position moves a constrained body by more than 1e-8 of its size: the longer one of
-// its longest arm and of a rod of its mass and inertia. Of the body it moves most.
+// A sentence where rounding of its position moves a constrained body by more of its size than rank allows for
+// (row_space.h): the longer one of its longest arm and of a rod of its mass and inertia. Of the body it moves most.
 void tell_far_bodies(const Model& model, std::vector<std::string>& notices);
 
 // A sentence for every joint whose point is further from its bodies' centres of mass than twice the extent of the

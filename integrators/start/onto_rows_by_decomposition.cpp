@@ -40,6 +40,7 @@ class ByDecomposition : public OntoRows {
     for (int k = 0; k < kNewtonSteps; ++k) {
       space_.move(t, q);
       space_.distances(off_);
+      for (std::size_t row = 0; row < off_.size(); ++row) off_[row] *= space_.norm_of_row(row) / space_.lengths()[row];
       least_move(dq);
       const double correction = largest(dq);
       const bool shrinks = correction < kShrinks * before;
@@ -106,7 +107,7 @@ class ByDecomposition : public OntoRows {
     return columns;
   }
 
-  // The shortest for rows that are off by `off_`.
+  // The shortest for rows that are off by `off_`, by the space's lengths.
   void least_move(std::span<double> move) {
     Eigen::MatrixXd y = Eigen::RowVectorXd::Map(off_.data(), static_cast<Eigen::Index>(off_.size()));
     decomposition_->solve_normal_equations(y);

@@ -59,7 +59,7 @@ void RowChoice::carry_over(std::span<double> lambda) {
 
 double RowChoice::size_of(int row) const {
   const std::size_t k = index(std::ranges::lower_bound(space_.rows(), row) - space_.rows().begin());
-  return space_.size_of_row(k) * space_.lengths()[k];
+  return space_.size_of_row(k) * space_.norm_of_row(k);
 }
 
 bool RowChoice::has_null_vectors() const {

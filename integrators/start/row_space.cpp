@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 
 #include "core/body_sizes.h"
@@ -28,6 +29,7 @@ RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
       q_(index(problem_->nq())),
       v_(index(problem_->nv())),
       lengths_(rows_.size()),
+      weights_(rows_.size(), 1),
       of_problem_(rows_.size()) {
   std::iota(place_.begin(), place_.end(), 0);
   check(layout_.build(problem_->pattern(MatrixKind::kinematic)).ok(), "an assembled matrix fits 32-bit indices");
@@ -62,6 +64,7 @@ RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
 }
 
 void RowSpace::stand(double t, std::span<const BodyState> states) {
+  for (std::size_t k = 0; k < rows_.size(); ++k) weights_[k] = weight_of(k, states);
   problem_->from_bodies(states, q_, v_);
   stand_at(t, q_);
 }
@@ -85,7 +88,7 @@ void RowSpace::stand_at(double t, std::span<const double> q) {
       sum += g[i] * g[i];
     }
     const double rounding = rounding_of(index(k));
-    lengths_[index(k)] = (is_velocity_row(index(k)) ? kVelocityRow : 1) * std::max(std::sqrt(sum), rounding);
+    lengths_[index(k)] = weights_[index(k)] * std::max(std::sqrt(sum), rounding);
     const double by = sum > rounding * rounding ? 1 / lengths_[index(k)] : 0;
     for (int i = begin; i < end; ++i) g[i] *= by;
   }
@@ -102,13 +105,23 @@ void RowSpace::keep(std::vector<int> rows) {
       left.insertBack(Gt_.innerIndexPtr()[i], static_cast<Eigen::Index>(c)) = Gt_.valuePtr()[i];
       source_[entries] = source_[index(i)], measure_[entries] = measure_[index(i)];
     }
-    place_[c] = place_[k], lengths_[c] = lengths_[k], rounding_[c] = rounding_[k];
+    place_[c] = place_[k], lengths_[c] = lengths_[k], weights_[c] = weights_[k], rounding_[c] = rounding_[k];
   }
   left.finalize();
   Gt_ = std::move(left);
   source_.resize(entries), measure_.resize(entries);
-  place_.resize(rows.size()), lengths_.resize(rows.size()), rounding_.resize(rows.size());
+  for (std::vector<double>* of : {&lengths_, &weights_, &rounding_}) of->resize(rows.size());
+  place_.resize(rows.size());
   rows_ = std::move(rows);
+}
+
+double RowSpace::weight_of(std::size_t k, std::span<const BodyState> states) const {
+  const Row& row = model_->rows[index(rows_[k])];
+  double far = 0;
+  for (const int body : {row.i, row.j})
+    if (body != kGround) far = std::max(far, states[index(body)].r.norm() / sizes_[index(body)]);
+  const double rounding = kRoundings * std::numeric_limits<double>::epsilon() * far / kDependent;
+  return (is_velocity_row(k) ? kVelocityRow : 1) * std::clamp(rounding, 1.0, kFarthest);
 }
 
 // Of the cross product of two directions.
@@ -138,7 +151,7 @@ double RowSpace::left_of(std::size_t k) const {
     for (const int body : {row.i, row.j})
       if (body != kGround) terms = std::max(terms, 2 * (body == row.i ? row.s_i : row.s_j).norm());
   }
-  return terms > 0 ? std::min(1.0, lengths_[k] / terms) : 1;
+  return terms > 0 ? std::min(1.0, norm_of_row(k) / terms) : 1;
 }
 
 // What the problem has of its rows, of those that are kept.
@@ -150,7 +163,7 @@ void RowSpace::distances(std::span<double> out) const {
   problem_->position_residual(of_problem_);
   take_places(out);
   for (std::size_t k = 0; k < out.size(); ++k)
-    if (out[k] != 0) out[k] /= lengths_[k];  // 0 also where the gradient has vanished
+    if (out[k] != 0) out[k] /= norm_of_row(k);  // 0 also where the gradient has vanished
 }
 
 void RowSpace::rates(std::span<const double> v, std::span<double> residual, std::span<double> nu) {

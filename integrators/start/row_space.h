@@ -8,6 +8,10 @@
 // A velocity row (pfaffian) that follows from positions is the one to be set aside, since it does not keep them: its
 // vector is a kVelocityRow-th of the unit, so that its coefficients are larger than those of the others.
 //
+// Far from the origin points are known to the rounding of their coordinates only, and rows that follow from others do
+// so up to kRoundings of that. Where it is more than kDependent of a body's size, vectors are as much shorter, down to
+// a kFarthest-th of the unit; of farther bodies the user is told (far_bodies.h).
+//
 // In rA, whose variations are regular everywhere: rank does not depend on the formulation.
 #pragma once
 
@@ -26,6 +30,7 @@ namespace poinsot {
 
 inline constexpr double kDependent = 1e-9, kIndependent = 1e-5;
 inline constexpr double kVelocityRow = 32;
+inline constexpr double kRoundings = 4, kFarthest = 10;
 
 // The numbers below `count` that are not among `some`; both ascending.
 std::vector<int> all_but(std::size_t count, const std::vector<int>& some);
@@ -35,7 +40,7 @@ class RowSpace {
   // `rows` of the model, ascending.
   RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows);
 
-  // At rest.
+  // At rest. The other two keep to the rounding of the coordinates here.
   void stand(double t, std::span<const BodyState> states);
   void stand_at(double t, std::span<const double> q);
   // distances() and rates() are then those there, by gradients of where it stands.
@@ -48,7 +53,7 @@ class RowSpace {
   const Problem& problem() const { return *problem_; }  // for its coordinates: those of intrinsic_formulation()
   // Gᵀ, a column of unit length for each row; 0 where the gradient is nothing but rounding.
   const Eigen::SparseMatrix<double>& columns() const { return Gt_; }
-  // ‖g‖ by row, of a velocity row kVelocityRow ‖g‖; of a row that vanishes, that of its terms.
+  // ‖g‖ by row, times kVelocityRow, and as far away as above; of a row that vanishes, that of its terms.
   std::span<const double> lengths() const { return lengths_; }
   // What is left of the gradient of a row that can vanish, where it stands: 1 is as much as ever.
   double left_of(std::size_t k) const;
@@ -57,7 +62,7 @@ class RowSpace {
   void distances(std::span<double> out) const;
   // G v − ν and ν in the rows' own units, where it stands, with velocities v of intrinsic_formulation().
   void rates(std::span<const double> v, std::span<double> residual, std::span<double> nu);
-  double norm_of_row(std::size_t k) const { return is_velocity_row(k) ? lengths_[k] / kVelocityRow : lengths_[k]; }
+  double norm_of_row(std::size_t k) const { return lengths_[k] / weights_[k]; }
   double size_of_body(int body) const { return sizes_[index(body)]; }  // m
   // m: of the larger of its bodies.
   double size_of_row(std::size_t k) const;
@@ -66,13 +71,14 @@ class RowSpace {
   double direction_terms(const Row& row) const;
   void take_places(std::span<double> out) const;
   double rounding_of(std::size_t k) const;
+  double weight_of(std::size_t k, std::span<const BodyState> states) const;
 
   std::shared_ptr<const Model> model_;
   std::vector<int> rows_;
   std::unique_ptr<Problem> problem_;
   std::vector<int> place_;  // by row: among those of the problem
   std::vector<double> sizes_;
-  std::vector<double> q_, v_, values_, lengths_;
+  std::vector<double> q_, v_, values_, lengths_, weights_;
   mutable std::vector<double> of_problem_;
   CscLayout layout_;
   // By entry of Gt_: its place in the layout, and one over the body's size where it is about a turn, else 1.
