@@ -43,10 +43,12 @@ LinearStatus LinearSolver::analyze(Pattern pattern, Workload workload) {
   return status;
 }
 
-LinearStatus LinearSolver::factor() {
+LinearStatus LinearSolver::factor(std::span<const double> b) {
   check(state_ != State::empty, "LinearSolver::factor comes after analyze");
+  check(b.empty() || b.size() == index(n_), "LinearSolver::factor gets one number for each unknown, or none");
   state_ = State::analyzed;
-  LinearStatus status = guarded([&] { return do_factor(); });
+  next_ = b.data();
+  LinearStatus status = guarded([&] { return b.empty() ? do_factor() : do_factor_for(b); });
   if (status.ok()) state_ = State::factored;
   return status;
 }
@@ -67,6 +69,8 @@ template <class Work>
 LinearStatus LinearSolver::solved(std::span<double> b, Work&& work) {
   check(state_ == State::factored, "LinearSolver::solve comes after a factor that was ok");
   check(b.size() == index(n_), "LinearSolver::solve gets one number for each unknown");
+  check(next_ == nullptr || next_ == b.data(), "LinearSolver::solve gets the right-hand side that factor was given");
+  next_ = nullptr;
   ++statistics_.solves;
   LinearStatus status = guarded(work);
   if (status.ok() && picked().empty() && !all_finite(b))  // a pick has looked itself

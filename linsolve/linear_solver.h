@@ -5,6 +5,8 @@
 // zero from the start, and stays so.
 // 3. factor() factorizes what values() holds, and values() holds it afterwards, though slots() may be others then.
 // state() becomes factored when it answers ok.
+// factor(b) is for a right-hand side that is known by then: a solver may begin with it on the way. Its next call is
+// solve(b), with the same numbers at the same place.
 // 4. solve(b) replaces b by A⁻¹ b, solve_transposed(b) by A⁻ᵀ b, as often as wanted, for the values of the last
 // factor(). Not every solver knows the second (linsolve/registry.h).
 // 5. 2 to 4 repeat; nothing is allocated in them after the first round.
@@ -57,7 +59,8 @@ class LinearSolver {
   virtual ~LinearSolver() = default;
 
   LinearStatus analyze(Pattern pattern, Workload workload = Workload::factorizations);
-  LinearStatus factor();
+  LinearStatus factor() { return factor({}); }
+  LinearStatus factor(std::span<const double> b);
   LinearStatus solve(std::span<double> b);
   LinearStatus solve_transposed(std::span<double> b);
 
@@ -79,6 +82,7 @@ class LinearSolver {
   // before: of large systems it is a twentieth of all that lives.
   virtual LinearStatus do_analyze(Pattern&& pattern) = 0;
   virtual LinearStatus do_factor() = 0;
+  virtual LinearStatus do_factor_for(std::span<const double> /*b*/) { return do_factor(); }
   virtual LinearStatus do_solve(std::span<double> b) = 0;
   virtual LinearStatus do_solve_transposed(std::span<double> b);
   Workload workload() const { return workload_; }
@@ -94,6 +98,7 @@ class LinearSolver {
   int n_ = 0;
   Workload workload_ = Workload::factorizations;
   State state_ = State::empty;
+  const double* next_ = nullptr;  // the right-hand side that is to be solved for next
 };
 
 }  // namespace poinsot

@@ -72,14 +72,14 @@ LinearStatus LinearSystem::analyze_anew(Pattern&& pattern) {
   return whole_->analyze(std::move(pattern), workload_);
 }
 
-LinearStatus LinearSystem::factor() {
-  LinearStatus status = factor_at_hand();
+LinearStatus LinearSystem::factor(std::span<const double> b) {
+  LinearStatus status = factor_at_hand(b);
   factored_ = status.ok();
   return status;
 }
 
-LinearStatus LinearSystem::factor_at_hand() {
-  if (!jacobian_) return whole_->factor();
+LinearStatus LinearSystem::factor_at_hand(std::span<const double> b) {
+  if (!jacobian_) return whole_->factor(b);
   by_jacobian_ = jacobian_->take_values();
   return by_jacobian_ ? jacobian_->factor() : factor_whole_instead();
 }

@@ -45,7 +45,7 @@ class LinearSystem {
   // pivots are examined anew only where the next values need others. Of small systems; others would keep their patterns
   // for nothing.
   LinearStatus analyze(Pattern pattern);
-  LinearStatus factor();
+  LinearStatus factor(std::span<const double> b = {});
   LinearStatus solve(std::span<double> b) {
     LinearStatus status = by_jacobian_ ? jacobian_->solve(b) : whole_->solve(b);
     factored_ = status.ok();
@@ -67,7 +67,7 @@ class LinearSystem {
 
  private:
   LinearStatus analyze_anew(Pattern&& pattern);
-  LinearStatus factor_at_hand();
+  LinearStatus factor_at_hand(std::span<const double> b);
   LinearStatus factor_whole_instead();
 
   const LinearSolverEntry* solver_;

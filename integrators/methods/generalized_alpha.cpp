@@ -143,7 +143,9 @@ class GeneralizedAlpha : public FixedSteps {
       problem_.step_residual(scale_, x_.a(), x_.lambda(), span(r));
       if (corrects_velocity_) keep_residual(r);
     };
-    const auto matrix = [&] { return system_.refresh(t, scale_, span(dq_), x_.a(), x_.lambda()); };
+    const auto matrix = [&](std::span<const double> r) {
+      return system_.refresh(t, scale_, span(dq_), x_.a(), x_.lambda(), r);
+    };
     const auto correct = [&](Vector& delta) -> Status {
       problem_.lower(span(dq_), span(delta, 0, nv_));
       x_.z += delta;

@@ -63,20 +63,20 @@ Status Consistent::prepare() {
   return status;
 }
 
-Status Consistent::factor(double t) {
+Status Consistent::factor(double t, std::span<const double> b) {
   if (!prepared_) {
     if (Status status = prepare(); !status.ok()) return status;
   }
   const std::span<const double> zeros = span(zeros_);
-  return system_.refresh(t, {}, {}, zeros.first(nv_), zeros.subspan(nv_));
+  return system_.refresh(t, {}, {}, zeros.first(nv_), zeros.subspan(nv_), b);
 }
 
 Status Consistent::accelerations(double t, std::span<double> z) {
-  if (Status status = factor(t); !status.ok()) return status;
   const std::span<const double> zeros = span(zeros_);
   problem_.equations_of_motion(zeros.first(nv_), {}, z.first(nv_));
   for (double& x : z.first(nv_)) x = -x;
   problem_.gamma(z.subspan(nv_));
+  if (Status status = factor(t, z); !status.ok()) return status;
   return system_.solve(t, z);
 }
 

@@ -33,8 +33,8 @@ class Consistent {
   // Analyses the pattern. Where steps must not allocate, call it before the clock starts; else the first factorization
   // does.
   Status prepare();
-  // Factors [M Gᵀ; G 0] at the point where the problem stands.
-  Status factor(double t);
+  // Factors [M Gᵀ; G 0] at the point where the problem stands, for b where solve(t, b) comes next.
+  Status factor(double t, std::span<const double> b = {});
   // b ← [M Gᵀ; G 0]⁻¹ b with the factorization at hand.
   Status solve(double t, std::span<double> b) { return system_.solve(t, b); }
 

@@ -44,7 +44,7 @@ class NewtonLoop {
   // The step to t, for the unknowns z, from what they are. `position` is δq/δa of the step, `q` the vector that
   // positions' rounding is measured by.
   //   residual(r)     writes the residual at z, nv + nc
-  //   matrix()        assembles and factors: Status
+  //   matrix(b)       assembles and factors, for b, which is solved for next: Status
   //   correct(delta)  turns the linear system's solution into the correction and applies it to z: Status
   template <class Residual, class Matrix, class Correct>
   Status solve(double t, double position, const Vector& z, const Vector& q, Residual&& residual, Matrix&& matrix,
@@ -59,12 +59,12 @@ class NewtonLoop {
       residual(delta_);
       off = delta_.tail(problem_.nc()).template lpNorm<Eigen::Infinity>();
       if (stalled_ && balanced(position, z, q)) return {};
+      delta_ = -delta_;
       if (due(refresh_, k, slow_ || !system_.ready())) {
-        if (Status status = matrix(); !status.ok()) return status;
+        if (Status status = matrix(span(delta_)); !status.ok()) return status;
         slow_ = false;
         of_this_step = refresh_ != Refresh::before_step;
       }
-      delta_ = -delta_;
       if (Status status = system_.solve(t, span(delta_)); !status.ok()) return status;
       if (Status status = correct(delta_); !status.ok()) return status;
       correction = stopping_ == Stopping::relative ? relative(z, of_this_step) : delta_.norm();

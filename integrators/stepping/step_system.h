@@ -22,13 +22,13 @@ class TimedSystem {
   // Analyses the pattern. Call once, before the clock starts. unknowns[k]: which of the problem's unknowns the system's
   // k-th belongs to, for messages; empty: they are the same.
   Status prepare(Pattern pattern, std::vector<int> unknowns = {});
-  // write(slots, values) sets the matrix; then it is factored. The time up to the call belongs to
-  // Phase::other.
+  // write(slots, values) sets the matrix; then it is factored, for b where that is known: solve(t, b) then comes next.
+  // The time up to the call belongs to Phase::other.
   template <class Write>
-  Status refresh(double t, Write&& write) {
+  Status refresh(double t, Write&& write, std::span<const double> b = {}) {
     clock_.lap(Phase::other);
     write(linear_.slots(), linear_.values());
-    return factor(t);
+    return factor(t, b);
   }
   // b ← A⁻¹ b.
   Status solve(double t, std::span<double> b);
@@ -36,7 +36,7 @@ class TimedSystem {
   std::uint64_t orientation() { return linear_.orientation(); }
 
  private:
-  Status factor(double t);
+  Status factor(double t, std::span<const double> b);
   Status explained(double t, LinearStatus status) const;
 
   const Problem& problem_;
@@ -60,15 +60,16 @@ class StepSystem : public TimedSystem {
     return TimedSystem::prepare(problem_.pattern(kind_));
   }
   bool ready() const { return TimedSystem::ready() && *revision_ == problem_.revision(); }
-  // Assembles at the problem's point and factors.
+  // Assembles at the problem's point and factors, for b where that is known.
   Status refresh(double t, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
-                 std::span<const double> lambda) {
+                 std::span<const double> lambda, std::span<const double> b = {}) {
     if (*revision_ != problem_.revision()) {
       if (Status status = prepare(); !status.ok()) return status;
     }
-    return TimedSystem::refresh(t, [&](std::span<const int> slots, std::span<double> values) {
+    const auto write = [&](std::span<const int> slots, std::span<double> values) {
       problem_.assemble(kind_, scale, dq, a, lambda, slots, values);
-    });
+    };
+    return TimedSystem::refresh(t, write, b);
   }
 
  private:

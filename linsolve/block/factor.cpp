@@ -53,6 +53,7 @@ void Factor::resize(const Schedule& s) {
   t_.assign(index(s.largest_rows + s.largest_pivots), 0);
   then_.assign(index(s.n), 1);
   weight_.assign(index(s.n), 1);
+  y_.assign(index(s.n + kLanes), 0);
   order_.assign(index(s.n), 0);
   moved_.assign(s.fronts.size(), 0);
   whole_.assign(s.fronts.size(), 0);
@@ -67,8 +68,10 @@ void Factor::resize(const Schedule& s) {
   }
 }
 
-Drift Factor::factor(const Schedule& s, std::span<const double> values, bool keep_order) {
+Drift Factor::factor(const Schedule& s, std::span<const double> values, bool keep_order, std::span<const double> b) {
   Drift drift;
+  const Pass pass{store_.data(), s.unknown.data(), s.other.data(), y_.data(), nullptr, t_.data()};
+  if (!b.empty()) take(s, b);
   const Strip* strip = s.strips.data();
   const int* child = s.children.data();
   const std::size_t ahead = store_.size() > kCached ? kAhead : s.fronts.size();
@@ -109,14 +112,20 @@ Drift Factor::factor(const Schedule& s, std::span<const double> values, bool kee
     kEliminate[kernel(f.pivots)](D, f, W, stack_.data() + f.update, choice, t_.data(), drift);
     moved_[k] = choice.moved;
     whole_[k] = choice.whole;
+    if (!b.empty()) kForward[choice.moved][kernel(f.pivots)](pass, f, order_.data() + f.first);
   }
   return drift;
 }
 
+void Factor::take(const Schedule& s, std::span<const double> b) {
+  for (std::size_t k = 0; k < b.size(); ++k) y_[k] = b[index(s.unknown[k])];
+}
+
 void Factor::solve(const Schedule& s, std::span<double> b) {
+  take(s, b);
   const Front *const begin = s.fronts.data(), *const end = begin + s.fronts.size();
   const std::ptrdiff_t ahead = store_.size() > kCached ? std::min(kAhead, end - begin) : end - begin;
-  const Pass pass{store_.data(), s.unknown.data(), s.other.data(), b.data(), t_.data()};
+  const Pass pass{store_.data(), s.unknown.data(), s.other.data(), y_.data(), b.data(), t_.data()};
   const char* moved = moved_.data();
   for (const Front *f = begin, *const fetched = end - ahead; f != end; ++f, ++moved) {
     if (f < fetched) {
@@ -125,6 +134,13 @@ void Factor::solve(const Schedule& s, std::span<double> b) {
     }
     kForward[index(*moved)][kernel(f->pivots)](pass, *f, order_.data() + f->first);
   }
+  back(s, b);
+}
+
+void Factor::back(const Schedule& s, std::span<double> b) {
+  const Front *const begin = s.fronts.data(), *const end = begin + s.fronts.size();
+  const std::ptrdiff_t ahead = store_.size() > kCached ? std::min(kAhead, end - begin) : end - begin;
+  const Pass pass{store_.data(), s.unknown.data(), s.other.data(), y_.data(), b.data(), t_.data()};
   const char* whole = whole_.data() + (end - begin);
   for (const Front *f = end, *const fetched = begin + ahead; f-- != begin;) {
     if (f >= fetched) {

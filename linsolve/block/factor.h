@@ -22,12 +22,18 @@ class Factor {
   void drop_inverses();
   // Factorizes, in the order of rows of the last factorization as far as that serves, or choosing it afresh, which
   // later ones are compared with. Nothing stops at a bad pivot; the drift tells.
-  Drift factor(const Schedule& schedule, std::span<const double> values, bool keep_order);
+  // b, where it is given, is eliminated on the way: back() makes it the solution.
+  Drift factor(const Schedule& schedule, std::span<const double> values, bool keep_order,
+               std::span<const double> b = {});
   // b ← A⁻¹ b
   void solve(const Schedule& schedule, std::span<double> b);
+  void back(const Schedule& schedule, std::span<double> b);
 
  private:
+  void take(const Schedule& schedule, std::span<const double> b);
+
   std::vector<double> store_, stack_, update_, t_;
+  std::vector<double> y_;      // a right-hand side, by position
   std::vector<float> then_;    // 1/|pivot| of an examined factorization, in the units of rows, by position
   std::vector<float> weight_;  // by position
   std::vector<std::uint16_t> order_;

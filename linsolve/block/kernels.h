@@ -156,12 +156,12 @@ void eliminate(double* D, const Front& f, const double* W, double* out, Choice& 
   }
 }
 
-// What a solve passes over: the factors, the unknowns of its fronts (Schedule), the right-hand side by unknown, and
-// room for `rows` and p numbers.
+// What a solve passes over: the factors, the positions of its fronts' others and the unknowns at all positions
+// (Schedule), the right-hand side by position, where the solution goes by unknown, and room for `rows` and p numbers.
 struct Pass {
   const double* store;
   const int *unknown, *other;
-  double *x, *t;
+  double *y, *x, *t;
 };
 
 // Moved: rows are in another order than 0, 1, 2, …, in this one.
@@ -169,57 +169,51 @@ template <int P, bool Moved>
 [[gnu::flatten]] void forward(const Pass& pass, const Front& f, const std::uint16_t* order) {
   const int p = P ? P : f.pivots, rows = f.rows;
   const double* L = pass.store + f.store + p * p;
-  const int *own = pass.unknown + f.first, *other = pass.other + f.list;
-  double *x = pass.x, *t = pass.t;
+  const int* other = pass.other + f.list;
+  double *y = pass.y, *own = y + f.first, *t = pass.t;
   if constexpr (P > 0) {
     double b[P];
-    unrolled<P>([&](auto k) { b[k] = x[own[Moved ? order[k] : k.value]]; });
-    if constexpr (Moved) unrolled<P>([&](auto k) { x[own[k]] = b[k]; });
+    unrolled<P>([&](auto k) { b[k] = own[Moved ? order[k] : k.value]; });
+    if constexpr (Moved) unrolled<P>([&](auto k) { own[k] = b[k]; });
     for (int row = 0; row < rows; row += kLanes) {
       Vec sum = load(L + row) * b[0];
       unrolled<P>([&](auto k) {
         if constexpr (k > 0) sum += load(L + k * rows + row) * b[k];
       });
-      unrolled<kLanes>([&](auto i) { x[other[row + i]] -= sum[i.value]; });
+      unrolled<kLanes>([&](auto i) { y[other[row + i]] -= sum[i.value]; });
     }
   } else {
     double* b = t + rows;
-    for (int k = 0; k < p; ++k) b[k] = x[own[Moved ? order[k] : k]];
-    for (int k = 0; k < p; ++k) x[own[k]] = b[k];
+    for (int k = 0; k < p; ++k) b[k] = own[Moved ? order[k] : k];
+    std::copy_n(b, p, own);
     std::fill_n(t, rows, 0.0);
     for (int k = 0; k < p; ++k)
       for (int i = 0; i < rows; ++i) t[i] += L[k * rows + i] * b[k];
-    for (int i = 0; i < f.others; ++i) x[other[i]] -= t[i];
+    for (int i = 0; i < f.others; ++i) y[other[i]] -= t[i];
   }
 }
 
-// Columns of U and D⁻¹ are loaded as whole vectors: what follows a column comes along and is not used.
+// Columns of U and D⁻¹, and right-hand sides, are loaded as whole vectors: what follows a column comes along and is not
+// used.
 template <int P, bool Whole>
 [[gnu::flatten]] void backward(const Pass& pass, const Front& f) {
   const int p = P ? P : f.pivots;
   const double *D = pass.store + f.store, *U = D + p * (p + f.rows);
-  const int *own = pass.unknown + f.first, *other = pass.other + f.list, *end = other + f.others;
-  double *x = pass.x, *t = pass.t;
+  const int *unknown = pass.unknown + f.first, *other = pass.other + f.list, *end = other + f.others;
+  double *y = pass.y, *own = y + f.first, *t = pass.t;
+  const auto give = [&](int k, double x) { own[k] = pass.x[unknown[k]] = x; };
   if constexpr (P > 0) {
     constexpr int C = padded(P) / kLanes;
     Vec sum[C];
-    unrolled<C>([&](auto c) {
-      sum[c] = vector([&](auto i) {
-        constexpr int k = c * kLanes + i;
-        if constexpr (k < P)
-          return x[own[k]];
-        else
-          return 0.0;
-      });
-    });
+    unrolled<C>([&](auto c) { sum[c] = load(own + c * kLanes); });
     const auto take = [&](const double* column, double xj) {
       unrolled<C>([&](auto c) { sum[c] -= load(column + c * kLanes) * xj; });
     };
     for (; end - other >= 2; other += 2, U += 2 * P) {
-      take(U, x[other[0]]);
-      take(U + P, x[other[1]]);
+      take(U, y[other[0]]);
+      take(U + P, y[other[1]]);
     }
-    if (other != end) take(U, x[*other]);
+    if (other != end) take(U, y[*other]);
     if constexpr (Whole) {
       Vec b[2][C];
       unrolled<P>([&](auto k) {
@@ -227,7 +221,7 @@ template <int P, bool Whole>
         unrolled<C>([&](auto c) { add_to_one_of_two<k>(b, c, load(D + k * P + c * kLanes) * by); });
       });
       if constexpr (P > 1) unrolled<C>([&](auto c) { b[0][c] += b[1][c]; });
-      unrolled<P>([&](auto k) { x[own[k]] = b[0][k / kLanes][k % kLanes]; });
+      unrolled<P>([&](auto k) { give(k, b[0][k / kLanes][k % kLanes]); });
     } else {
       double b[P];
       unrolled<P>([&](auto k) { b[k] = sum[k.value / kLanes][k.value % kLanes]; });
@@ -243,14 +237,14 @@ template <int P, bool Whole>
           if constexpr (i < k) b[i] -= D[k * P + i] * b[k];
         });
       });
-      unrolled<P>([&](auto k) { x[own[k]] = b[k]; });
+      unrolled<P>([&](auto k) { give(k, b[k]); });
     }
   } else {
-    for (int k = 0; k < p; ++k) t[k] = x[own[k]];
+    std::copy_n(own, p, t);
     for (; other != end; ++other, U += p)
-      for (int k = 0; k < p; ++k) t[k] -= U[k] * x[*other];
+      for (int k = 0; k < p; ++k) t[k] -= U[k] * y[*other];
     substitute(D, p, 0, t);
-    for (int k = 0; k < p; ++k) x[own[k]] = t[k];
+    for (int k = 0; k < p; ++k) give(k, t[k]);
   }
 }
 

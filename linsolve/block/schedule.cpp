@@ -23,7 +23,7 @@ class Builder {
     if (!lay_out(schedule)) return false;
     tree_.reset();  // its room is that of the strips
     assign_values(schedule);
-    name_others(schedule);
+    pad_others(schedule);
     return true;
   }
 
@@ -142,19 +142,19 @@ class Builder {
     for (const auto& [front, strip] : strips) s.strips[index(next[place_of(front, strip)]++)] = strip;
   }
 
-  // Positions become unknowns.
-  static void name_others(Schedule& s) {
-    std::vector<int> named;
+  // The padding rows get positions, too.
+  static void pad_others(Schedule& s) {
+    std::vector<int> padded;
     std::size_t entries = 0;
     for (const Front& f : s.fronts) entries += index(f.rows);
-    named.reserve(entries);
+    padded.reserve(entries);
     for (Front& f : s.fronts) {
       const int* position = s.other.data() + f.list;
-      f.list = count(named);
+      f.list = count(padded);
       for (int i = 0; i < f.rows; ++i)
-        named.push_back(s.unknown[index(i < f.others ? position[i] : f.first + (i - f.others) % f.pivots)]);
+        padded.push_back(i < f.others ? position[i] : f.first + (i - f.others) % f.pivots);
     }
-    s.other.swap(named);
+    s.other.swap(padded);
   }
 
   // Calls visit(front, strip) for stretches of the values that stay together in the store of a front.

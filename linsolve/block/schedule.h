@@ -53,7 +53,7 @@ struct Schedule {
   int n = 0;
   std::vector<Front> fronts;
   std::vector<int> unknown;  // by position in the order of elimination
-  // Of each front its m other unknowns, in the order of elimination, and as many of its pivots by turns as `rows` are
+  // Of each front the positions of its m other unknowns, ascending, and of as many of its pivots by turns as `rows` are
   // more: what the padding rows of L, which are zero, take from them is nothing. By turns, or one would wait for
   // another.
   std::vector<int> other;

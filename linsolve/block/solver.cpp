@@ -127,7 +127,14 @@ class Solver final : public LinearSolver {
     return true;
   }
 
+  // Along with the factorization, where that is with kept pivots.
+  LinearStatus do_factor_for(std::span<const double> b) override {
+    if (bodies_first() || examines_bodies_first() || !examined() || refined_often()) return do_factor();
+    return factor_kept(b);
+  }
+
   LinearStatus do_factor() override {
+    begun_ = false;
     if (bodies_first()) {
       if (schur_.factor(kNear)) {
         answer_ = Answer::by_schur;
@@ -138,13 +145,19 @@ class Solver final : public LinearSolver {
       answer_ = near_;  // with the schedule's pivots of before
     }
     const LinearStatus status = factor_in_order();
-    if (bodies_first() || (bodies_first_ == BodiesFirst::unexamined && good_ >= kWorthwhile)) examine_bodies_first();
+    if (bodies_first() || examines_bodies_first()) examine_bodies_first();
     return status;
+  }
+  bool examines_bodies_first() const { return bodies_first_ == BodiesFirst::unexamined && good_ >= kWorthwhile; }
+  bool refined_often() const { return refined_ >= kOften && refined_ * kShare > looked_at_; }
+  // Whether there are pivots to keep.
+  bool examined() const {
+    return answer_ == Answer::trusted || answer_ == Answer::sampled || answer_ == Answer::checked;
   }
 
   LinearStatus factor_in_order() {
     if (answer_ == Answer::handed_over) return factor_by_klu();
-    if (refined_ >= kOften && refined_ * kShare > looked_at_) {
+    if (refined_often()) {
       if (fronts_ == Fronts::calm) {
         factor_.drop_inverses();
       } else {
@@ -155,10 +168,13 @@ class Solver final : public LinearSolver {
         return factor_by_klu();
       }
     }
-    const bool examined = answer_ == Answer::trusted || answer_ == Answer::sampled || answer_ == Answer::checked;
-    if (!examined) return factor_fresh();
-    const Drift drift = factor_.factor(*schedule_, values_, true);
+    return examined() ? factor_kept({}) : factor_fresh();
+  }
+
+  LinearStatus factor_kept(std::span<const double> b) {
+    const Drift drift = factor_.factor(*schedule_, values_, true, b);
     if (!drift.within(kFar)) return factor_fresh();
+    begun_ = !b.empty();
     ++statistics_.refactorizations;
     drift_ = drift;
     answer_ = drift.within(kNear)                                      ? near_
@@ -293,16 +309,16 @@ class Solver final : public LinearSolver {
       schur_.solve(b);
       return {};
     }
-    if (answer_ == Answer::trusted || (answer_ == Answer::sampled && passes_unseen())) {
-      ++good_;
+    const bool unseen = answer_ == Answer::trusted || (answer_ == Answer::sampled && passes_unseen());
+    if (!unseen) b_.assign(b.begin(), b.end());
+    if (std::exchange(begun_, false))
+      factor_.back(*schedule_, b);
+    else
       factor_.solve(*schedule_, b);
-      return {};
-    }
-    b_.assign(b.begin(), b.end());
-    factor_.solve(*schedule_, b);
+    ++good_;
+    if (unseen) return {};
     const double size = residual(b_, b);
     ++looked_at_;
-    ++good_;
     if (size <= kGoodResidual) {
       looked_ = drift_;
       return {};
@@ -374,6 +390,7 @@ class Solver final : public LinearSolver {
   std::unique_ptr<LinearSolver> klu_;
   Residual residual_;
   std::vector<double> b_;
+  bool begun_ = false;          // the right-hand side to be solved for was eliminated with the factorization
   std::vector<double> weight_;  // of rows in the choice of pivots, within factor_fresh()
   Answer answer_ = Answer::open;
   Answer near_ = Answer::trusted;  // with pivots near those of the last fresh factorization, by what that one left
