@@ -79,7 +79,6 @@ class ByDecomposition : public OntoRows {
       const double correction = held.lpNorm<Eigen::Infinity>();
       const double most = k == 0 ? kMuch * asked : kShrinks * before;  // or the decomposition does not lead there
       if (!(correction < most) || next(correction, before) <= kFewLeft * asked) break;
-      if (moves.lpNorm<Eigen::Infinity>() <= kFewLeft * asked) break;  // nothing is left of them
       before = correction;
     }
     moves = moves * scales.cwiseInverse().asDiagonal();
