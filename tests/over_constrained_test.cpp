@@ -286,37 +286,6 @@ TEST(OverConstrained, SaysWhichReactionsAreDetermined) {
   EXPECT_THAT(outcome.undetermined_components, ::testing::Each(::testing::ElementsAre("fz", "nx", "ny")));
 }
 
-// Forces along the hinges' axis and moments across it, wherever the axis has turned to.
-TEST(OverConstrained, SaysOfEverySampleWhichReactionsAreDetermined) {
-  const Scene scene = loop({4, Frames::random, true, true});
-  std::optional<Reactions> reactions;
-  std::vector<BodyState> bodies(scene.bodies.size());
-  int turned = 0;
-  const Outcome outcome = simulate(scene, dynamics("rA", 2e-3, 1), [&](const Sample& sample) {
-    if (!reactions) reactions.emplace(sample.problem);
-    reactions->update(sample);
-    sample.problem.to_bodies(sample.a, bodies);
-    const Vector3 axis = bodies[0].A * Vector3::UnitZ();
-    std::array<bool, 6> expected{};
-    for (int c = 0; c < 3; ++c) {
-      const double along = std::abs(axis[c]), across = Vector3::Unit(c).cross(axis).norm();
-      for (const double part : {along, across})
-        if (part > 1e-9 && part < 1e-4) return;
-      expected[index(c)] = along > 1e-4;
-      expected[index(3 + c)] = across > 1e-4;
-    }
-    turned += expected == std::array{true, false, true, true, true, true};
-    const std::vector<Undetermined> found = reactions->undetermined();
-    ASSERT_EQ(found.size(), 4u) << sample.t;
-    for (std::size_t k = 0; k < found.size(); ++k) {
-      EXPECT_EQ(found[k].group, static_cast<int>(k) + 1);  // all but the hinge of the base
-      EXPECT_EQ(found[k].loaded, expected) << sample.t;
-    }
-  });
-  EXPECT_TRUE(outcome.status.ok()) << outcome.status.message;
-  EXPECT_GT(turned, 400);
-}
-
 // A driver set aside because it agrees with another one at the start, and later does not.
 TEST(OverConstrained, ARowThatDoesNotFollowAnyMoreStopsTheRun) {
   const Scene scene = twice_driven("t", "t + t^5");

@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <ctime>
 #include <functional>
 #include <memory>
 #include <numbers>
 
 #include "core/scene_generator.h"
+#include "tests/support/loops.h"
 #include "tests/support/scene_transform.h"
 
 namespace poinsot::test {
@@ -258,6 +260,33 @@ TEST_P(ReactionForces, InverseDynamicsIsTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(All, ReactionForces, ::testing::ValuesIn(formulation_names()),
                          [](const auto& test) { return test.param; });
+
+// Forces along the hinges' axis and moments across it, wherever the axis has turned to.
+TEST(Reactions, AreSaidToBeUndeterminedOfEverySample) {
+  const Scene scene = loop({4, Frames::random, true, true});
+  std::vector<BodyState> bodies(scene.bodies.size());
+  int turned = 0;
+  with_reactions(scene, dynamics("rA", 2e-3, 1), [&](const Sample& sample, const Reactions& reactions) {
+    sample.problem.to_bodies(sample.a, bodies);
+    const Vector3 axis = bodies[0].A * Vector3::UnitZ();
+    std::array<bool, 6> expected{};
+    for (int c = 0; c < 3; ++c) {
+      const double along = std::abs(axis[c]), across = Vector3::Unit(c).cross(axis).norm();
+      for (const double part : {along, across})
+        if (part > 1e-9 && part < 1e-4) return;
+      expected[index(c)] = along > 1e-4;
+      expected[index(3 + c)] = across > 1e-4;
+    }
+    turned += expected == std::array{true, false, true, true, true, true};
+    const std::vector<Undetermined> found = reactions.undetermined();
+    ASSERT_EQ(found.size(), 4u) << sample.t;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      EXPECT_EQ(found[k].group, static_cast<int>(k) + 1);  // all but the hinge of the base
+      EXPECT_EQ(found[k].loaded, expected) << sample.t;
+    }
+  });
+  EXPECT_GT(turned, 400);
+}
 
 }  // namespace
 }  // namespace poinsot::test
