@@ -110,6 +110,7 @@ TEST_P(LinearSolvers, FactorForARightHandSideThatIsKnown) {
     SCOPED_TRACE(s.name);
     const auto before = make(), along = make();
     ASSERT_TRUE(before->analyze(s.pattern).ok() && along->analyze(s.pattern).ok());
+    int solved = 0;
     for (int k = 0; k < 100; ++k) {
       SampleSystem changed = s;
       const double decades = k % 10 == 9 ? 6 : 0.2;  // far off, pivots are examined anew
@@ -121,9 +122,13 @@ TEST_P(LinearSolvers, FactorForARightHandSideThatIsKnown) {
       ASSERT_EQ(status.ok(), along->factor(b).ok());
       if (!status.ok()) continue;
       EXPECT_EQ(b, asked);
-      ASSERT_EQ(before->solve(x).ok(), along->solve(b).ok());
+      const bool ok = before->solve(x).ok();
+      ASSERT_EQ(ok, along->solve(b).ok());
+      if (!ok) continue;
       EXPECT_EQ(b, x) << k;
+      ++solved;
     }
+    EXPECT_GT(solved, 80);
     EXPECT_EQ(before->statistics().refactorizations, along->statistics().refactorizations);
   }
 }
