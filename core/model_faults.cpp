@@ -28,12 +28,12 @@ std::string of_loads(const std::vector<Load>& loads, Expression (Load::*componen
 
 // By how much f(t) lies beyond what any position has; up to 0 within.
 double beyond(const Row& row, double t) {
-  constexpr double kRounding = 1e-12;  // of directions' lengths
+  const double rounding = row.f.is_constant() ? 1e-9 : 1e-12;  // of directions' lengths and of a number as written
   const double f = row.f.at(t).f;
   if (row.type == RowType::D && !row.squared) return -f;
   if (row.type != RowType::DP1) return 0;
   const double most = row.a_i.norm() * row.a_j.norm();
-  return std::abs(f) - (1 + kRounding) * most;
+  return std::abs(f) - (1 + rounding) * most;
 }
 
 // Where in [from, to] |g| is largest, as far as numbers tell; the last time with a value, where some have none.
@@ -108,7 +108,6 @@ std::string beyond_any_position(const Model& model, double from, double to) {
   constexpr int kTimes = 32;
   for (std::size_t k = 0; k < model.rows.size(); ++k) {
     const Row& row = model.rows[k];
-    if (row.f.is_constant()) continue;
     double within = from, later = from;
     for (int of = kTimes; of >= 0 && !(beyond(row, later) > 0); --of)
       within = later, later = from + std::ldexp(to - from, -of);
@@ -116,9 +115,10 @@ std::string beyond_any_position(const Model& model, double from, double to) {
     for (double middle; middle = within + (later - within) / 2, within < middle && middle < later;)
       (beyond(row, middle) > 0 ? later : within) = middle;
     const bool cosine = row.type == RowType::DP1;
-    return fmt::format("{} asks for a {} {} from t = {:.9g} s on", describe_row(model, static_cast<int>(k)),
+    return fmt::format("{} asks for a {} {}{}", describe_row(model, static_cast<int>(k)),
                        cosine ? "cosine beyond" : "squared distance below",
-                       cosine ? (row.f.at(later).f > 0 ? "1" : "-1") : "0", within);
+                       cosine ? (row.f.at(later).f > 0 ? "1" : "-1") : "0",
+                       row.f.is_constant() ? "" : fmt::format(" from t = {:.9g} s on", within));
   }
   return {};
 }

@@ -61,7 +61,7 @@ class Auto final : public LinearSolver {
     return solver_->analyze(std::move(pattern), workload());
   }
   LinearStatus do_factor() override { return solver_->factor(); }
-  LinearStatus do_factor_for(std::span<const double> b) override { return solver_->factor(b); }
+  LinearStatus do_factor_for(Ahead ahead) override { return solver_->factor(ahead); }
   LinearStatus do_solve(std::span<double> b) override { return solver_->solve(b); }
   LinearStatus do_solve_transposed(std::span<double> b) override { return solver_->solve_transposed(b); }
 

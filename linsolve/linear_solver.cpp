@@ -43,12 +43,13 @@ LinearStatus LinearSolver::analyze(Pattern pattern, Workload workload) {
   return status;
 }
 
-LinearStatus LinearSolver::factor(std::span<const double> b) {
+LinearStatus LinearSolver::factor(Ahead ahead) {
+  const std::span<const double> b = ahead.b;
   check(state_ != State::empty, "LinearSolver::factor comes after analyze");
   check(b.empty() || b.size() == index(n_), "LinearSolver::factor gets one number for each unknown, or none");
   state_ = State::analyzed;
   next_ = b.data();
-  LinearStatus status = guarded([&] { return b.empty() ? do_factor() : do_factor_for(b); });
+  LinearStatus status = guarded([&] { return b.empty() ? do_factor() : do_factor_for(ahead); });
   if (status.ok()) state_ = State::factored;
   return status;
 }

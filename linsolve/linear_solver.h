@@ -5,8 +5,10 @@
 // zero from the start, and stays so.
 // 3. factor() factorizes what values() holds, and values() holds it afterwards, though slots() may be others then.
 // state() becomes factored when it answers ok.
-// factor(b) is for a right-hand side that is known by then: a solver may begin with it on the way. Its next call is
-// solve(b), with the same numbers at the same place.
+// factor({b}) is for a right-hand side that is known by then: a solver may begin with it on the way. Its next call is
+// solve(b), with the same numbers at the same place. factor({b, true}) says that this solve will be the only one, and a
+// solver need not keep what others would need: each costs another factorization, as long as values() are still the
+// same.
 // 4. solve(b) replaces b by A⁻¹ b, solve_transposed(b) by A⁻ᵀ b, as often as wanted, for the values of the last
 // factor(). Not every solver knows the second (linsolve/registry.h).
 // 5. 2 to 4 repeat; nothing is allocated in them after the first round.
@@ -44,6 +46,12 @@ struct LinearStatistics {
   double reciprocal_condition = 0;  // whatever the scaling (linsolve/condition.h), when last examined; 0 where unknown
 };
 
+// What will be solved for after a factorization.
+struct Ahead {
+  std::span<const double> b = {};  // first; empty: not known
+  bool only = false;               // and nothing else
+};
+
 // What there will be most of, a hint for solvers that have a choice; or that the transposed matrix will be asked for.
 enum class Workload { factorizations, solves, transposed };
 
@@ -59,8 +67,7 @@ class LinearSolver {
   virtual ~LinearSolver() = default;
 
   LinearStatus analyze(Pattern pattern, Workload workload = Workload::factorizations);
-  LinearStatus factor() { return factor({}); }
-  LinearStatus factor(std::span<const double> b);
+  LinearStatus factor(Ahead ahead = {});
   LinearStatus solve(std::span<double> b);
   LinearStatus solve_transposed(std::span<double> b);
 
@@ -82,7 +89,7 @@ class LinearSolver {
   // before: of large systems it is a twentieth of all that lives.
   virtual LinearStatus do_analyze(Pattern&& pattern) = 0;
   virtual LinearStatus do_factor() = 0;
-  virtual LinearStatus do_factor_for(std::span<const double> /*b*/) { return do_factor(); }
+  virtual LinearStatus do_factor_for(Ahead /*ahead*/) { return do_factor(); }
   virtual LinearStatus do_solve(std::span<double> b) = 0;
   virtual LinearStatus do_solve_transposed(std::span<double> b);
   Workload workload() const { return workload_; }

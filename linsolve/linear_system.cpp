@@ -72,14 +72,14 @@ LinearStatus LinearSystem::analyze_anew(Pattern&& pattern) {
   return whole_->analyze(std::move(pattern), workload_);
 }
 
-LinearStatus LinearSystem::factor(std::span<const double> b) {
-  LinearStatus status = factor_at_hand(b);
+LinearStatus LinearSystem::factor(Ahead ahead) {
+  LinearStatus status = factor_at_hand(ahead);
   factored_ = status.ok();
   return status;
 }
 
-LinearStatus LinearSystem::factor_at_hand(std::span<const double> b) {
-  if (!jacobian_) return whole_->factor(b);
+LinearStatus LinearSystem::factor_at_hand(Ahead ahead) {
+  if (!jacobian_) return whole_->factor(ahead);
   by_jacobian_ = jacobian_->take_values();
   return by_jacobian_ ? jacobian_->factor() : factor_whole_instead();
 }

@@ -45,7 +45,7 @@ class LinearSystem {
   // pivots are examined anew only where the next values need others. Of small systems; others would keep their patterns
   // for nothing.
   LinearStatus analyze(Pattern pattern);
-  LinearStatus factor(std::span<const double> b = {});
+  LinearStatus factor(Ahead ahead = {});
   LinearStatus solve(std::span<double> b) {
     LinearStatus status = by_jacobian_ ? jacobian_->solve(b) : whole_->solve(b);
     factored_ = status.ok();
@@ -60,6 +60,8 @@ class LinearSystem {
   void let_go();
   // LinearSolver::orientation() of the whole matrix; 0 where another was factored.
   std::uint64_t orientation() { return by_jacobian_ || !whole_ ? 0 : whole_->orientation(); }
+  // The same of the constraint Jacobian; 0 where that was not factored by itself.
+  std::uint64_t jacobian_orientation() { return by_jacobian_ ? jacobian_->orientation() : 0; }
   // Of the solver of the last factorization.
   const LinearStatistics& statistics() const {
     return by_jacobian_ ? jacobian_->solver().statistics() : whole_->statistics();
@@ -67,7 +69,7 @@ class LinearSystem {
 
  private:
   LinearStatus analyze_anew(Pattern&& pattern);
-  LinearStatus factor_at_hand(std::span<const double> b);
+  LinearStatus factor_at_hand(Ahead ahead);
   LinearStatus factor_whole_instead();
 
   const LinearSolverEntry* solver_;

@@ -37,6 +37,7 @@ class SquareJacobian {
   LinearStatus factor();
   LinearStatus solve(std::span<double> b);
   const LinearSolver& solver() const { return *solver_; }
+  std::uint64_t orientation() { return solver_->orientation(); }  // of G
 
  private:
   struct Entry {               // of G

@@ -9,6 +9,7 @@
 
 #include "core/conserved_energy.h"
 #include "core/mechanisms.h"
+#include "core/scene_reader.h"
 #include "tests/support/energy_course.h"
 #include "tests/support/every_way.h"
 #include "tests/support/loops.h"
@@ -146,6 +147,21 @@ TEST(EnergyBalance, error_control_is_told_of_as_well) {
     EXPECT_LT(std::abs(kept(scene_of("simple_pendulum"), settings).percent), std::abs(of.percent));
   }
   EXPECT_GE(told, 1);
+}
+
+// Of a quarter turn of the swing in two steps every fourth is at rest.
+TEST(EnergyBalance, is_seen_whatever_the_swing) {
+  const Scene scene = parse_scene(R"j({"scene": 1, "bodies": [
+      {"name": "b", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]}],
+      "joints": [{"type": "translational", "bodies": ["ground", "b"], "point": [0, 0, 0], "axis": [1, 0, 0]}],
+      "forces": [{"type": "spring", "bodies": ["ground", "b"], "s_i": [-1, 0, 0], "s_j": [0, 0, 0], "length": 0.9,
+                  "stiffness": 1e6}]})j",
+                                  "swing");
+  for (const double end : {0.05, 0.1, 0.2}) {
+    Settings settings = dynamics("rA", 1e-3, end);
+    settings.integrator = "implicit_euler";
+    EXPECT_TRUE(kept(scene, settings).told) << end;
+  }
 }
 
 TEST(EnergyBalance, is_that_of_each_mechanism) {

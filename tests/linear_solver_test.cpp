@@ -101,9 +101,11 @@ TEST_P(LinearSolvers, FactorsAgainWhereValuesChangeByDecades) {
   }
 }
 
-// To the same bytes as without, whether pivots are kept or not, and values and right-hand side stay as they are.
+// To the same bytes as without, whether pivots are kept or not, and values and right-hand side stay as they are. Where
+// a solve was to be the only one and is not, others cost a factorization and are the same, too.
 TEST_P(LinearSolvers, FactorForARightHandSideThatIsKnown) {
   std::mt19937_64 random(23);
+  std::int64_t made_again = 0;
   for (const SampleSystem& s :
        {saddle_point(chain(40, 5), BodyKind::six, random), saddle_point(chain(3, 5), BodyKind::seven, random),
         saddle_point(ladder(8), BodyKind::six, random)}) {
@@ -111,6 +113,7 @@ TEST_P(LinearSolvers, FactorForARightHandSideThatIsKnown) {
     const auto before = make(), along = make();
     ASSERT_TRUE(before->analyze(s.pattern).ok() && along->analyze(s.pattern).ok());
     int solved = 0;
+    std::int64_t again = 0;  // factorizations for solves that were not to come
     for (int k = 0; k < 100; ++k) {
       SampleSystem changed = s;
       const double decades = k % 10 == 9 ? 6 : 0.2;  // far off, pivots are examined anew
@@ -119,18 +122,27 @@ TEST_P(LinearSolvers, FactorForARightHandSideThatIsKnown) {
       const std::vector<double> asked = random_vector(s.pattern.n, random);
       std::vector<double> b = asked, x = asked;
       const LinearStatus status = before->factor();
-      ASSERT_EQ(status.ok(), along->factor(b).ok());
+      ASSERT_EQ(status.ok(), along->factor({b, k % 3 > 0}).ok());
       if (!status.ok()) continue;
       EXPECT_EQ(b, asked);
-      const bool ok = before->solve(x).ok();
-      ASSERT_EQ(ok, along->solve(b).ok());
-      if (!ok) continue;
-      EXPECT_EQ(b, x) << k;
-      ++solved;
+      const std::int64_t made = along->statistics().refactorizations;
+      bool ok = true;
+      for (int solves = 0; ok && solves <= k % 3 / 2; ++solves) {
+        b = x = asked;
+        ok = before->solve(x).ok();
+        ASSERT_EQ(ok, along->solve(b).ok());
+        if (ok) {
+          EXPECT_EQ(b, x) << k;
+        }
+      }
+      again += along->statistics().refactorizations - made;
+      if (ok) ++solved;
     }
     EXPECT_GT(solved, 80);
-    EXPECT_EQ(before->statistics().refactorizations, along->statistics().refactorizations);
+    EXPECT_EQ(before->statistics().refactorizations + again, along->statistics().refactorizations);
+    made_again += again;
   }
+  EXPECT_EQ(made_again > 0, GetParam().name == "block" || GetParam().name == "auto");
 }
 
 // What a thread knows of structures it met before changes no byte: a chain and a ladder by turns, a body of which
@@ -265,8 +277,8 @@ TEST_P(LinearSolvers, ThrowsOnCallsOutOfOrderAndWrongSizes) {
   EXPECT_THROW((void)solver->solve(std::span(b).first(b.size() - 1)), std::logic_error);
   ASSERT_TRUE(solver->solve(b).ok());
   std::vector<double> other = b;
-  EXPECT_THROW((void)solver->factor(std::span(b).first(b.size() - 1)), std::logic_error);
-  ASSERT_TRUE(solver->factor(b).ok());
+  EXPECT_THROW((void)solver->factor({std::span(b).first(b.size() - 1)}), std::logic_error);
+  ASSERT_TRUE(solver->factor({b}).ok());
   EXPECT_THROW((void)solver->solve(other), std::logic_error);
   ASSERT_TRUE(solver->solve(b).ok());
   ASSERT_TRUE(solver->solve(other).ok());

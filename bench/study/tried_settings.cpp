@@ -32,7 +32,7 @@ double step_at_most(double most, const Settings& settings) {
   return whole / (10 * tens);
 }
 
-std::vector<Candidate> candidates(const Settings& given, const Status& status) {
+std::vector<Candidate> candidates(const Settings& given, const Status& status, bool driven) {
   std::vector<Candidate> all;
   const auto add = [&](std::string named, auto change) {
     Settings settings = given;
@@ -75,9 +75,12 @@ std::vector<Candidate> candidates(const Settings& given, const Status& status) {
     add_tolerances(1e2);
   }
   if (dynamics) {
+    if (driven) add("--analysis kinematics", [](Settings& s) { s.analysis = Analysis::kinematics; });
     add_integrator("auto");
     if (controls)
-      for (const char* other : {"dop853", "radau5", "rattle"}) add_integrator(other);
+      for (const char* other : {"dop853", "radau5"}) add_integrator(other);
+    // Steps of fixed length go over what drivers ask for that no position has.
+    if (controls && !driven) add_integrator("rattle");
     if (given.formulation != "rA") add("--formulation rA", [](Settings& s) { s.formulation = "rA"; });
   } else if (status.failure == Failure::singular_position) {
     add("--analysis dynamics --integrator dop853", [](Settings& s) {
@@ -139,7 +142,7 @@ void try_settings(const Scene& scene, const Settings& settings, Outcome& outcome
   };
   std::vector<std::string> stopped;
   bool all = true;
-  for (const Candidate& candidate : candidates(settings, status)) {
+  for (const Candidate& candidate : candidates(settings, status, !scene.drivers.empty())) {
     switch (tried(scene, candidate.settings, end, most_steps)) {
       case Trial::leads_on:
         put(fmt::format("{} with {} it goes on, as was tried up to t = {:.4g} s", alone ? ";" : ", or", candidate.named,

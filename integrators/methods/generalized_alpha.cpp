@@ -143,8 +143,9 @@ class GeneralizedAlpha : public FixedSteps {
       problem_.step_residual(scale_, x_.a(), x_.lambda(), span(r));
       if (corrects_velocity_) keep_residual(r);
     };
-    const auto matrix = [&](std::span<const double> r) {
-      return system_.refresh(t, scale_, span(dq_), x_.a(), x_.lambda(), r);
+    const auto matrix = [&](Ahead ahead) {
+      ahead.only = ahead.only && !corrects_velocity_;  // that is by the same matrix
+      return system_.refresh(t, scale_, span(dq_), x_.a(), x_.lambda(), ahead);
     };
     const auto correct = [&](Vector& delta) -> Status {
       problem_.lower(span(dq_), span(delta, 0, nv_));

@@ -61,9 +61,7 @@ class HalfImplicit final : public FixedSteps {
       end.problem.velocity_residual(span(rows_));
       for (int row : velocity_rows_) r[nv_ + row] = rows_[row] / h_;
     };
-    const auto matrix = [&](std::span<const double> r) {
-      return begin.system.refresh(x_.t, {}, {}, x_.a(), x_.lambda(), r);
-    };
+    const auto matrix = [&](Ahead ahead) { return begin.system.refresh(x_.t, {}, {}, x_.a(), x_.lambda(), ahead); };
     const auto correct = [&](Vector& delta) -> Status {
       broyden_.improve(delta);
       x_.z += delta;

@@ -49,10 +49,10 @@ class ImplicitEuler final : public FixedSteps {
       stand_at(t);
       problem_.step_residual(scale_, x_.a(), x_.lambda(), span(g));  // (34b)  g = (M a + Gᵀλ − Q, Φ/h²)
     };
-    const auto matrix = [&](std::span<const double> g) -> Status {
-      if (policy_.refresh == Refresh::before_step) return matrix_before_step(t, g);
+    const auto matrix = [&](Ahead ahead) -> Status {
+      if (policy_.refresh == Refresh::before_step) return matrix_before_step(t, ahead);
       // (38b, c)  ∂g/∂(a, λ), made exact by T(hω̄)
-      return system_.refresh(t, scale_, span(dq_), x_.a(), x_.lambda(), g);
+      return system_.refresh(t, scale_, span(dq_), x_.a(), x_.lambda(), ahead);
     };
     const auto correct = [&](Vector& delta) -> Status {
       problem_.lower(span(dq_), span(delta, 0, nv_));  // T(hω̄)⁻¹, which (37) approximates by 1
@@ -70,10 +70,10 @@ class ImplicitEuler final : public FixedSteps {
     problem_.set_velocity(span(x_.v));
   }
   // The original study's: where the last step ended, with the rows of this one.
-  Status matrix_before_step(double t, std::span<const double> g) {
+  Status matrix_before_step(double t, Ahead ahead) {
     problem_.set_position(t, span(q_n_));
     problem_.set_velocity(span(v_n_));
-    return system_.refresh(t, scale_, {}, x_.a(), x_.lambda(), g);
+    return system_.refresh(t, scale_, {}, x_.a(), x_.lambda(), ahead);
   }
 
   const JacobianEntry& policy_;

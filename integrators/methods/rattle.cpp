@@ -119,7 +119,7 @@ class Rattle final : public FixedSteps {
       r.tail(nc_) /= position;
       if (!velocity_rows_.empty()) add_velocity_rows(r);
     };
-    const auto matrix = [](std::span<const double>) { return Status{}; };  // has been factored
+    const auto matrix = [](Ahead) { return Status{}; };  // has been factored
     const auto correct = [&](Vector& delta) -> Status {
       broyden_.improve(delta);
       z_ += delta;

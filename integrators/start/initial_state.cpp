@@ -284,7 +284,7 @@ class Assembler {
   }
 
   void tell_what_moved() {
-    double moved = 0, turned = 0, velocity = 0, spin = 0;
+    double moved = 0, turned = 0, velocity = 0, spin = 0, speed = 0, rate = 0;
     std::size_t body = 0;
     for (std::size_t b = 0; b < given_.size(); ++b) {
       const BodyState &x = scene_[b], &y = result_.bodies[b];
@@ -295,8 +295,11 @@ class Assembler {
       turned = std::max(turned, turn);
       velocity = std::max(velocity, (y.rd - x.rd).norm());
       spin = std::max(spin, (y.w - x.w).norm());
+      speed = std::max(speed, x.rd.norm());
+      rate = std::max(rate, x.w.norm());
     }
     if (off_position() && !closed_) {
+      refuse_amplified("pose", before_.position_row, before_.position, 0, {moved, turned}, {size_of(scene_), 1});
       result_.notices.push_back(
           fmt::format("initial pose assembled: {} was violated by {}; the bodies moved by up to {:.3g} m and turned "
                       "by up to {:.3g} rad, '{}' most",
@@ -305,12 +308,35 @@ class Assembler {
                       model_->bodies[body].name));
     }
     if (off_velocity()) {
+      refuse_amplified("velocities", before_.velocity_row, before_.velocity, 1, {velocity, spin}, {speed, rate});
       result_.notices.push_back(
           fmt::format("initial velocities assembled: {} was violated by {}; the velocities "
                       "changed by up to {:.3g} m/s and {:.3g} rad/s",
                       describe_row(*model_, before_.velocity_row),
                       describe_residual(*model_, before_.velocity_row, before_.velocity, 1), velocity, spin));
     }
+  }
+
+  // A change of points and of turns.
+  struct Change {
+    double way, turn;
+  };
+  // Where constraints all but depend on one another the least that a row is off asks for much: what then satisfies all
+  // of them is not what was meant.
+  void refuse_amplified(const char* what, int row, double off, int order, Change by, Change of) const {
+    constexpr double kSmall = 1e-3;
+    if ((by.way <= kSmall * of.way && by.turn <= kSmall * of.turn) || !std::isfinite(by.turn)) return;
+    RowSpace space(model_, {row});
+    space.stand(0, scene_);
+    const double metres = std::max(by.way, by.turn * space.size_of_row(0));
+    if (metres * kIndependent <= off / space.norm_of_row(0)) return;
+    const char* const rate = order == 1 ? "/s" : "";
+    throw InputError(fmt::format(
+        "the initial {} violate{} {} by {}, and to satisfy it takes a change by up to {:.3g} m{} and {:.3g} rad{}: "
+        "constraints all but depend on one another there, as those of axes do that are parallel but for their last "
+        "digits; write axes and points to more digits, or leave out what says the same twice",
+        what, order == 1 ? "" : "s", describe_row(*model_, row), describe_residual(*model_, row, off, order), by.way,
+        rate, by.turn, rate));
   }
 
   std::shared_ptr<const Model> model_;
@@ -329,6 +355,8 @@ class Assembler {
 InitialState find_initial_state(const std::shared_ptr<const Model>& model, const Settings& settings,
                                 const RankAnalysis* rank) {
   if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) return {no_value(0, fault), {}, {}, {}};
+  if (const std::string beyond = beyond_any_position(*model, 0, 0); !beyond.empty())
+    throw InputError(beyond + ", which no position has");
   if (const std::string length = overflowing_length(*model); !length.empty())
     throw InputError(length + "; give it in units in which it is smaller");
   if (settings.analysis == Analysis::dynamics)

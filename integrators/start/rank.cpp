@@ -21,8 +21,9 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr int kManyRows = 20'000;  // of loops: one place beside is looked at for all
-constexpr int kDirections = 2;     // at random
+constexpr std::size_t kLong = 1000;  // rows of loops: less can make them barely independent otherwise only
+constexpr int kManyRows = 20'000;    // of loops: one place beside is looked at for all
+constexpr int kDirections = 2;       // at random
 
 class Examination {
  public:
@@ -45,7 +46,8 @@ class Examination {
     };
     surely_ = here_.from <= kDependent ? here_ : surely();
     // Rows that are barely independent by the length of the mechanism are so wherever it stands: not singular here.
-    if (surely_.columns.size() + here_.stretched >= here_.columns.size()) here_ = surely_;
+    const bool is_long = space_->rows().size() >= kLong;
+    if (is_long && surely_.columns.size() + here_.stretched >= here_.columns.size()) here_ = surely_;
     if (here_.columns.empty()) return std::move(result_);
     without_ = here_.from <= kDependent ? gathered(space_->columns(), here_, kDependent) : chosen(here_);
     std::shared_ptr<FrontQr> decomposition = here_.decomposition;
@@ -171,6 +173,10 @@ class Examination {
   }
 
   void tell_undetermined(const Sparse& columns, const NullSpace& null) {
+    const auto vanishes = [&](const auto& entry) { return space_->rows()[index(entry.first)] == result_.doubtful; };
+    const bool stands_in = std::ranges::any_of(
+        null.vectors, [&](const SparseEntries& z) { return result_.vanishing && std::ranges::any_of(z, vanishes); });
+    if (stands_in) result_.vanishing = false, result_.doubt = 0, result_.doubtful = -1;  // others say the same
     LoadedGroups groups(*model_, *space_, states_);
     if (many(null)) groups.add_all();
     for (const SparseEntries& z : null.vectors) groups.add(columns, z);

@@ -11,7 +11,7 @@
 namespace poinsot {
 
 RowChoice::RowChoice(std::shared_ptr<const Model> model, std::vector<int> rows, std::vector<int> aside, Steps steps)
-    : space_(model, std::move(rows)), aside_(std::move(aside)) {
+    : space_(model, std::move(rows), RowSpace::Use::choice), aside_(std::move(aside)) {
   const std::vector<int> turns = opening_turns(*model);
   const Lists blocks = row_blocks(*model, space_.rows());
   for (int b = 0; b < blocks.size(); ++b) {
@@ -58,8 +58,9 @@ void RowChoice::carry_over(std::span<double> lambda) {
 }
 
 double RowChoice::size_of(int row) const {
+  constexpr double kFull = 1e-2;  // where a gradient all but vanishes Φ goes with the square of the distance
   const std::size_t k = index(std::ranges::lower_bound(space_.rows(), row) - space_.rows().begin());
-  return space_.size_of_row(k) * space_.norm_of_row(k);
+  return space_.size_of_row(k) * std::max(space_.norm_of_row(k), kFull * space_.full_norm(k));
 }
 
 bool RowChoice::has_null_vectors() const {

@@ -20,9 +20,10 @@ std::vector<int> all_but(std::size_t count, const std::vector<int>& some) {
   return others;
 }
 
-RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
+RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows, Use use)
     : model_(std::move(model)),
       rows_(std::move(rows)),
+      use_(use),
       problem_(intrinsic_formulation().make(model_, all_but(model_->rows.size(), rows_))),
       place_(rows_.size()),
       sizes_(body_sizes(*model_)),
@@ -30,6 +31,7 @@ RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows)
       v_(index(problem_->nv())),
       lengths_(rows_.size()),
       weights_(rows_.size(), 1),
+      vanishing_(rows_.size(), 1),
       of_problem_(rows_.size()) {
   std::iota(place_.begin(), place_.end(), 0);
   check(layout_.build(problem_->pattern(MatrixKind::kinematic)).ok(), "an assembled matrix fits 32-bit indices");
@@ -88,7 +90,9 @@ void RowSpace::stand_at(double t, std::span<const double> q) {
       sum += g[i] * g[i];
     }
     const double rounding = rounding_of(index(k));
-    lengths_[index(k)] = weights_[index(k)] * std::max(std::sqrt(sum), rounding);
+    const double norm = std::max(std::sqrt(sum), rounding);
+    if (use_ == Use::choice) vanishing_[index(k)] = std::clamp(full_norm(index(k)) / norm, 1.0, kVelocityRow);
+    lengths_[index(k)] = weights_[index(k)] * vanishing_[index(k)] * norm;
     const double by = sum > rounding * rounding ? 1 / lengths_[index(k)] : 0;
     for (int i = begin; i < end; ++i) g[i] *= by;
   }
@@ -106,11 +110,12 @@ void RowSpace::keep(std::vector<int> rows) {
       source_[entries] = source_[index(i)], measure_[entries] = measure_[index(i)];
     }
     place_[c] = place_[k], lengths_[c] = lengths_[k], weights_[c] = weights_[k], rounding_[c] = rounding_[k];
+    vanishing_[c] = vanishing_[k];
   }
   left.finalize();
   Gt_ = std::move(left);
   source_.resize(entries), measure_.resize(entries);
-  for (std::vector<double>* of : {&lengths_, &weights_, &rounding_}) of->resize(rows.size());
+  for (std::vector<double>* of : {&lengths_, &weights_, &rounding_, &vanishing_}) of->resize(rows.size());
   place_.resize(rows.size());
   rows_ = std::move(rows);
 }
@@ -152,6 +157,11 @@ double RowSpace::left_of(std::size_t k) const {
       if (body != kGround) terms = std::max(terms, 2 * (body == row.i ? row.s_i : row.s_j).norm());
   }
   return terms > 0 ? std::min(1.0, norm_of_row(k) / terms) : 1;
+}
+
+double RowSpace::full_norm(std::size_t k) const {
+  const Row& row = model_->rows[index(rows_[k])];
+  return row.type == RowType::DP1 ? direction_terms(row) : row.type == RowType::D ? size_of_row(k) : 0;
 }
 
 // What the problem has of its rows, of those that are kept.

@@ -37,8 +37,10 @@ std::vector<int> all_but(std::size_t count, const std::vector<int>& some);
 
 class RowSpace {
  public:
-  // `rows` of the model, ascending.
-  RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows);
+  // `rows` of the model, ascending. For a choice vectors of rows whose gradients are about to vanish are as much
+  // shorter, down to a kVelocityRow-th, so that others are kept that say the same.
+  enum class Use { rank, choice };
+  RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows, Use use = Use::rank);
 
   // At rest. The other two keep to the rounding of the coordinates here.
   void stand(double t, std::span<const BodyState> states);
@@ -58,11 +60,13 @@ class RowSpace {
   // What is left of the gradient of a row that can vanish, where it stands: 1 is as much as ever.
   double left_of(std::size_t k) const;
   bool is_velocity_row(std::size_t k) const { return model_->rows[index(rows_[k])].type == RowType::pfaffian; }
+  // ‖g‖ of a row that can vanish, where it does not, about; else 0.
+  double full_norm(std::size_t k) const;
   // Φ/‖g‖, m.
   void distances(std::span<double> out) const;
   // G v − ν and ν in the rows' own units, where it stands, with velocities v of intrinsic_formulation().
   void rates(std::span<const double> v, std::span<double> residual, std::span<double> nu);
-  double norm_of_row(std::size_t k) const { return lengths_[k] / weights_[k]; }
+  double norm_of_row(std::size_t k) const { return lengths_[k] / (weights_[k] * vanishing_[k]); }
   double size_of_body(int body) const { return sizes_[index(body)]; }  // m
   // m: of the larger of its bodies.
   double size_of_row(std::size_t k) const;
@@ -75,10 +79,12 @@ class RowSpace {
 
   std::shared_ptr<const Model> model_;
   std::vector<int> rows_;
+  Use use_;
   std::unique_ptr<Problem> problem_;
   std::vector<int> place_;  // by row: among those of the problem
   std::vector<double> sizes_;
   std::vector<double> q_, v_, values_, lengths_, weights_;
+  std::vector<double> vanishing_;  // by row: more than 1 where its gradient is about to vanish
   mutable std::vector<double> of_problem_;
   CscLayout layout_;
   // By entry of Gt_: its place in the layout, and one over the body's size where it is about a turn, else 1.

@@ -27,9 +27,11 @@ double Consistent::steepness(double t, std::size_t part) {
 void Consistent::look(double steepness) {
   steepness_ = steepness;
   amplification_ = 1;
+  steeper_ = 0;
   for (Branch& of : branches_) {
     const double now = of.usual_steepness > 0 ? of.steepness / of.usual_steepness : 0;
     of.amplification = now > kSteep ? now : 1;
+    steeper_ = std::max(steeper_, now);
     amplification_ = std::max(amplification_, of.amplification);
   }
   beside_singular_ = beside_singular_ || amplification_ > 1;
@@ -51,6 +53,7 @@ bool Consistent::made_of_rounding(const State& at) {
 
 bool Consistent::made_of_rounding(const State& at, std::size_t part) {
   constexpr double kUnusual = 1e4, kAccounted = 1e3;
+  constexpr double kOpen = 1e6;  // times as steep as usual: nearer than where rounding, ε/σ³, is as large as that
   const double acceleration = parts_.largest(part, at.a()), usual = branches_[part].calm.usual;
   if (usual == 0 || !(acceleration > kUnusual * usual)) return false;
   if (parts_.rests(acceleration, largest(at.a()))) return false;
@@ -59,7 +62,8 @@ bool Consistent::made_of_rounding(const State& at, std::size_t part) {
   problem_.gamma(rows());
   const double loads = parts_.largest(part, moves()), gamma = parts_.largest_row(part, problem_, rows());
   problem_.momentum(at.a(), moves());
-  return acceleration > kAccounted * gamma && parts_.largest(part, moves()) > kAccounted * loads;
+  if (!(acceleration > kAccounted * gamma && parts_.largest(part, moves()) > kAccounted * loads)) return false;
+  return steepness(at.t, part) > kOpen * branches_[part].usual_steepness;
 }
 
 bool turned_round(const Parts& parts, std::size_t part, const Eigen::VectorXd& before, const Eigen::VectorXd& now) {
@@ -142,6 +146,7 @@ void Consistent::expect(double t, std::span<const double> a, double turned, cons
 }
 
 void Consistent::forget_approach() {
+  ++forgotten_;
   for (Branch& of : branches_) of.approach.known = false, of.approach.rate = -1;
 }
 

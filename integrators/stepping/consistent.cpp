@@ -63,12 +63,12 @@ Status Consistent::prepare() {
   return status;
 }
 
-Status Consistent::factor(double t, std::span<const double> b) {
+Status Consistent::factor(double t, Ahead ahead) {
   if (!prepared_) {
     if (Status status = prepare(); !status.ok()) return status;
   }
   const std::span<const double> zeros = span(zeros_);
-  return system_.refresh(t, {}, {}, zeros.first(nv_), zeros.subspan(nv_), b);
+  return system_.refresh(t, {}, {}, zeros.first(nv_), zeros.subspan(nv_), ahead);
 }
 
 Status Consistent::accelerations(double t, std::span<double> z) {
@@ -76,7 +76,7 @@ Status Consistent::accelerations(double t, std::span<double> z) {
   problem_.equations_of_motion(zeros.first(nv_), {}, z.first(nv_));
   for (double& x : z.first(nv_)) x = -x;
   problem_.gamma(z.subspan(nv_));
-  if (Status status = factor(t, z); !status.ok()) return status;
+  if (Status status = factor(t, {z}); !status.ok()) return status;
   return system_.solve(t, z);
 }
 

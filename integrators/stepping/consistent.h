@@ -34,7 +34,7 @@ class Consistent {
   // does.
   Status prepare();
   // Factors [M Gᵀ; G 0] at the point where the problem stands, for b where solve(t, b) comes next.
-  Status factor(double t, std::span<const double> b = {});
+  Status factor(double t, Ahead ahead = {});
   // b ← [M Gᵀ; G 0]⁻¹ b with the factorization at hand.
   Status solve(double t, std::span<double> b) { return system_.solve(t, b); }
 
@@ -72,6 +72,11 @@ class Consistent {
   double steepness(double t, std::size_t part);
   void look(double steepness);  // as was just found
   double amplification() const { return amplification_; }
+  // Of G, where that is square and was factored by itself at last; else 0 (linsolve/linear_solver.h).
+  std::uint64_t orientation() { return system_.jacobian_orientation(); }
+  // How many times as steep as usual, of the mechanism that is most so, as last looked at.
+  double steeper() const { return steeper_; }
+  std::span<const double> signs() const { return span(off_by_one_).subspan(nv_); }  // that steepness() is found with
   double amplification(std::size_t part) const { return branches_[part].amplification; }
   // What of `shift`, the norm of a state's move onto the constraints by δq and then δv, is an error of its own: next to
   // a singular position a part of it, and none of what rounding moves at the steepness looked at, ε/σ and ω ε/σ².
@@ -96,6 +101,7 @@ class Consistent {
   void expect(double t, std::span<const double> a, double turned, const Consistent& other);
   // Coordinates or the data are others: accelerations of before are not to be compared with.
   void forget_approach();
+  int forgotten() const { return forgotten_; }  // times
   // x ← its part along the constraints, M-orthogonally, with the factorization at hand; nv numbers. The problem stands
   // at `at`, before and after.
   Status along_constraints(const State& at, std::span<double> x);
@@ -142,10 +148,11 @@ class Consistent {
   bool prepared_ = false;
   static constexpr int kSeldom = 4;     // steps, of which one is looked at where no singular position is near
   static constexpr double kSteep = 30;  // times the usual steepness: a singular position is near
-  double steepness_ = 0, usual_steepness_ = 0, amplification_ = 1;
+  double steepness_ = 0, usual_steepness_ = 0, amplification_ = 1, steeper_ = 1;
   bool beside_singular_ = false;
   int not_looked_ = 0;  // steps
-  double turned_ = 0;   // rad, by those
+  int forgotten_ = 0;
+  double turned_ = 0;  // rad, by those
   double followed_ = 0;
   // What is known of a mechanism's branch, each by itself; of vectors its components.
   struct Branch {

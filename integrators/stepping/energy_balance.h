@@ -26,11 +26,11 @@ class EnergyBalance {
   // The first sample.
   void begin(const Sample& start);
   // Whether the step that was done is looked at: swings that are followed do not hide their largest kinetic energy in
-  // between.
+  // between. By turns three and five steps apart, or one of eight steps would always be seen at the same place.
   bool due() {
-    constexpr int kApart = 4;
-    if (++since_ < kApart) return false;
+    if (++since_ < apart_) return false;
     since_ = 0;
+    apart_ = kBoth - apart_;
     return true;
   }
   // Its end, where the problem stands. Allocates nothing.
@@ -59,7 +59,8 @@ class EnergyBalance {
   Eigen::VectorXd momentum_;
   std::vector<BodyState> bodies_;
   bool none_ = true, ended_ = false;
-  int since_ = 0;
+  static constexpr int kBoth = 8;
+  int since_ = 0, apart_ = 3;  // steps
 };
 
 }  // namespace poinsot

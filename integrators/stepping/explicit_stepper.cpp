@@ -42,6 +42,7 @@ ExplicitStepper::ExplicitStepper(const RungeKuttaPair& pair, Problem& problem, L
       problem_(problem),
       consistent_(problem, systems.add(Workload::solves), statistics, clock),
       passage_(problem, consistent_),
+      gap_(problem, consistent_),
       rtol_(rtol),
       atol_(atol),
       nv_(static_cast<std::size_t>(problem.nv())),
@@ -221,7 +222,8 @@ void ExplicitStepper::stand_at_end() {
 Status ExplicitStepper::project_end(double& error, double most) {
   const auto count = [&](double shift) {
     error = std::max(error, shift);
-    return settled_ || !(error <= most) ? Status{} : consistent_.refine(next_);
+    if (settled_ || !(error <= most)) return Status{};
+    return consistent_.amplification() > 1 ? consistent_.accelerations(next_) : consistent_.refine(next_);
   };
   const auto shift = [&](std::span<const double> by) { return norm_(by, span(scale_)); };
   if (!settled_) {
@@ -261,8 +263,10 @@ Status ExplicitStepper::complete(double& error, double most) {
     return {};
   }
   if (Status status = project_end(error, most); !status.ok() || !(error <= most)) return status;
-  if (consistent_.leaves_branch(next_)) return {Failure::singular_position, next_.t, {}};
+  if (consistent_.leaves_branch(next_) || gap_.goes_over(state_, next_, settled_))
+    return {Failure::singular_position, next_.t, {}};
   consistent_.follow(next_);
+  gap_.follow(next_, settled_);
   test_stiffness();
   std::swap(state_, next_);
   elsewhere_ = false;

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "integrators/stepping/consistent.h"
+#include "integrators/stepping/narrow_gap.h"
 #include "integrators/stepping/passage.h"
 #include "integrators/stepping/runge_kutta_pair.h"
 #include "integrators/stepping/step_control.h"
@@ -94,6 +95,7 @@ class ExplicitStepper {
   Problem& problem_;
   Consistent consistent_;
   Passage passage_;
+  NarrowGap gap_;
   const double rtol_, atol_;
   const std::size_t nv_;
   const Eigen::Index last_;  // index of k_{s+1}

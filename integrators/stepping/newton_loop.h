@@ -44,7 +44,7 @@ class NewtonLoop {
   // The step to t, for the unknowns z, from what they are. `position` is δq/δa of the step, `q` the vector that
   // positions' rounding is measured by.
   //   residual(r)     writes the residual at z, nv + nc
-  //   matrix(b)       assembles and factors, for b, which is solved for next: Status
+  //   matrix(ahead)   assembles and factors, for what is ahead: Status
   //   correct(delta)  turns the linear system's solution into the correction and applies it to z: Status
   template <class Residual, class Matrix, class Correct>
   Status solve(double t, double position, const Vector& z, const Vector& q, Residual&& residual, Matrix&& matrix,
@@ -61,7 +61,8 @@ class NewtonLoop {
       if (stalled_ && balanced(position, z, q)) return {};
       delta_ = -delta_;
       if (due(refresh_, k, slow_ || !system_.ready())) {
-        if (Status status = matrix(span(delta_)); !status.ok()) return status;
+        if (Status status = matrix(Ahead{span(delta_), refresh_ == Refresh::every_iteration}); !status.ok())
+          return status;
         slow_ = false;
         of_this_step = refresh_ != Refresh::before_step;
       }

@@ -48,6 +48,8 @@ class Passage {
   void stand_on_rows(State& at);
   // The same of a sample, which is refused where it is made of rounding, as singular_position.
   Status complete_sample(State& at);
+  // Whether the last one was made a limit.
+  bool settled() const { return settled_; }
   // How far the last one was moved, δq and then δv; by Consistent, where it was not settled.
   std::span<const double> moved_by() const;
 

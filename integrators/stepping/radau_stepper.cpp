@@ -21,6 +21,7 @@ RadauStepper::RadauStepper(Problem& problem, LinearSystems& systems, double rtol
       filter_(problem, systems.add(), statistics, clock),
       consistent_(problem, systems.add(Workload::solves), statistics, clock),
       passage_(problem, consistent_),
+      gap_(problem, consistent_),
       step_(problem),
       within_(problem),
       rtol_(0.1 * std::pow(rtol, 2.0 / 3)),
@@ -141,8 +142,10 @@ Status RadauStepper::complete(double& error, double most) {
   if (shift > std::max(error, kOfAccount)) consistent_.look(consistent_.steepness(next_.t));
   error = std::max(error, consistent_.error_in(next_, passage_.moved_by(), shift));
   if (!(error <= most)) return {};
-  if (consistent_.leaves_branch(next_)) return {Failure::singular_position, next_.t, {}};
+  if (consistent_.leaves_branch(next_) || gap_.goes_over(state_, next_, passage_.settled()))
+    return {Failure::singular_position, next_.t, {}};
   consistent_.follow(next_);
+  gap_.follow(next_, passage_.settled());
   before_ = state_;
   std::swap(state_, next_);
   Z_before_ = Z_;

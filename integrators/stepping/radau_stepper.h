@@ -25,6 +25,7 @@
 
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/linearization.h"
+#include "integrators/stepping/narrow_gap.h"
 #include "integrators/stepping/passage.h"
 #include "integrators/stepping/step_control.h"
 
@@ -106,6 +107,7 @@ class RadauStepper {
   TimedSystem system_, filter_;
   Consistent consistent_;
   Passage passage_;
+  NarrowGap gap_;
   Linearized step_, within_;               // within_: of samples
   const Linearized* in_solver_ = nullptr;  // whose matrix system_ has factored; filter_'s is always that of step_
   const double rtol_, atol_;

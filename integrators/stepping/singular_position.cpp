@@ -85,7 +85,7 @@ DependentRow most_dependent_row(Problem& problem, int rows, double t, std::span<
 
 NearSingular near_singular_position(Problem& problem, int rows, std::span<const double> q_start, double t,
                                     std::span<const double> q) {
-  constexpr double kNear = 0.05, kThere = 1e-3;
+  constexpr double kNear = 0.05, kThere = 1e-5;
   if (rows < 2 || !UnitRows::has(problem)) return {};
   const Eigen::VectorXd before = UnitRows(problem, 0, q_start).shares();
   const UnitRows here(problem, t, q);

@@ -37,10 +37,10 @@ Status TimedSystem::prepare(Pattern pattern, std::vector<int> unknowns) {
   return explained(0, linear_.analyze(std::move(pattern)));
 }
 
-Status TimedSystem::factor(double t, std::span<const double> b) {
+Status TimedSystem::factor(double t, Ahead ahead) {
   ++statistics_.jacobian_evaluations;
   clock_.lap(Phase::assembly);
-  LinearStatus status = linear_.factor(b);
+  LinearStatus status = linear_.factor(ahead);
   ++statistics_.factorizations;
   clock_.lap(Phase::factor);
   if (status.ok()) [[likely]]

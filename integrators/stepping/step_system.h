@@ -22,21 +22,22 @@ class TimedSystem {
   // Analyses the pattern. Call once, before the clock starts. unknowns[k]: which of the problem's unknowns the system's
   // k-th belongs to, for messages; empty: they are the same.
   Status prepare(Pattern pattern, std::vector<int> unknowns = {});
-  // write(slots, values) sets the matrix; then it is factored, for b where that is known: solve(t, b) then comes next.
+  // write(slots, values) sets the matrix; then it is factored, for what is ahead where that is known.
   // The time up to the call belongs to Phase::other.
   template <class Write>
-  Status refresh(double t, Write&& write, std::span<const double> b = {}) {
+  Status refresh(double t, Write&& write, Ahead ahead = {}) {
     clock_.lap(Phase::other);
     write(linear_.slots(), linear_.values());
-    return factor(t, b);
+    return factor(t, ahead);
   }
   // b ← A⁻¹ b.
   Status solve(double t, std::span<double> b);
   bool ready() const { return linear_.factored(); }
   std::uint64_t orientation() { return linear_.orientation(); }
+  std::uint64_t jacobian_orientation() { return linear_.jacobian_orientation(); }
 
  private:
-  Status factor(double t, std::span<const double> b);
+  Status factor(double t, Ahead ahead);
   Status explained(double t, LinearStatus status) const;
 
   const Problem& problem_;
@@ -60,16 +61,16 @@ class StepSystem : public TimedSystem {
     return TimedSystem::prepare(problem_.pattern(kind_));
   }
   bool ready() const { return TimedSystem::ready() && *revision_ == problem_.revision(); }
-  // Assembles at the problem's point and factors, for b where that is known.
+  // Assembles at the problem's point and factors, for what is ahead where that is known.
   Status refresh(double t, const StepScale& scale, std::span<const double> dq, std::span<const double> a,
-                 std::span<const double> lambda, std::span<const double> b = {}) {
+                 std::span<const double> lambda, Ahead ahead = {}) {
     if (*revision_ != problem_.revision()) {
       if (Status status = prepare(); !status.ok()) return status;
     }
     const auto write = [&](std::span<const int> slots, std::span<double> values) {
       problem_.assemble(kind_, scale, dq, a, lambda, slots, values);
     };
-    return TimedSystem::refresh(t, write, b);
+    return TimedSystem::refresh(t, write, ahead);
   }
 
  private:

@@ -48,9 +48,9 @@ inline void add_block(double* to, int to_step, const double* from, int from_step
 
 // Adds a child's update matrix to the parent's D, L, U and W.
 inline void extend_add(const Front& child, const double* update, const Stretch* stretches, const Front& parent,
-                       double* D, double* W) {
+                       double* front, double* W) {
   const int p = parent.pivots, rows = parent.rows;
-  double *L = D + p * p, *U = L + p * rows;
+  double *D = front + p * parent.others, *L = D + p * p, *U = front;
   const Stretch *first = stretches + child.first_stretch, *outer = stretches + child.first_outer_stretch,
                 *last = stretches + child.last_stretch;
   for (const Stretch* across = first; across != last; ++across) {
@@ -119,19 +119,19 @@ class Mover {
 
 // Columns are written in ascending order, each as a whole vector: what it has too many the next one takes back. So up
 // to kLanes numbers after U, of the next front, are overwritten.
-inline void lay_down(const Places& from, const double* update, const Front& f, double* D, double* W) {
+inline void lay_down(const Places& from, const double* update, const Front& f, double* U, double* W) {
   const Mover top(from.pivots), bottom(from.others);
   static constexpr double kZeros[kLanes] = {};
   const auto column = [&](std::uint8_t k) { return load(k == Places::kNone ? kZeros : update + k * kLanes); };
   const int p = f.pivots, m = f.others;
-  double *L = D + p * p, *U = L + p * kLanes;
-  for (int j = 0; j < p; ++j) store(D + j * p, top(column(from.pivots[j])));
-  for (int j = 0; j < p; ++j) store(L + j * kLanes, bottom(column(from.pivots[j])));
+  double *D = U + p * m, *L = D + p * p;
   for (int j = 0; j < m; ++j) {
     const Vec x = column(from.others[j]);
     store(U + j * p, top(x));
     store(W + j * kLanes, bottom(x));
   }
+  for (int j = 0; j < p; ++j) store(D + j * p, top(column(from.pivots[j])));
+  for (int j = 0; j < p; ++j) store(L + j * kLanes, bottom(column(from.pivots[j])));
 }
 
 template <int Length>

@@ -18,12 +18,12 @@ struct Sized {
 // A whole front, (p + m) × (p + m).
 class Square {
  public:
-  // From the store of D, L and U.
+  // From the store of U, D and L.
   void set(const Front& f, const std::vector<Sized>& store) {
     const int p = f.pivots, m = f.others;
     n_ = index(p + m);
     entries_.assign(n_ * n_, {});
-    const Sized *D = store.data(), *L = D + p * p, *U = L + p * f.rows;
+    const Sized *U = store.data(), *D = U + p * m, *L = D + p * p;
     for (int j = 0; j < p + m; ++j) {
       std::copy_n(j < p ? D + j * p : U + (j - p) * p, p, &(*this)(0, j));
       if (j < p) std::copy_n(L + j * f.rows, m, &(*this)(0, j) + p);

@@ -100,9 +100,9 @@ inline void eliminate_rows(const double* D, double* L, const double* U, const do
 
 // `scratch` has room for p numbers.
 template <int P>
-void eliminate(double* D, const Front& f, const double* W, double* out, Choice& choice, double* scratch, Drift& drift) {
+void eliminate(double* U, const Front& f, const double* W, double* out, Choice& choice, double* scratch, Drift& drift) {
   const int p = P ? P : f.pivots, m = f.others, rows = f.rows;
-  double *L = D + p * p, *U = L + p * rows;
+  double *D = U + p * m, *L = D + p * p;
   bool done = false;
   if constexpr (P > 0) {
     if (!choice.keep) choose(D, P, choice);
@@ -159,16 +159,14 @@ void eliminate(double* D, const Front& f, const double* W, double* out, Choice& 
 // What a solve passes over: the factors, the positions of its fronts' others and the unknowns at all positions
 // (Schedule), the right-hand side by position, where the solution goes by unknown, and room for `rows` and p numbers.
 struct Pass {
-  const double* store;
   const int *unknown, *other;
   double *y, *x, *t;
 };
 
 // Moved: rows are in another order than 0, 1, 2, …, in this one.
 template <int P, bool Moved>
-[[gnu::flatten]] void forward(const Pass& pass, const Front& f, const std::uint16_t* order) {
+[[gnu::flatten]] void forward(const Pass& pass, const Front& f, const double* L, const std::uint16_t* order) {
   const int p = P ? P : f.pivots, rows = f.rows;
-  const double* L = pass.store + f.store + p * p;
   const int* other = pass.other + f.list;
   double *y = pass.y, *own = y + f.first, *t = pass.t;
   if constexpr (P > 0) {
@@ -196,9 +194,9 @@ template <int P, bool Moved>
 // Columns of U and D⁻¹, and right-hand sides, are loaded as whole vectors: what follows a column comes along and is not
 // used.
 template <int P, bool Whole>
-[[gnu::flatten]] void backward(const Pass& pass, const Front& f) {
+[[gnu::flatten]] void backward(const Pass& pass, const Front& f, const double* U) {
   const int p = P ? P : f.pivots;
-  const double *D = pass.store + f.store, *U = D + p * (p + f.rows);
+  const double* D = U + p * f.others;
   const int *unknown = pass.unknown + f.first, *other = pass.other + f.list, *end = other + f.others;
   double *y = pass.y, *own = y + f.first, *t = pass.t;
   const auto give = [&](int k, double x) { own[k] = pass.x[unknown[k]] = x; };

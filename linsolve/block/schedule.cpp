@@ -71,7 +71,7 @@ class Builder {
       f.children = count(s.children);
       f.update = top, top += std::int64_t{f.rows} * f.others;
       s.stack_size = std::max(s.stack_size, top);
-      f.store = s.store_size;
+
       const std::int64_t size = std::int64_t{f.pivots} * (f.pivots + f.rows + f.others);
       if (size >= std::int64_t{1} << 24 || std::int64_t{f.rows} * f.others >= std::int64_t{1} << 24) return false;
       s.store_size += size;
@@ -174,9 +174,9 @@ class Builder {
             front == of && li + 1 >= p && li + 1 < p + f.others && s.other[index(f.list + li + 1 - p)] == pi;
         if (front != of) lj = local(s, front, pj), of = front;
         li = follows ? li + 1 : local(s, front, pi);
-        int target = lj * p + li;
-        if (li >= p) target = p * p + lj * f.rows + li - p;
-        if (lj >= p) target = p * (p + f.rows) + (lj - p) * p + li;
+        int target = p * f.others + lj * p + li;
+        if (li >= p) target = p * (f.others + p) + lj * f.rows + li - p;
+        if (lj >= p) target = (lj - p) * p + li;
         const int length = strip.length;
         if (open == front && strip.source + length == k && static_cast<int>(strip.target) + length == target &&
             length < 255) {

@@ -29,7 +29,6 @@ struct Front {
   // Ends of its strips of length 1, 2, 3, 4 and others; they start where those of the front before end.
   std::array<int, 5> strips;
   int children;         // end of its children, likewise
-  std::int64_t store;   // of D, in doubles
   std::int64_t update;  // of W on the stack
 };
 

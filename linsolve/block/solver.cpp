@@ -128,9 +128,9 @@ class Solver final : public LinearSolver {
   }
 
   // Along with the factorization, where that is with kept pivots.
-  LinearStatus do_factor_for(std::span<const double> b) override {
+  LinearStatus do_factor_for(Ahead ahead) override {
     if (bodies_first() || examines_bodies_first() || !examined() || refined_often()) return do_factor();
-    return factor_kept(b);
+    return factor_kept(ahead);
   }
 
   LinearStatus do_factor() override {
@@ -168,13 +168,13 @@ class Solver final : public LinearSolver {
         return factor_by_klu();
       }
     }
-    return examined() ? factor_kept({}) : factor_fresh();
+    return examined() ? factor_kept() : factor_fresh();
   }
 
-  LinearStatus factor_kept(std::span<const double> b) {
-    const Drift drift = factor_.factor(*schedule_, values_, true, b);
+  LinearStatus factor_kept(Ahead ahead = {}) {
+    const Drift drift = factor_.factor(*schedule_, values_, true, ahead.b, ahead.only && answer_ == Answer::trusted);
     if (!drift.within(kFar)) return factor_fresh();
-    begun_ = !b.empty();
+    begun_ = !ahead.b.empty();
     ++statistics_.refactorizations;
     drift_ = drift;
     answer_ = drift.within(kNear)                                      ? near_
@@ -314,7 +314,7 @@ class Solver final : public LinearSolver {
     if (std::exchange(begun_, false))
       factor_.back(*schedule_, b);
     else
-      factor_.solve(*schedule_, b);
+      solve_in_order(b);
     ++good_;
     if (unseen) return {};
     const double size = residual(b_, b);
@@ -338,6 +338,15 @@ class Solver final : public LinearSolver {
 
   bool passes_unseen() const { return good_ >= kCalm && good_ % (good_ < kLongCalm ? kSeldom : kRarely) != 0; }
 
+  // After a solve that was to be the only one the factors are made again.
+  void solve_in_order(std::span<double> b) {
+    if (!factor_.kept()) {
+      (void)factor_.factor(*schedule_, values_, true);
+      ++statistics_.refactorizations;
+    }
+    factor_.solve(*schedule_, b);
+  }
+
   // Corrects x, whose residual for b_ was found, until the residual is small, a few times at most; the residual.
   double refine(std::span<double> x, std::int64_t& corrections) {
     double size = HUGE_VAL;
@@ -352,7 +361,7 @@ class Solver final : public LinearSolver {
   // x ← x + A⁻¹ r with the last residual r.
   void correct(std::span<double> x) {
     const std::span<double> r = residual_.vector();
-    factor_.solve(*schedule_, r);
+    solve_in_order(r);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += r[i];
   }
 

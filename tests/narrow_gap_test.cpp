@@ -1,0 +1,119 @@
+// Where two branches of a mechanism come close to one another without meeting, methods with error control stay on
+// theirs: a step that would go straight over the gap between them is done in shorter ones.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/scene_reader.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+using std::numbers::pi;
+
+Settings controlled_dynamics(std::string_view integrator, std::string_view formulation, double rtol, double end) {
+  Settings settings = dynamics(formulation, 1e-3, end);
+  settings.integrator = integrator, settings.rtol = rtol, settings.every = end;
+  return settings;
+}
+
+// The last state of body 0.
+struct Ended {
+  Status status;
+  BodyState body;
+};
+Ended ended(const Scene& scene, const Settings& settings) {
+  Ended end;
+  std::vector<BodyState> states(scene.bodies.size());
+  end.status = simulate(scene, settings, [&](const Sample& x) {
+                 x.problem.to_bodies(x.a, states);
+                 end.body = states.back();
+               }).status;
+  return end;
+}
+
+// A slider whose distance from a point beside its line is driven: it comes to the foot of that point but for `gap` and
+// goes back.
+Scene driven_slider(double gap) {
+  const double x = std::hypot(1, gap);
+  return parse_scene(fmt::format(R"j({{"scene": 1, "bodies": [{{"name": "b", "mass": 1, "inertia": [1, 1, 1],
+      "position": [{0:.17g}, 0.5, 0], "velocity": [{1:.17g}, 0, 0]}}],
+      "joints": [{{"type": "translational", "bodies": ["ground", "b"], "point": [{0:.17g}, 0.5, 0], "axis": [1, 0, 0]}}],
+      "drivers": [{{"type": "distance", "bodies": ["ground", "b"], "s_i": [0, 0, 0], "s_j": [0, 0, 0],
+      "length": "sqrt((t-1)^2+{2:.17g})"}}]}})j",
+                                 x, -1 / x, 0.25 + gap * gap),
+                     "slider");
+}
+
+// A crank of length 1 at 2πt + 0.5 and a rod of length 1 + longer to a slider on the crank's axis x.
+Scene slider_crank(double longer) {
+  const double angle = 0.5, rod = 1 + longer, sine = std::sin(angle) / rod, cosine = std::sqrt(1 - sine * sine);
+  const double x = std::cos(angle) + rod * cosine;
+  return parse_scene(fmt::format(R"j({{"scene": 1, "bodies": [
+      {{"name": "crank", "mass": 1, "inertia": [0.1, 0.1, 0.1], "position": [{0:.17g}, {1:.17g}, 0]}},
+      {{"name": "rod", "mass": 1, "inertia": [0.1, 0.1, 0.1], "position": [{2:.17g}, {1:.17g}, 0]}},
+      {{"name": "slider", "mass": 1, "inertia": [0.1, 0.1, 0.1], "position": [{3:.17g}, 0, 0]}}],
+      "joints": [
+      {{"type": "revolute", "bodies": ["ground", "crank"], "point": [0, 0, 0], "axis": [0, 0, 1]}},
+      {{"type": "cylindrical", "bodies": ["crank", "rod"], "point": [{4:.17g}, {5:.17g}, 0], "axis": [0, 0, 1]}},
+      {{"type": "spherical", "bodies": ["rod", "slider"], "point": [{3:.17g}, 0, 0]}},
+      {{"type": "translational", "bodies": ["ground", "slider"], "point": [{3:.17g}, 0, 0], "axis": [1, 0, 0]}}],
+      "drivers": [{{"type": "angle", "bodies": ["ground", "crank"], "axis": [0, 0, 1], "angle": "2*pi*t"}}]}})j",
+                                 0.5 * std::cos(angle), 0.5 * std::sin(angle), 0.5 * (std::cos(angle) + x), x,
+                                 std::cos(angle), std::sin(angle)),
+                     "slider_crank");
+}
+double slider_at(double longer, double t) {
+  const double angle = 2 * pi * t + 0.5, rod = 1 + longer;
+  return std::cos(angle) + std::sqrt(rod * rod - std::sin(angle) * std::sin(angle));
+}
+
+class NarrowGaps : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Controlled, NarrowGaps, ::testing::Values("auto", "dopri5", "dop853", "radau5"),
+                         [](const auto& of) { return std::string(of.param); });
+
+TEST_P(NarrowGaps, ASliderTurnsRoundBeforeItsFoot) {
+  for (const double gap : {1e-3, 3e-4, 1e-4, 1e-5})
+    for (const double rtol : {1e-6, 1e-8, 1e-10})
+      for (const char* formulation : {"rA", "rp", "reps"}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", gap, rtol, formulation));
+        const Ended end = ended(driven_slider(gap), controlled_dynamics(GetParam(), formulation, rtol, 1.7301));
+        if (!end.status.ok()) continue;
+        EXPECT_NEAR(end.body.r.x(), std::hypot(0.7301, gap), 1e-4);
+        EXPECT_NEAR(end.body.rd.x(), 1, 1e-3);
+      }
+}
+
+TEST_P(NarrowGaps, ASliderCrankOfAllButEqualLengths) {
+  for (const double longer : {1e-6, 1e-8, 1e-9})
+    for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+      SCOPED_TRACE(fmt::format("{} {}", longer, rtol));
+      const Ended end = ended(slider_crank(longer), controlled_dynamics(GetParam(), "rA", rtol, 0.5));
+      if (!end.status.ok()) continue;
+      EXPECT_NEAR(end.body.r.x(), slider_at(longer, 0.5), 1e-4);
+    }
+}
+
+// The rod is too short for the crank to pass.
+TEST_P(NarrowGaps, NoMethodPassesWhatCannotBeReached) {
+  for (const double longer : {-1e-6, -1e-8, -1e-9})
+    for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+      SCOPED_TRACE(fmt::format("{} {}", longer, rtol));
+      EXPECT_FALSE(ended(slider_crank(longer), controlled_dynamics(GetParam(), "rA", rtol, 0.5)).status.ok());
+    }
+}
+
+// Where branches cross the motion goes straight on.
+TEST_P(NarrowGaps, ACrossingIsNone) {
+  for (const double rtol : {1e-6, 1e-8}) {
+    const Ended end = ended(slider_crank(0), controlled_dynamics(GetParam(), "rA", rtol, 0.5));
+    ASSERT_TRUE(end.status.ok()) << end.status.message;
+    EXPECT_NEAR(end.body.r.x(), 2 * std::cos(pi + 0.5), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace poinsot::test
