@@ -26,11 +26,12 @@ class EnergyBalance {
   // The first sample.
   void begin(const Sample& start);
   // Whether the step that was done is looked at: swings that are followed do not hide their largest kinetic energy in
-  // between. By turns three and five steps apart, or one of eight steps would always be seen at the same place.
+  // between. Now and then it is one step more, or swings of so many would always be seen at the same place.
   bool due() {
-    if (++since_ < apart_) return false;
-    since_ = 0;
-    apart_ = kBoth - apart_;
+    constexpr int kApart = 4, kLooks = 4;
+    if (++since_ < kApart) return false;
+    looks_ = (looks_ + 1) % kLooks;
+    since_ = looks_ == 0 ? -1 : 0;
     return true;
   }
   // Its end, where the problem stands. Allocates nothing.
@@ -59,8 +60,8 @@ class EnergyBalance {
   Eigen::VectorXd momentum_;
   std::vector<BodyState> bodies_;
   bool none_ = true, ended_ = false;
-  static constexpr int kBoth = 8;
-  int since_ = 0, apart_ = 3;  // steps
+  int since_ = 0;  // steps
+  int looks_ = 0;
 };
 
 }  // namespace poinsot

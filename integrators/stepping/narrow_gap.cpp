@@ -9,7 +9,7 @@
 namespace poinsot {
 namespace {
 
-constexpr double kGapNear = 2;     // times as steep as usual: from there on w is looked at
+constexpr double kGapNear = 4;     // times as steep as usual: from there on w is looked at
 constexpr double kReversed = 0.1;  // of the product of sizes, at least, below 0
 constexpr int kBisections = 40;
 constexpr double kBeside = 0.03;           // rad, of a limit: where the states are that it is made of
@@ -28,13 +28,13 @@ bool NarrowGap::find_way(double t, Vector& w, Vector& way) {
   if (!consistent_.solve(t, span(rhs_)).ok()) return false;
   way = rhs_.head(nv);
   w = -rhs_.tail(nc);
-  Vector sizes = Vector::Zero(static_cast<Eigen::Index>(parts_.count()));
+  sizes_.setZero(static_cast<Eigen::Index>(parts_.count()));
   const auto part_of = [&](Eigen::Index k) {
     return static_cast<Eigen::Index>(parts_.of_row(problem_, static_cast<std::size_t>(k)));
   };
-  for (Eigen::Index k = 0; k < nc; ++k) sizes[part_of(k)] += w[k] * w[k];
+  for (Eigen::Index k = 0; k < nc; ++k) sizes_[part_of(k)] += w[k] * w[k];
   for (Eigen::Index k = 0; k < nc; ++k)
-    if (const double size = sizes[part_of(k)]; size > 0) w[k] /= std::sqrt(size);
+    if (const double size = sizes_[part_of(k)]; size > 0) w[k] /= std::sqrt(size);
   return w.allFinite() && way.allFinite();
 }
 
@@ -64,11 +64,10 @@ bool NarrowGap::goes_over(const State& from, const State& to, bool settled) {
   const bool goes_on = forgotten_ == consistent_.forgotten();
   const std::uint64_t here = rows_change_ ? 0 : consistent_.orientation();
   by_orientation_ = here != 0;
-  if (settled) {
-  } else if (by_orientation_) {
+  if (!settled && by_orientation_) {
     if (!goes_on || (orientation_ == 0 && !from_limit_)) find_orientation(from, to);
     looks = orientation_ != 0 && orientation_ != here;
-  } else if (goes_on && known_) {
+  } else if (!settled && goes_on && known_) {
     w_next_ = w_;
     known_ = find_way(to.t, w_next_, way_next_);
     for (std::size_t part = 0; known_ && part < parts_.count() && !looks; ++part)

@@ -68,7 +68,7 @@ class NarrowGap {
   std::size_t part_ = 0;           // whose w it is
   Vector w_, way_, w_next_, way_next_;
   // On a path: w, δ, e and how far from where that begins, or is a limit.
-  Vector w_here_, way_here_, way_began_, q_, q_moved_, dq_, rhs_, rows_;
+  Vector w_here_, way_here_, way_began_, q_, q_moved_, dq_, rhs_, rows_, sizes_;
   double e_ = 0, moved_ = 0;
 };
 
