@@ -117,8 +117,8 @@ class Mover {
 #endif
 };
 
-// Columns are written in ascending order, each as a whole vector: what it has too many the next one takes back. So up
-// to kLanes numbers after U, of the next front, are overwritten.
+// Columns are written in ascending order, each as a whole vector: what it has too many the next one takes back, and
+// those of L have nothing too many.
 inline void lay_down(const Places& from, const double* update, const Front& f, double* U, double* W) {
   const Mover top(from.pivots), bottom(from.others);
   static constexpr double kZeros[kLanes] = {};

@@ -47,7 +47,7 @@ inline void fetch(const double* from, int doubles) {
 }  // namespace
 
 void Factor::resize(const Schedule& s) {
-  store_.assign(index(s.store_size + kLanes), 0);  // the last front may be laid down as well
+  store_.assign(index(s.store_size + kLanes), 0);  // whole vectors are loaded at its end as well
   stack_.assign(index(s.stack_size), 0);
   update_.assign(index(s.largest_update), 0);
   t_.assign(index(s.largest_rows + s.largest_pivots), 0);

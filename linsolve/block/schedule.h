@@ -6,8 +6,9 @@
 //   [ L  W ]  m other unknowns
 //
 // Fronts are numbered so that children come before their parent (postorder). Factors of a front lie together in
-// `store`: D (p × p), L (rows × p, rows = m padded to full vectors of the machine), U (p × m), columns one after the
-// other. W is rows × m and waits at a fixed place of a stack.
+// `store`: U (p × m), D (p × p), L (rows × p, rows = m padded to full vectors of the machine), columns one after the
+// other: those that a solution is found with on the way back come first. W is rows × m and waits at a fixed place of a
+// stack.
 #pragma once
 
 #include <array>
