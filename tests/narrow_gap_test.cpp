@@ -81,7 +81,7 @@ TEST_P(NarrowGaps, ASliderTurnsRoundBeforeItsFoot) {
       for (const char* formulation : {"rA", "rp", "reps"}) {
         SCOPED_TRACE(fmt::format("{} {} {}", gap, rtol, formulation));
         const Ended end = ended(driven_slider(gap), controlled_dynamics(GetParam(), formulation, rtol, 1.7301));
-        if (!end.status.ok()) continue;
+        ASSERT_TRUE(end.status.ok()) << end.status.message;
         EXPECT_NEAR(end.body.r.x(), std::hypot(0.7301, gap), 1e-4);
         EXPECT_NEAR(end.body.rd.x(), 1, 1e-3);
       }
@@ -92,7 +92,8 @@ TEST_P(NarrowGaps, ASliderCrankOfAllButEqualLengths) {
     for (const double rtol : {1e-6, 1e-8, 1e-10}) {
       SCOPED_TRACE(fmt::format("{} {}", longer, rtol));
       const Ended end = ended(slider_crank(longer), controlled_dynamics(GetParam(), "rA", rtol, 0.5));
-      if (!end.status.ok()) continue;
+      if (longer < 1e-8 && !end.status.ok()) continue;  // stops beside the position
+      ASSERT_TRUE(end.status.ok()) << end.status.message;
       EXPECT_NEAR(end.body.r.x(), slider_at(longer, 0.5), 1e-4);
     }
 }
