@@ -30,6 +30,8 @@ TEST(BeyondAnyPosition, IsACosineBeyondOneOrASquaredDistanceBelowZero) {
               StrEq("constraint 'row' asks for a cosine beyond 1 from t = 2 s on"));
   EXPECT_THAT(found(ConstraintType::DP1, "3 - 3*t", 2.9999, 3.0001),
               StrEq("constraint 'row' asks for a cosine beyond -1 from t = 3 s on"));
+  EXPECT_THAT(found(ConstraintType::DP1, "7", 0, 0), StrEq("constraint 'row' asks for a cosine beyond 1"));
+  EXPECT_THAT(found(ConstraintType::DP1, "6.000000001", 0, 0), StrEq(""));
   EXPECT_THAT(found(ConstraintType::D, "1 - t", 0.5, 1.5),
               StrEq("constraint 'row' asks for a squared distance below 0 from t = 1 s on"));
 }

@@ -107,6 +107,36 @@ TEST_P(NarrowGaps, NoMethodPassesWhatCannotBeReached) {
     }
 }
 
+// With a degree of freedom det G does not tell: the crank turns by itself, and the slider belongs to its angle.
+TEST_P(NarrowGaps, ACrankThatIsFree) {
+  for (const double longer : {1e-4, 1e-6, 1e-8, 1e-9})
+    for (const double rtol : {1e-6, 1e-8}) {
+      SCOPED_TRACE(fmt::format("{} {}", longer, rtol));
+      Scene scene = slider_crank(longer);
+      scene.drivers.clear();
+      const double rate = 6, sine = std::sin(0.5), cosine = std::cos(0.5),
+                   along = std::sqrt(std::pow(1 + longer, 2) - sine * sine);
+      const double speed = -sine * rate * (1 + cosine / along);  // of the slider
+      scene.bodies[0].angular_velocity = {0, 0, rate};
+      scene.bodies[0].velocity = 0.5 * rate * Vector3(-sine, cosine, 0);
+      scene.bodies[1].angular_velocity = {0, 0, -cosine * rate / along};
+      scene.bodies[1].velocity = 0.5 * Vector3(speed - sine * rate, cosine * rate, 0);
+      scene.bodies[2].velocity = {speed, 0, 0};
+      double apart = 0;
+      std::vector<BodyState> states(scene.bodies.size());
+      Settings settings = controlled_dynamics(GetParam(), "rA", rtol, 0.6);
+      settings.every = 0;
+      const Outcome run = simulate(scene, settings, [&](const Sample& x) {
+        x.problem.to_bodies(x.a, states);
+        const Vector3 end = 2 * states[0].r;
+        apart = std::max(apart,
+                         std::abs(states[2].r.x() - end.x() - std::sqrt(std::pow(1 + longer, 2) - end.y() * end.y())));
+      });
+      EXPECT_TRUE(run.status.ok() || longer < 1e-8) << run.status.message;
+      EXPECT_LT(apart, 1e-6);
+    }
+}
+
 // Where branches cross the motion goes straight on.
 TEST_P(NarrowGaps, ACrossingIsNone) {
   for (const double rtol : {1e-6, 1e-8}) {

@@ -49,6 +49,17 @@ TEST(ParallelButForDigits, VelocitiesThatThoseWouldTakeAwayAreRefused) {
   for (const double tilt : {0.0, 1e-11}) EXPECT_EQ(refused(door(tilt)), "") << tilt;
 }
 
+TEST(ParallelButForDigits, APoseThatThoseWouldTurnIsRefused) {
+  const Scene scene = parse_scene(R"j({"scene": 1, "gravity": [0, 0, -9.81],
+      "bodies": [{"name": "door", "mass": 20, "inertia": [3, 5, 2], "position": [0.4, 0, 1]}],
+      "joints": [{"type": "revolute", "bodies": ["ground", "door"], "point": [0, 0, 0], "axis": [0, 0, 1]},
+                 {"type": "revolute", "bodies": ["ground", "door"], "s_i": [0, 0, 2], "s_j": [-0.4, 0, 1],
+                  "axis_i": [1e-7, 0, 1], "axis_j": [1e-7, 1e-9, 1]}]})j",
+                                  "door");
+  EXPECT_THAT(refused(scene),
+              AllOf(HasSubstr("the initial pose violates joint 'revolute2'"), HasSubstr("to more digits")));
+}
+
 TEST(ParallelButForDigits, AtRestItIsSaid) {
   const Outcome run = simulate(door(1e-8, 0), dynamics("rA", 1e-3, 1e-2), {});
   EXPECT_TRUE(run.status.ok());
