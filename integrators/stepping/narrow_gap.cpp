@@ -62,7 +62,10 @@ bool NarrowGap::goes_over(const State& from, const State& to, bool settled) {
   bool looks = settled;
   const std::uint64_t here = rows_change_ ? 0 : consistent_.orientation();
   by_orientation_ = here != 0;
-  if (!settled && problem_.nc() > 0 && forgotten_ != consistent_.forgotten()) find_beginning(from, to);
+  if (!settled && forgotten_ != consistent_.forgotten()) {
+    orientation_ = 0, known_ = false;
+    if (problem_.nc() > 0 && consistent_.goes_on()) find_beginning(from, to);
+  }
   if (!settled && by_orientation_) {
     looks = orientation_ != 0 && orientation_ != here;
   } else if (!settled && known_) {
