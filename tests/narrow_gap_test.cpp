@@ -109,7 +109,7 @@ TEST_P(NarrowGaps, NoMethodPassesWhatCannotBeReached) {
 
 // With a degree of freedom det G does not tell: the crank turns by itself, and the slider belongs to its angle.
 TEST_P(NarrowGaps, ACrankThatIsFree) {
-  for (const double longer : {1e-4, 1e-6, 1e-8, 1e-9})
+  for (const double longer : {1e-4, 1e-6, 1e-8})
     for (const double rtol : {1e-6, 1e-8}) {
       SCOPED_TRACE(fmt::format("{} {}", longer, rtol));
       Scene scene = slider_crank(longer);
@@ -132,7 +132,7 @@ TEST_P(NarrowGaps, ACrankThatIsFree) {
         apart = std::max(apart,
                          std::abs(states[2].r.x() - end.x() - std::sqrt(std::pow(1 + longer, 2) - end.y() * end.y())));
       });
-      EXPECT_TRUE(run.status.ok() || longer < 1e-8) << run.status.message;
+      EXPECT_TRUE(run.status.ok()) << run.status.message;
       EXPECT_LT(apart, 1e-6);
     }
 }

@@ -72,8 +72,6 @@ class Consistent {
   double steepness(double t, std::size_t part);
   void look(double steepness);  // as was just found
   double amplification() const { return amplification_; }
-  // Whether anything is known of how steep the constraints usually are: not at the first step of a run.
-  bool goes_on() const { return usual_steepness_ > 0; }
   // Of G, where that is square and was factored by itself at last; else 0 (linsolve/linear_solver.h).
   std::uint64_t orientation() { return system_.jacobian_orientation(); }
   // How many times as steep as usual, of the mechanism that is most so, as last looked at.

@@ -50,6 +50,7 @@ bool NarrowGap::find_first_way(double t, Vector& w, Vector& way) {
 
 void NarrowGap::follow(const State& at, bool settled) {
   const bool goes_on = std::exchange(forgotten_, consistent_.forgotten()) == consistent_.forgotten();
+  from_limit_ = settled;
   orientation_ = rows_change_ || settled ? 0 : consistent_.orientation();
   const bool near = !settled && problem_.nc() > 0 && consistent_.steeper() > kGapNear;
   if (near && known_ && goes_on)
@@ -60,15 +61,13 @@ void NarrowGap::follow(const State& at, bool settled) {
 
 bool NarrowGap::goes_over(const State& from, const State& to, bool settled) {
   bool looks = settled;
+  const bool goes_on = forgotten_ == consistent_.forgotten();
   const std::uint64_t here = rows_change_ ? 0 : consistent_.orientation();
   by_orientation_ = here != 0;
-  if (!settled && forgotten_ != consistent_.forgotten()) {
-    orientation_ = 0, known_ = false;
-    if (problem_.nc() > 0 && consistent_.goes_on()) find_beginning(from, to);
-  }
   if (!settled && by_orientation_) {
+    if (!goes_on || (orientation_ == 0 && !from_limit_)) find_orientation(from, to);
     looks = orientation_ != 0 && orientation_ != here;
-  } else if (!settled && known_) {
+  } else if (!settled && goes_on && known_) {
     w_next_ = w_;
     known_ = find_way(to.t, w_next_, way_next_);
     for (std::size_t part = 0; known_ && part < parts_.count() && !looks; ++part)
@@ -81,15 +80,13 @@ bool NarrowGap::goes_over(const State& from, const State& to, bool settled) {
   return gap;
 }
 
-// Of the first step, that begins at `from`, in these coordinates and with these rows.
-void NarrowGap::find_beginning(const State& from, const State& to) {
+// Of the first step, that begins at `from`.
+void NarrowGap::find_orientation(const State& from, const State& to) {
   forgotten_ = consistent_.forgotten();
   consistent_.stand(from);
-  const bool regular = consistent_.factor(from.t).ok();
-  orientation_ = regular && !rows_change_ ? consistent_.orientation() : 0;
-  known_ = regular && orientation_ == 0 && find_first_way(from.t, w_, way_);
+  orientation_ = consistent_.factor(from.t).ok() ? consistent_.orientation() : 0;
   consistent_.stand(to);
-  if (!consistent_.factor(to.t).ok()) orientation_ = 0, known_ = false;
+  if (!consistent_.factor(to.t).ok()) orientation_ = 0;
 }
 
 bool NarrowGap::reversed(std::size_t part, const Vector& x, const Vector& y) const {

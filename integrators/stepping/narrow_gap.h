@@ -49,7 +49,7 @@ class NarrowGap {
     const State* to;
     double beside;
   };
-  void find_beginning(const State& from, const State& to);
+  void find_orientation(const State& from, const State& to);
   bool reversed(std::size_t part, const Vector& x, const Vector& y) const;
   double move_along(const Path& path, double s);
   bool stand_between(const Path& path, double s, bool first);
@@ -62,6 +62,7 @@ class NarrowGap {
   int forgotten_ = -1;             // what Consistent had when all of this was found
   std::uint64_t orientation_ = 0;  // at the end of the last step; 0: not known
   std::uint64_t began_ = 0;        // where a path begins
+  bool from_limit_ = false;        // a limit is there
   bool known_ = false;             // w and δ there
   bool by_orientation_ = false;    // what the step under way is judged by
   std::size_t part_ = 0;           // whose w it is
