@@ -4,6 +4,7 @@
 #include <numeric>
 #include <random>
 
+#include "formulations/registry.h"
 #include "linsolve/residual.h"
 #include "tests/support/carried.h"
 #include "tests/support/linear_solver_suite.h"
@@ -178,6 +179,72 @@ TEST(BlockSolver, SoonLeavesLittleOfSlenderBodiesInTurnedFrames) {
         EXPECT_EQ(of_first, carried ? 50 : 0);
         EXPECT_EQ(solver->statistics().refinements, of_first);
       }
+}
+
+// Solutions near that of the start, factorized anew each time.
+struct Course {
+  std::int64_t refinements = 0, later = 0;  // of the first half, of the second
+  double error = 0;                         // of accelerations in the second half, against the largest of them
+};
+Course solve_often(const Scene& scene, std::string_view formulation) {
+  constexpr int kSolves = 400;
+  const StartSystem start(scene, formulation);
+  const SampleSystem& s = start.matrix;
+  const auto solver = linear_solvers().require("block").make();
+  EXPECT_TRUE(prepare(*solver, s).ok());
+  std::mt19937_64 random(1);
+  Course course;
+  for (int k = 0; k < kSolves; ++k) {
+    std::vector<double> x = random_vector(s.pattern.n, random);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = start.solution[i] * (1 + 0.1 * x[i]);
+    const std::vector<long double> exact = s.times(x);
+    std::vector<double> found(exact.begin(), exact.end());
+    EXPECT_TRUE(solver->solve(found).ok());
+    EXPECT_TRUE(solver->factor().ok());
+    if (k < kSolves / 2) {
+      course.refinements = solver->statistics().refinements;
+      continue;
+    }
+    double error = 0, size = 0;
+    for (std::size_t i = 0; i < start.accelerations; ++i)
+      error = std::max(error, std::abs(found[i] - x[i])), size = std::max(size, std::abs(x[i]));
+    course.error = std::max(course.error, error / size);
+  }
+  course.later = solver->statistics().refinements - course.refinements;
+  return course;
+}
+
+void scale_mass(Body& body, double by) {
+  body.mass *= by;
+  body.inertia *= by;
+}
+
+// Milligrams: forces over such masses are rounded more than accelerations. What would be refined for ever is found to
+// be good by masses.
+TEST(BlockSolver, SoonTakesSolutionsOfLightMechanismsAsTheyAre) {
+  for (const char* formulation : {"rA", "reps"}) {
+    SCOPED_TRACE(formulation);
+    Scene scene = loop({4, Frames::random, true, false});
+    for (Body& body : scene.bodies) scale_mass(body, 1e-6);
+    const Course course = solve_often(scene, formulation);
+    EXPECT_GT(course.refinements, 64);
+    EXPECT_LT(course.refinements, 100);
+    EXPECT_EQ(course.later, 0);
+    EXPECT_LT(course.error, 1e-13);
+  }
+}
+
+// Where one body alone is light the others tell how it moves, to the last digit.
+TEST(BlockSolver, RefinesSolutionsOfALightBodyAmongOthers) {
+  Scene scene = scene_of("double_wishbone");
+  scale_mass(scene.bodies[1], 1e-6);
+  for (const FormulationEntry& formulation : formulations()) {
+    SCOPED_TRACE(formulation.name);
+    const Course course = solve_often(scene, formulation.name);
+    EXPECT_EQ(course.refinements, course.later);
+    EXPECT_GT(course.later, 0);
+    EXPECT_LT(course.error, 1e-14);
+  }
 }
 
 }  // namespace

@@ -15,7 +15,8 @@
 //
 // Where the fresh one left more than rounding, solutions are looked at, too: all of them where it left much, else all
 // until they turn out good without refinement. Where too many did not, fronts are made for numbers to stay calm in them
-// (front_tree.h), and if that does not help, pivot blocks are inverted no more (pivots.h).
+// (front_tree.h); if that does not help, pivot blocks are inverted no more (pivots.h); and if that does not, pivots are
+// chosen and solutions judged by masses (accuracy.h).
 //
 // Where this does not lead to a trustworthy answer the same values are handed over to klu, whose word counts, singular
 // included; so are all matrices without a saddle point's symmetric structure (kinematics). Each is counted, and
@@ -28,6 +29,7 @@
 #include "core/check.h"
 #include "core/index.h"
 #include "linsolve/back_ends.h"
+#include "linsolve/block/accuracy.h"
 #include "linsolve/block/cancellation.h"
 #include "linsolve/block/factor.h"
 #include "linsolve/block/fusion.h"
@@ -37,9 +39,7 @@
 #include "linsolve/block/schur.h"
 #include "linsolve/condition.h"
 #include "linsolve/csc_layout.h"
-#include "linsolve/equilibration.h"
 #include "linsolve/finite.h"
-#include "linsolve/residual.h"
 
 namespace poinsot::block {
 namespace {
@@ -48,11 +48,6 @@ constexpr double kSymmetric = 0.9;  // share of mirrored entries: saddle points 
 // Drift of pivots. Growth of rounding errors goes with it at worst: within a decade solutions lose one digit of the
 // three that condition and elimination usually leave free; within three, what refinement brings back in one step.
 constexpr double kNear = 10, kFar = 1e3;
-// Residuals, relative; rounding of a sum of a few terms leaves about 1e-15.
-constexpr double kSmallResidual = 2e-15;  // above, residuals of later solutions are looked at
-constexpr double kGoodResidual = 1e-14;   // above, a solution is refined: about klu's own largest
-constexpr double kFairResidual = 1e-12;   // above, other pivots are tried: refinement would take more than one step
-constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not accepted
 // Part of its size that is left of a pivot. Of 16 digits 10 remain at the first, which refinement makes good, though
 // another order may do without; at the second no more than 6, of which refinement may converge to anything.
 constexpr double kCancelled = 1e-6, kRounding = 1e-10;
@@ -65,7 +60,7 @@ constexpr int kCalm = 8, kSeldom = 7, kLongCalm = 15 * kSeldom, kRarely = 3 * kS
 // Where so many solutions needed refinement, and of those looked at one in so many, numbers that grow within the
 // elimination may be the cause, or inverses of pivot blocks; to do without costs less than that refinement.
 constexpr int kOften = 8, kShare = 10;
-constexpr int kWorthwhile = 64;  // good solutions, after which bodies first are examined
+constexpr int kWorthwhile = 64;  // good solutions, after which bodies first are examined; refined ones, for masses
 constexpr int kRefinements = 3;  // each gains three digits or more of kFairResidual; beyond, they do not converge
 constexpr int kRepairs = 8;      // each fuses all that is bad at the time and costs an analysis
 constexpr int kPatience = 3;     // times in a row that klu has to help before it takes over
@@ -80,6 +75,9 @@ enum class Answer {
   helped,       // by klu; the next values are tried here again
   handed_over,  // by klu, and all that follow
 };
+
+// What is done where too many solutions need refinement: one after the other, while they still do.
+enum class Remedy { none, calm_fronts, substitution, by_masses, exhausted };
 
 // What a fresh factorization is worth.
 enum class Pivots {
@@ -103,7 +101,7 @@ class Solver final : public LinearSolver {
     bool fits = symmetric && schur_.lay_out(pattern, layout_);
     node_ = std::move(pattern.node);
     pattern = {};
-    residual_.resize(layout_);
+    accuracy_.resize(layout_, node_);
     values_.assign(index(layout_.nonzeros()), 0);
     statistics_.nonzeros = layout_.nonzeros();
     klu_.reset();
@@ -120,9 +118,11 @@ class Solver final : public LinearSolver {
 
   bool order() {
     schedule_.reset();  // before another is made beside it
-    schedule_ = schedule_of(layout_, node_, fused_, fronts_);
+    const bool cheap = remedy_ == Remedy::none || by_masses();
+    schedule_ = schedule_of(layout_, node_, fused_, cheap ? Fronts::cheap : Fronts::calm);
     if (!schedule_) return false;
     factor_.resize(*schedule_);
+    if (remedy_ == Remedy::substitution || remedy_ == Remedy::exhausted) factor_.drop_inverses();
     statistics_.factor_nonzeros = schedule_->factor_nonzeros;
     return true;
   }
@@ -149,7 +149,12 @@ class Solver final : public LinearSolver {
     return status;
   }
   bool examines_bodies_first() const { return bodies_first_ == BodiesFirst::unexamined && good_ >= kWorthwhile; }
-  bool refined_often() const { return refined_ >= kOften && refined_ * kShare > looked_at_; }
+  // What is judged by masses need not be as good as before: that begins where it saves more than a few refinements.
+  bool refined_often() const {
+    return refined_ >= (remedy_ == Remedy::substitution ? kWorthwhile : kOften) && refined_ * kShare > looked_at_ &&
+           remedy_ != Remedy::exhausted;
+  }
+  bool by_masses() const { return remedy_ == Remedy::by_masses; }
   // Whether there are pivots to keep.
   bool examined() const {
     return answer_ == Answer::trusted || answer_ == Answer::sampled || answer_ == Answer::checked;
@@ -158,11 +163,11 @@ class Solver final : public LinearSolver {
   LinearStatus factor_in_order() {
     if (answer_ == Answer::handed_over) return factor_by_klu();
     if (refined_often()) {
-      if (fronts_ == Fronts::calm) {
+      looked_at_ = refined_ = 0;
+      remedy_ = Remedy{static_cast<int>(remedy_) + 1};
+      if (remedy_ == Remedy::substitution) {
         factor_.drop_inverses();
       } else {
-        fronts_ = Fronts::calm;
-        looked_at_ = refined_ = 0;
         if (order()) return factor_fresh();
         answer_ = Answer::handed_over;
         return factor_by_klu();
@@ -189,12 +194,7 @@ class Solver final : public LinearSolver {
   LinearStatus factor_fresh() {
     if (!all_finite(values_)) return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
     ++statistics_.factorizations;
-    {
-      Equilibration equilibration;
-      equilibration.resize(layout_.n);
-      (void)equilibration.find(layout_, values_);
-      residual_.measure_by(equilibration.row(), equilibration.col());
-    }
+    accuracy_.measure_by(layout_, values_, by_masses());
     answer_ = Answer::open;
     std::vector<int> bad;
     const std::vector<int> fused = fused_;
@@ -238,11 +238,11 @@ class Solver final : public LinearSolver {
     by_schur_ = 0;
     if (!worthwhile || (answer_ != Answer::trusted && answer_ != Answer::sampled)) return;
     if (!again) schur_.take_values(values_);
-    if (!all_finite(values_) || !schur_.choose(residual_.rows())) return;
+    if (!all_finite(values_) || !schur_.choose(accuracy_.rows())) return;
     (void)schur_.factor(kNear);
     double size = 0;
     const auto solve = looking([&](std::span<double> b) { schur_.solve(b); }, size);
-    for (std::size_t j = 0; j < sizes_.size(); ++j) sizes_[j] = residual_.column(j);
+    for (std::size_t j = 0; j < sizes_.size(); ++j) sizes_[j] = accuracy_.column(j);
     if (examination_.estimate(layout_, values_, solve, sizes_) >= kSingularCondition || size > kSmallResidual) return;
     bodies_first_ = BodiesFirst::serve;
     answer_ = Answer::by_schur;
@@ -250,17 +250,17 @@ class Solver final : public LinearSolver {
 
   // Factorizes, and finds the pivots that may be why the factors are not to be trusted.
   Pivots factor_looking(std::vector<int>& bad) {
-    const std::span<const double> rows = residual_.rows();
+    const std::span<const double> first = first_weights();
     const auto cancelled = [&](std::span<const double> weight, double part) {
       return cancelled_pivots(*schedule_, values_, weight, part);
     };
     constexpr double kNone = 1 / kSingularCondition;
-    Cancelled found = cancelled(rows, kRounding);
+    Cancelled found = cancelled(first, kRounding);
     // Solutions need not tell what is nothing but rounding, and looking at them takes as long as all else.
     const bool trusted = found.least > kNone && trustworthy();
     if (!trusted)
-      found = cancelled(rows, kCancelled);
-    else if (!std::ranges::equal(weight_, rows))
+      found = cancelled(first, kCancelled);
+    else if (!std::ranges::equal(weight_, first))
       found = cancelled(weight_, kRounding);  // above, they may pass for pivots, as of very different masses
     bad = std::move(found.pivots);
     if (!trusted) return Pivots::bad;
@@ -271,19 +271,20 @@ class Solver final : public LinearSolver {
     return cancelled(weight_, kNone).pivots.empty() ? Pivots::doubtful : Pivots::bad;
   }
 
-  // Factorizes with pivots chosen in the units of the equilibrated matrix and, where that does not serve, in those the
-  // condition estimate finds. Finds out whether solutions need refinement.
+  // The units of rows in which pivots are chosen first.
+  std::span<const double> first_weights() const { return by_masses() ? accuracy_.by_masses() : accuracy_.rows(); }
+
+  // Factorizes with pivots chosen in these units; where they do not serve, in those of the equilibrated matrix, and in
+  // those the condition estimate finds. Finds out whether solutions need refinement.
   bool trustworthy() {
-    const std::span<const double> rows = residual_.rows();
-    weight_.assign(rows.begin(), rows.end());
+    const std::span<const double> rows = accuracy_.rows();
     Condition condition;
     condition.resize(layout_.n);
     std::vector<double> x(rows.size());  // sizes of the unknowns, then a solution
-    for (std::size_t j = 0; j < x.size(); ++j) x[j] = residual_.column(j);
     double size = 0;
     std::int64_t corrections = 0;
     const auto solve = looking([&](std::span<double> b) { factor_.solve(*schedule_, b); }, size);
-    for (const bool last : {false, true}) {
+    const auto serves = [&](bool last) {
       factor_.weigh_rows(*schedule_, weight_);
       (void)factor_.factor(*schedule_, values_, false);
       size = 0;
@@ -293,13 +294,23 @@ class Solver final : public LinearSolver {
       std::ranges::transform(rows, x.begin(), [](double row) { return 1 / row; });
       solve(x);
       near_ = size <= kSmallResidual ? Answer::trusted : size <= kLargeResidual ? Answer::sampled : Answer::checked;
-      if (estimate < kSingularCondition &&
-          (size <= kFairResidual || (last && refine(x, corrections) <= kLargeResidual)))
-        return true;
-      std::ranges::transform(condition.rows(), weight_.begin(), [](double w) { return 1 / w; });
-      std::ranges::copy(condition.columns(), x.begin());
+      return estimate < kSingularCondition &&
+             (size <= kFairResidual || (last && refine(x, corrections) <= kLargeResidual));
+    };
+    const auto begin_with = [&](std::span<const double> weight) {
+      weight_.assign(weight.begin(), weight.end());
+      for (std::size_t j = 0; j < x.size(); ++j) x[j] = accuracy_.column(j);
+    };
+    begin_with(first_weights());
+    if (serves(false)) return true;
+    if (by_masses()) {
+      begin_with(rows);
+      if (serves(false)) return true;
     }
-    return false;
+    if (!(statistics_.reciprocal_condition > 0)) return false;
+    std::ranges::transform(condition.rows(), weight_.begin(), [](double w) { return 1 / w; });
+    std::ranges::copy(condition.columns(), x.begin());
+    return serves(true);
   }
 
   LinearStatus do_solve(std::span<double> b) override {
@@ -319,7 +330,7 @@ class Solver final : public LinearSolver {
     if (unseen) return {};
     const double size = residual(b_, b);
     ++looked_at_;
-    if (size <= kGoodResidual) {
+    if (good(size, b)) {
       looked_ = drift_;
       return {};
     }
@@ -330,6 +341,7 @@ class Solver final : public LinearSolver {
       ++refined_;
       return {};
     }
+    ++refined_;
     if (refine(b, statistics_.refinements) <= kLargeResidual) return {};
     std::ranges::copy(b_, b.begin());
     if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
@@ -350,7 +362,7 @@ class Solver final : public LinearSolver {
   // Corrects x, whose residual for b_ was found, until the residual is small, a few times at most; the residual.
   double refine(std::span<double> x, std::int64_t& corrections) {
     double size = HUGE_VAL;
-    for (int step = 0; step < kRefinements && !(size <= kGoodResidual); ++step) {
+    for (int step = 0; step < kRefinements && !good(size, x); ++step) {
       correct(x);
       ++corrections;
       size = residual(b_, x);
@@ -360,13 +372,18 @@ class Solver final : public LinearSolver {
 
   // x ← x + A⁻¹ r with the last residual r.
   void correct(std::span<double> x) {
-    const std::span<double> r = residual_.vector();
+    const std::span<double> r = accuracy_.residual();
     solve_in_order(r);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += r[i];
   }
 
+  // Whether x is good for b_, whose residual was found and has this size.
+  bool good(double size, std::span<const double> x) const {
+    return size <= kGoodResidual || (by_masses() && accuracy_.good_by_masses(size, b_, x));
+  }
+
   double residual(std::span<const double> b, std::span<const double> x) {
-    return residual_.size(layout_, values_, b, x);
+    return accuracy_.size(layout_, values_, b, x);
   }
 
   LinearStatus factor_by_klu() {
@@ -388,7 +405,7 @@ class Solver final : public LinearSolver {
   }
 
   CscLayout layout_;
-  Fronts fronts_ = Fronts::cheap;
+  Remedy remedy_ = Remedy::none;
   std::vector<int> node_, fused_;
   std::shared_ptr<const Schedule> schedule_;
   Factor factor_;
@@ -397,7 +414,7 @@ class Solver final : public LinearSolver {
   Condition examination_;      // of bodies first, which is to allocate nothing within a step
   std::vector<double> sizes_;  // of the unknowns, for it
   std::unique_ptr<LinearSolver> klu_;
-  Residual residual_;
+  Accuracy accuracy_;
   std::vector<double> b_;
   bool begun_ = false;          // the right-hand side to be solved for was eliminated with the factorization
   std::vector<double> weight_;  // of rows in the choice of pivots, within factor_fresh()
@@ -406,7 +423,7 @@ class Solver final : public LinearSolver {
   Drift drift_, looked_;           // of the pivots at hand, and of those whose last solution was seen to be good
   std::int64_t good_ = 0;          // solutions since one was not, as far as was looked
   std::int64_t by_schur_ = 0;      // solutions since bodies first were examined
-  std::int64_t looked_at_ = 0, refined_ = 0;  // solutions of whatever pattern, and those that needed refinement
+  std::int64_t looked_at_ = 0, refined_ = 0;  // solutions since a remedy, and those that needed refinement
   int helped_ = 0;                            // by klu, times in a row
 };
 

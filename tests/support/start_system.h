@@ -24,12 +24,14 @@ struct StartSystem {
         for (int c = 0; c < block.cols; ++c, size += block.rows) slots.push_back(size);
       matrix.values.resize(static_cast<std::size_t>(size));
       problem->assemble(MatrixKind::consistent, {1, 1e-3, 1e-6}, {}, at.a, at.lambda, slots, matrix.values);
+      accelerations = at.a.size();
       solution.assign(at.a.begin(), at.a.end());
       solution.insert(solution.end(), at.lambda.begin(), at.lambda.end());
     });
   }
   SampleSystem matrix;
   std::vector<double> solution;
+  std::size_t accelerations = 0;  // so many unknowns, the first
 };
 
 }  // namespace poinsot::test
