@@ -17,6 +17,7 @@
 #include "formulations/callback_loads.h"
 #include "formulations/elements.h"
 #include "formulations/formulation.h"
+#include "formulations/law_potential.h"
 
 namespace poinsot {
 
@@ -51,6 +52,8 @@ class Configuration {
         followed(elements->followed.size(), 0.0),
         alternate_stood_in(elements->alternates.size(), 2),
         callbacks(elements->model->callbacks.begin(), elements->model->callbacks.end()) {
+    for (const SpringElement& k : elements->springs) stored.emplace_back(k.law);
+    for (const TorsionSpringElement& k : elements->torsions) stored.emplace_back(k.law);
     for (std::size_t k = static_cast<std::size_t>(elements->ground_markers); k < s.size(); ++k) {
       s[k] = elements->markers[k].s_bar.template cast<T>();
     }
@@ -188,6 +191,7 @@ class Configuration {
   std::vector<double> followed;          // the same of angles that are followed
   std::vector<char> alternate_stood_in;  // at the last accepted step, by Elements::alternates; 2: there was none
   mutable std::vector<CallbackLoads> callbacks;  // room for what they are given and give
+  mutable std::vector<LawPotential> stored;      // of springs, then of torsion springs
 
  private:
   static Jet2<T> evaluate(const RightSide& side, const T& t) {

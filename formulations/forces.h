@@ -150,14 +150,15 @@ class Forces {
   static T energy(const C& c) {
     const Elements& e = *c.elements;
     T sum = T(0);
+    LawPotential* stored = c.stored.data();
     for (const SpringElement& k : e.springs) {
       using std::sqrt;
       const T stretch = sqrt(c.span(k.i, k.j, k.p, k.q).squaredNorm()) - T(k.length);
-      sum += potential(k, stretch, c.time);
+      sum += potential(k, *stored++, stretch, c.time);
     }
     for (std::size_t k = 0; k < e.torsions.size(); ++k) {
       const T twist = Torsion<F, T>::angle(c, e.torsions[k], c.twist[k]) - T(e.torsions[k].angle);
-      sum += potential(e.torsions[k], twist, c.time);
+      sum += potential(e.torsions[k], *stored++, twist, c.time);
     }
     return sum;
   }

@@ -5,6 +5,7 @@
 
 #include "core/dual.h"
 #include "formulations/elements.h"
+#include "formulations/law_potential.h"
 
 namespace poinsot {
 
@@ -29,25 +30,19 @@ LawValue<T> spring_force(const ElementLaw& k, const T& x, const T& v, const T& t
   return {F, T(k.stiffness), T(k.damping)};
 }
 
-// ∫ F(s, 0, t) ds between two x, J, to rounding.
-double law_work(const Expression& law, double from, double to, double t);
-// The same from 0 to x, to rounding; of a law without bounds at 0, as c/x^2, from 1 or −1 on the
-// side of x.
-double law_potential(const Expression& law, double x, double t);
-
 template <class T>
-T law_energy(const Expression& law, const T& x, const T& t) {
-  return T(law_potential(law, plain(x), plain(t)));
+T law_energy(LawPotential& stored, const T& x, const T& t) {
+  return T(stored.at(plain(x), plain(t)));
 }
 template <class T>
-Dual<T> law_energy(const Expression& law, const Dual<T>& x, const Dual<T>& t) {
-  return {law_energy(law, x.v, t.v), law.law(Arguments<T>{t.v, x.v, T(0)}).F * x.d};
+Dual<T> law_energy(LawPotential& stored, const Dual<T>& x, const Dual<T>& t) {
+  return {law_energy(stored, x.v, t.v), stored.law().law(Arguments<T>{t.v, x.v, T(0)}).F * x.d};
 }
 
 // The energy stored at x; of a law F(x, v, t) that of F(x, 0, t).
 template <class T>
-T potential(const ElementLaw& k, const T& x, const T& t) {
-  return k.law ? law_energy(*k.law, x, t) : T(0.5 * k.stiffness) * x * x;
+T potential(const ElementLaw& k, LawPotential& stored, const T& x, const T& t) {
+  return k.law ? law_energy(stored, x, t) : T(0.5 * k.stiffness) * x * x;
 }
 
 }  // namespace poinsot

@@ -1,9 +1,8 @@
 // Springs with a law, and runs that come to where a function has no value.
-#include "formulations/spring_law.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "formulations/law_potential.h"
 #include "tests/support/dense_problem.h"
 #include "tests/support/every_way.h"
 #include "tests/support/simulation.h"
@@ -88,7 +87,10 @@ INSTANTIATE_TEST_SUITE_P(All, SpringLaws, testing::Values("rA", "rp", "reps"),
                          [](const auto& formulation) { return std::string(formulation.param); });
 
 TEST(SpringLaw, stores_the_integral_of_its_force) {
-  const auto stored = [](const char* law, double x) { return law_potential(Expression::parse_law(law), x, 2); };
+  const auto stored = [](const char* law, double x) {
+    const Expression F = Expression::parse_law(law);
+    return LawPotential(&F).at(x, 2);
+  };
   EXPECT_NEAR(stored("3*x", -0.5), 0.375, 1e-15);
   EXPECT_NEAR(stored("5*sin(x) + 7*v", 2), 5 * (1 - std::cos(2.0)), 1e-14);
   EXPECT_NEAR(stored("100*max(0, x - 0.3)", 1), 50 * 0.49, 1e-12);
@@ -99,6 +101,10 @@ TEST(SpringLaw, stores_the_integral_of_its_force) {
   EXPECT_NEAR(stored("1e6*min(0, abs(x) - 0.001)", 1), -0.5, 1e-13);
   EXPECT_NEAR(stored("1e6*max(0, 0.001 - abs(x - 0.3))", 1), 1, 1e-12);
   EXPECT_NEAR(stored("1 - 2000*exp(-((x - 0.33)/0.003)^2)", 1), 1 - 6 * std::sqrt(M_PI), 1e-12);
+  // Far from 0, where x is rounded to more than F is.
+  EXPECT_NEAR(stored("0.02*sin(24*x)", 300), 0.02 / 24 * (1 - std::cos(7200.0)), 1e-14);
+  EXPECT_NEAR(stored("sin(x + 1e7)", 50), std::cos(1e7) - std::cos(1e7 + 50), 1e-8);
+  EXPECT_NEAR(stored("2*pi*sin(2*pi*x)/(1.0001 + cos(2*pi*x))", 40.5), std::log(2.0001 / 1e-4), 1e-8);
   // From 0 these are infinite.
   EXPECT_NEAR(stored("0.001/x^2", 2), 0.0005, 1e-17);
   EXPECT_NEAR(stored("0.001/x^2", 1e-3), -0.999, 1e-13);

@@ -10,7 +10,7 @@
 #include "core/conserved_energy.h"
 #include "core/index.h"
 #include "core/mechanisms.h"
-#include "formulations/spring_law.h"
+#include "formulations/law_potential.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
