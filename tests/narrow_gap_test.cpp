@@ -146,5 +146,35 @@ TEST_P(NarrowGaps, ACrossingIsNone) {
   }
 }
 
+// Neither is a link of a milligram that whips round within a microsecond, between a ball joint and a universal joint
+// that is nearly locked: its part in the way out of the constraints is reversed while nothing of size is. Energy is
+// kept.
+TEST_P(NarrowGaps, ALightLinkThatWhipsRoundIsNone) {
+  const Scene scene = parse_scene(R"j({"scene": 1, "gravity": [0, 0, -9.81], "bodies": [
+      {"name": "link", "mass": 1e-06, "inertia": [1.634e-08, 1.634e-08, 1.634e-08], "position": [0.003419, 0.136, -0.07753],
+       "velocity": [0.4988, -0.06576, -0.09334], "angular_velocity": [-0.6888, -0.09384, -3.615]},
+      {"name": "body", "mass": 1, "inertia": [0.05417, 0.09667, 0.1242], "position": [-0.5035, -0.02602, -0.6824],
+       "velocity": [1.926, 0.8053, -1.614], "angular_velocity": [3.156, -0.9542, 1.426]}], "joints": [
+      {"type": "spherical", "bodies": ["ground", "link"], "point": [0, 0, 0]},
+      {"type": "universal", "bodies": ["link", "body"], "point": [0.006839, 0.2719, -0.1551],
+       "axis_i": [0.6054, -0.05958, 0.7937], "axis_j": [0.03613, 0.9982, 0.04737]}]})j",
+                                  "whip");
+  for (const char* formulation : {"rA", "rp", "reps"}) {
+    double first = 0, last = 0, fastest = 0;
+    std::vector<BodyState> states(scene.bodies.size());
+    Settings settings = controlled_dynamics(GetParam(), formulation, 1e-8, 1.3);
+    settings.every = 0;
+    const Outcome run = simulate(scene, settings, [&](const Sample& x) {
+      x.problem.to_bodies(x.a, states);
+      last = x.problem.energy();
+      if (x.t == 0) first = last;
+      fastest = std::max(fastest, states[0].w.norm());
+    });
+    EXPECT_TRUE(run.status.ok()) << formulation << ": " << run.status.message;
+    EXPECT_NEAR(last, first, 1e-4 * std::abs(first)) << formulation;
+    EXPECT_GT(fastest, 1e3) << formulation;
+  }
+}
+
 }  // namespace
 }  // namespace poinsot::test

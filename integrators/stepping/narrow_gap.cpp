@@ -89,9 +89,15 @@ void NarrowGap::find_orientation(const State& from, const State& to) {
   if (!consistent_.factor(to.t).ok()) orientation_ = 0;
 }
 
-bool NarrowGap::reversed(std::size_t part, const Vector& x, const Vector& y) const {
-  const double along = parts_.dot(part, x, y);
-  return along < 0 && along * along > kReversed * kReversed * parts_.dot(part, x, x) * parts_.dot(part, y, y);
+double NarrowGap::product(std::size_t part, const Vector& x, const Vector& y) {
+  momentum_.resize(y.size());
+  problem_.momentum(span(y), span(momentum_));
+  return parts_.dot(part, x, momentum_);
+}
+
+bool NarrowGap::reversed(std::size_t part, const Vector& x, const Vector& y) {
+  const double along = product(part, x, y);
+  return along < 0 && along * along > kReversed * kReversed * product(part, x, x) * product(part, y, y);
 }
 
 // A path at s, 0 to 1: from one end of a step to the other, by velocities and accelerations at both, or by those of a
@@ -129,7 +135,7 @@ bool NarrowGap::stand_between(const Path& path, double s, bool first) {
       for (std::size_t part = part_ = 0; part < parts_.count(); ++part)
         if (slope(part, way_here_) < slope(part_, way_here_)) part_ = part;
     }
-    if (k == 0) moved_ = std::sqrt(parts_.dot(part_, dq_, dq_));
+    if (k == 0) moved_ = std::sqrt(product(part_, dq_, dq_));
     problem_.position_residual(span(rows_));
     e_ = 0;
     for (Eigen::Index i = 0; i < nc; ++i)
@@ -146,8 +152,8 @@ bool NarrowGap::stand_between(const Path& path, double s, bool first) {
   return true;
 }
 
-double NarrowGap::slope(std::size_t part, const Vector& way) const {
-  return 1 / std::sqrt(parts_.dot(part, way, way));
+double NarrowGap::slope(std::size_t part, const Vector& way) {
+  return 1 / std::sqrt(product(part, way, way));
 }
 
 // At the distance ξ from where wᵀG vanishes wᵀΦ differs by H ξ²/2 and wᵀG is H ξ, 1/|δ|; H is about what brings it from
@@ -162,7 +168,7 @@ bool NarrowGap::is_gap(const Path& path) {
     w_here_ = w_, way_began_ = way_;
   }
   const auto beyond = [&] {
-    return by_orientation_ ? consistent_.orientation() != began_ : parts_.dot(part_, way_here_, way_began_) < 0;
+    return by_orientation_ ? consistent_.orientation() != began_ : product(part_, way_here_, way_began_) < 0;
   };
   if (!stand_between(path, 1, false)) return true;
   if (!beyond()) return false;

@@ -42,7 +42,10 @@ class NarrowGap {
 
   bool find_first_way(double t, Vector& w, Vector& way);
   bool find_way(double t, Vector& w, Vector& way);
-  double slope(std::size_t part, const Vector& way) const;
+  // xᵀM y. By it δ of the next w is along that of the one before where nothing has moved; by xᵀy that of a light body,
+  // which whips round, may seem to be reversed.
+  double product(std::size_t part, const Vector& x, const Vector& y);
+  double slope(std::size_t part, const Vector& way);
   // From a state to another one or, of a limit, for a time to either side of it.
   struct Path {
     const State& from;
@@ -50,7 +53,7 @@ class NarrowGap {
     double beside;
   };
   void find_orientation(const State& from, const State& to);
-  bool reversed(std::size_t part, const Vector& x, const Vector& y) const;
+  bool reversed(std::size_t part, const Vector& x, const Vector& y);
   double move_along(const Path& path, double s);
   bool stand_between(const Path& path, double s, bool first);
   bool is_gap(const Path& path);
@@ -68,7 +71,7 @@ class NarrowGap {
   std::size_t part_ = 0;           // whose w it is
   Vector w_, way_, w_next_, way_next_;
   // On a path: w, δ, e and how far from where that begins, or is a limit.
-  Vector w_here_, way_here_, way_began_, q_, q_moved_, dq_, rhs_, rows_, sizes_;
+  Vector w_here_, way_here_, way_began_, q_, q_moved_, dq_, rhs_, rows_, sizes_, momentum_;
   double e_ = 0, moved_ = 0;
 };
 
