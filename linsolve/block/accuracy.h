@@ -26,6 +26,9 @@ inline constexpr double kSmallResidual = 2e-15;  // above, residuals of later so
 inline constexpr double kGoodResidual = 1e-14;   // above, a solution is refined: about klu's own largest
 inline constexpr double kFairResidual = 1e-12;   // above, other pivots are tried: refinement would take more than one
                                                  // step
+// Where nothing helps and all solutions would be refined, up to here they are good enough: klu's own largest along
+// motions of planar loops are 2e-15 to 6e-13.
+inline constexpr double kGoodEnough = 5e-14;
 inline constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not accepted
 
 class Accuracy {

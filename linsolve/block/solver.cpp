@@ -379,7 +379,8 @@ class Solver final : public LinearSolver {
 
   // Whether x is good for b_, whose residual was found and has this size.
   bool good(double size, std::span<const double> x) const {
-    return size <= kGoodResidual || (by_masses() && accuracy_.good_by_masses(size, b_, x));
+    return size <= (remedy_ == Remedy::exhausted ? kGoodEnough : kGoodResidual) ||
+           (by_masses() && accuracy_.good_by_masses(size, b_, x));
   }
 
   double residual(std::span<const double> b, std::span<const double> x) {
