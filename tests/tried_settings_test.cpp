@@ -78,6 +78,22 @@ TEST(TriedSettings, ThatDoNotHelpAreSaidNotTo) {
             "at t = 0.58 s it stops; try a smaller step (not all tried; without success: --max-iterations 100)");
 }
 
+// Steps of a millisecond go over where two bodies that attract each other meet, to nowhere, as they say themselves.
+TEST(TriedSettings, AreNotStepsThatGoOverWhereAForceGrowsWithoutBound) {
+  Scene scene;
+  Body& body = scene.bodies.emplace_back();
+  body.name = "comet", body.mass = 1, body.inertia = Matrix3::Identity(), body.position = {1, 0, 0};
+  Spring sun;
+  sun.name = "sun", sun.j = 0, sun.law = Expression::parse_law("1/x^2");
+  scene.forces.push_back(sun);
+  Settings settings = dynamics("rA", 1e-3, 2);
+  settings.integrator = "dop853";
+  const std::string message = told(scene, settings);
+  EXPECT_THAT(message, ::testing::HasSubstr("tried without success"));
+  EXPECT_THAT(message, ::testing::HasSubstr("--integrator rattle"));
+  EXPECT_THAT(message, ::testing::Not(::testing::HasSubstr("it goes on")));
+}
+
 TEST(TriedSettings, OfALongRunAreNotTried) {
   const Settings settings = kinematics("rA", 1e-7, 1);
   Outcome outcome;

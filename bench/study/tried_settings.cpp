@@ -81,7 +81,9 @@ std::vector<Candidate> candidates(const Settings& given, const Status& status, b
       for (const char* other : {"dop853", "radau5"}) add_integrator(other);
     // Steps of fixed length go over what drivers ask for that no position has.
     if (controls && !driven) add_integrator("rattle");
-    if (given.formulation != "rA") add("--formulation rA", [](Settings& s) { s.formulation = "rA"; });
+    for (const char* other : {"rA", "rp"})
+      if (given.formulation != other)
+        add(fmt::format("--formulation {}", other), [other](Settings& s) { s.formulation = other; });
   } else if (status.failure == Failure::singular_position) {
     add("--analysis dynamics --integrator dop853", [](Settings& s) {
       s.analysis = Analysis::dynamics;
@@ -101,8 +103,11 @@ double tried_end(const Settings& settings, const Status& stopped) {
   return std::min(settings.end, stopped.time + beyond);
 }
 
+// Steps of a fixed length go over much that error control stops at, as where a force grows without bound: where they
+// have more to tell than the run that stopped had, nobody knows where they lead.
 enum class Trial { leads_on, stops, given_up };
-Trial tried(const Scene& scene, Settings settings, double end, double most_steps) {
+Trial tried(const Scene& scene, Settings settings, double end, double most_steps,
+            const std::vector<std::string>* told) {
   settings.end = end;
   const bool fixed = !chooses_steps(settings);
   if (fixed) {
@@ -117,6 +122,8 @@ Trial tried(const Scene& scene, Settings settings, double end, double most_steps
       if (++taken > most_steps) throw TooLong();
     });
     if (outcome.status.failure == Failure::interrupted) return Trial::given_up;
+    const auto was_told = [&](const std::string& notice) { return std::ranges::find(*told, notice) != told->end(); };
+    if (fixed && told && !std::ranges::all_of(outcome.notices, was_told)) return Trial::stops;
     return outcome.status.ok() ? Trial::leads_on : Trial::stops;
   } catch (const InputError&) {  // as a method refuses a formulation
     return Trial::stops;
@@ -142,8 +149,9 @@ void try_settings(const Scene& scene, const Settings& settings, Outcome& outcome
   };
   std::vector<std::string> stopped;
   bool all = true;
+  const std::vector<std::string>* told = chooses_steps(settings) ? &outcome.notices : nullptr;
   for (const Candidate& candidate : candidates(settings, status, !scene.drivers.empty())) {
-    switch (tried(scene, candidate.settings, end, most_steps)) {
+    switch (tried(scene, candidate.settings, end, most_steps, told)) {
       case Trial::leads_on:
         put(fmt::format("{} with {} it goes on, as was tried up to t = {:.4g} s", alone ? ";" : ", or", candidate.named,
                         end));

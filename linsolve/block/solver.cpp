@@ -15,8 +15,8 @@
 //
 // Where the fresh one left more than rounding, solutions are looked at, too: all of them where it left much, else all
 // until they turn out good without refinement. Where too many did not, fronts are made for numbers to stay calm in them
-// (front_tree.h); if that does not help, pivot blocks are inverted no more (pivots.h); and if that does not, pivots are
-// chosen and solutions judged by masses (accuracy.h).
+// (front_tree.h); if that does not help, pivot blocks are inverted no more (pivots.h); if that does not, pivots are
+// chosen by masses (mass_units.h), and a little more is left than before.
 //
 // Where this does not lead to a trustworthy answer the same values are handed over to klu, whose word counts, singular
 // included; so are all matrices without a saddle point's symmetric structure (kinematics). Each is counted, and
@@ -29,17 +29,19 @@
 #include "core/check.h"
 #include "core/index.h"
 #include "linsolve/back_ends.h"
-#include "linsolve/block/accuracy.h"
 #include "linsolve/block/cancellation.h"
 #include "linsolve/block/factor.h"
 #include "linsolve/block/fusion.h"
 #include "linsolve/block/graph.h"
+#include "linsolve/block/mass_units.h"
 #include "linsolve/block/schedule.h"
 #include "linsolve/block/schedules.h"
 #include "linsolve/block/schur.h"
 #include "linsolve/condition.h"
 #include "linsolve/csc_layout.h"
+#include "linsolve/equilibration.h"
 #include "linsolve/finite.h"
+#include "linsolve/residual.h"
 
 namespace poinsot::block {
 namespace {
@@ -48,6 +50,14 @@ constexpr double kSymmetric = 0.9;  // share of mirrored entries: saddle points 
 // Drift of pivots. Growth of rounding errors goes with it at worst: within a decade solutions lose one digit of the
 // three that condition and elimination usually leave free; within three, what refinement brings back in one step.
 constexpr double kNear = 10, kFar = 1e3;
+// Residuals, relative; rounding of a sum of a few terms leaves about 1e-15.
+constexpr double kSmallResidual = 2e-15;  // above, residuals of later solutions are looked at
+constexpr double kGoodResidual = 1e-14;   // above, a solution is refined: about klu's own largest
+constexpr double kFairResidual = 1e-12;   // above, other pivots are tried: refinement would take more than one step
+constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not accepted
+// Where all else was of no use and all solutions would be refined, up to here they are good: klu's own largest along
+// motions of planar loops are 2e-15 to 6e-13.
+constexpr double kGoodEnough = 5e-14;
 // Part of its size that is left of a pivot. Of 16 digits 10 remain at the first, which refinement makes good, though
 // another order may do without; at the second no more than 6, of which refinement may converge to anything.
 constexpr double kCancelled = 1e-6, kRounding = 1e-10;
@@ -101,7 +111,7 @@ class Solver final : public LinearSolver {
     bool fits = symmetric && schur_.lay_out(pattern, layout_);
     node_ = std::move(pattern.node);
     pattern = {};
-    accuracy_.resize(layout_, node_);
+    residual_.resize(layout_);
     values_.assign(index(layout_.nonzeros()), 0);
     statistics_.nonzeros = layout_.nonzeros();
     klu_.reset();
@@ -149,7 +159,7 @@ class Solver final : public LinearSolver {
     return status;
   }
   bool examines_bodies_first() const { return bodies_first_ == BodiesFirst::unexamined && good_ >= kWorthwhile; }
-  // What is judged by masses need not be as good as before: that begins where it saves more than a few refinements.
+  // By masses more may be left than before: it begins where it saves more than a few refinements.
   bool refined_often() const {
     return refined_ >= (remedy_ == Remedy::substitution ? kWorthwhile : kOften) && refined_ * kShare > looked_at_ &&
            remedy_ != Remedy::exhausted;
@@ -194,7 +204,13 @@ class Solver final : public LinearSolver {
   LinearStatus factor_fresh() {
     if (!all_finite(values_)) return {LinearFailure::not_finite, -1, "the matrix has an entry that is not finite"};
     ++statistics_.factorizations;
-    accuracy_.measure_by(layout_, values_, by_masses());
+    {
+      Equilibration equilibration;
+      equilibration.resize(layout_.n);
+      (void)equilibration.find(layout_, values_);
+      residual_.measure_by(equilibration.row(), equilibration.col());
+      if (by_masses()) by_masses_ = mass_units(layout_, values_, node_, equilibration.col());
+    }
     answer_ = Answer::open;
     std::vector<int> bad;
     const std::vector<int> fused = fused_;
@@ -238,11 +254,11 @@ class Solver final : public LinearSolver {
     by_schur_ = 0;
     if (!worthwhile || (answer_ != Answer::trusted && answer_ != Answer::sampled)) return;
     if (!again) schur_.take_values(values_);
-    if (!all_finite(values_) || !schur_.choose(accuracy_.rows())) return;
+    if (!all_finite(values_) || !schur_.choose(residual_.rows())) return;
     (void)schur_.factor(kNear);
     double size = 0;
     const auto solve = looking([&](std::span<double> b) { schur_.solve(b); }, size);
-    for (std::size_t j = 0; j < sizes_.size(); ++j) sizes_[j] = accuracy_.column(j);
+    for (std::size_t j = 0; j < sizes_.size(); ++j) sizes_[j] = residual_.column(j);
     if (examination_.estimate(layout_, values_, solve, sizes_) >= kSingularCondition || size > kSmallResidual) return;
     bodies_first_ = BodiesFirst::serve;
     answer_ = Answer::by_schur;
@@ -272,12 +288,12 @@ class Solver final : public LinearSolver {
   }
 
   // The units of rows in which pivots are chosen first.
-  std::span<const double> first_weights() const { return by_masses() ? accuracy_.by_masses() : accuracy_.rows(); }
+  std::span<const double> first_weights() const { return by_masses() ? by_masses_ : residual_.rows(); }
 
   // Factorizes with pivots chosen in these units; where they do not serve, in those of the equilibrated matrix, and in
   // those the condition estimate finds. Finds out whether solutions need refinement.
   bool trustworthy() {
-    const std::span<const double> rows = accuracy_.rows();
+    const std::span<const double> rows = residual_.rows();
     Condition condition;
     condition.resize(layout_.n);
     std::vector<double> x(rows.size());  // sizes of the unknowns, then a solution
@@ -299,7 +315,7 @@ class Solver final : public LinearSolver {
     };
     const auto begin_with = [&](std::span<const double> weight) {
       weight_.assign(weight.begin(), weight.end());
-      for (std::size_t j = 0; j < x.size(); ++j) x[j] = accuracy_.column(j);
+      for (std::size_t j = 0; j < x.size(); ++j) x[j] = residual_.column(j);
     };
     begin_with(first_weights());
     if (serves(false)) return true;
@@ -330,7 +346,7 @@ class Solver final : public LinearSolver {
     if (unseen) return {};
     const double size = residual(b_, b);
     ++looked_at_;
-    if (good(size, b)) {
+    if (good(size)) {
       looked_ = drift_;
       return {};
     }
@@ -362,7 +378,7 @@ class Solver final : public LinearSolver {
   // Corrects x, whose residual for b_ was found, until the residual is small, a few times at most; the residual.
   double refine(std::span<double> x, std::int64_t& corrections) {
     double size = HUGE_VAL;
-    for (int step = 0; step < kRefinements && !good(size, x); ++step) {
+    for (int step = 0; step < kRefinements && !good(size); ++step) {
       correct(x);
       ++corrections;
       size = residual(b_, x);
@@ -372,19 +388,15 @@ class Solver final : public LinearSolver {
 
   // x ← x + A⁻¹ r with the last residual r.
   void correct(std::span<double> x) {
-    const std::span<double> r = accuracy_.residual();
+    const std::span<double> r = residual_.vector();
     solve_in_order(r);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += r[i];
   }
 
-  // Whether x is good for b_, whose residual was found and has this size.
-  bool good(double size, std::span<const double> x) const {
-    return size <= (remedy_ == Remedy::exhausted ? kGoodEnough : kGoodResidual) ||
-           (by_masses() && accuracy_.good_by_masses(size, b_, x));
-  }
+  bool good(double size) const { return size <= (remedy_ < Remedy::by_masses ? kGoodResidual : kGoodEnough); }
 
   double residual(std::span<const double> b, std::span<const double> x) {
-    return accuracy_.size(layout_, values_, b, x);
+    return residual_.size(layout_, values_, b, x);
   }
 
   LinearStatus factor_by_klu() {
@@ -415,10 +427,11 @@ class Solver final : public LinearSolver {
   Condition examination_;      // of bodies first, which is to allocate nothing within a step
   std::vector<double> sizes_;  // of the unknowns, for it
   std::unique_ptr<LinearSolver> klu_;
-  Accuracy accuracy_;
+  Residual residual_;
   std::vector<double> b_;
-  bool begun_ = false;          // the right-hand side to be solved for was eliminated with the factorization
-  std::vector<double> weight_;  // of rows in the choice of pivots, within factor_fresh()
+  bool begun_ = false;             // the right-hand side to be solved for was eliminated with the factorization
+  std::vector<double> by_masses_;  // units of rows
+  std::vector<double> weight_;     // of rows in the choice of pivots, within factor_fresh()
   Answer answer_ = Answer::open;
   Answer near_ = Answer::trusted;  // with pivots near those of the last fresh factorization, by what that one left
   Drift drift_, looked_;           // of the pivots at hand, and of those whose last solution was seen to be good
