@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/index.h"
+
 namespace poinsot {
 namespace {
 
@@ -130,6 +132,15 @@ void tell_axes(const Model& model, std::vector<std::string>& sentences) {
   if (doubts > 0) sentences.push_back(first);
 }
 
+void tell_springs(const Model& model, std::vector<std::string>& sentences) {
+  for (const Spring& spring : model.springs)
+    if (const double F = force_without_direction(model, spring); F != 0)
+      sentences.push_back(fmt::format(
+          "force '{}' is {:.3g} N between ends that are at one point, where it has no direction: it acts in "
+          "none there; start with its ends apart",
+          spring.name, std::abs(F)));
+}
+
 const double kSquareOverflows = std::sqrt(std::numeric_limits<double>::max());
 
 std::string too_large(const std::string& whose, std::string_view what, double size) {
@@ -137,6 +148,18 @@ std::string too_large(const std::string& whose, std::string_view what, double si
 }
 
 }  // namespace
+
+double force_without_direction(const Model& model, const Spring& spring) {
+  constexpr double kAtOne = 1e-12;  // of the places of its ends
+  const auto place = [&](int body, const Vector3& s) -> Vector3 {
+    return body == kGround ? s : model.bodies[index(body)].position + model.bodies[index(body)].orientation * s;
+  };
+  const Vector3 from = place(spring.i, spring.s_i), to = place(spring.j, spring.s_j);
+  if ((to - from).norm() > kAtOne * std::max(from.norm(), to.norm())) return 0;
+  const double x = -spring.length,
+               F = spring.law ? spring.law->law(Arguments<double>{0, x, 0}).F : spring.stiffness * x;
+  return std::isfinite(F) ? F : 0;
+}
 
 std::string overflowing_length(const Model& model) {
   for (std::size_t k = 0; k < model.rows.size(); ++k) {
@@ -192,6 +215,7 @@ std::vector<std::string> scene_doubts(const Model& model) {
   tell_masses(model, sentences);
   tell_lengths(model, sentences);
   tell_axes(model, sentences);
+  tell_springs(model, sentences);
   if (const std::string overflow = overflowing(model); !overflow.empty()) sentences.push_back(overflow);
   return sentences;
 }

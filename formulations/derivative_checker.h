@@ -14,6 +14,7 @@
 
 #include "core/check.h"
 #include "core/dual.h"
+#include "core/scene_doubts.h"
 #include "formulations/derivative_check.h"
 #include "formulations/mechanism.h"
 #include "formulations/model_part.h"
@@ -191,7 +192,8 @@ std::vector<DerivativeCheck> check_derivatives_in(const Model& model, std::span<
   };
   for (const PointForce& element : model.point_forces) force(element, element.name);
   for (const Torque& element : model.torques) force(element, element.name);
-  for (const Spring& element : model.springs) force(element, element.name);
+  for (const Spring& element : model.springs)
+    if (force_without_direction(model, element) == 0) force(element, element.name);
   for (const TorsionElement& element : model.torsions) force(element, element.spring.name);
   for (const LinearDrag& element : model.drags) force(element, element.name);
   for (const CallbackForce& element : model.callbacks) {

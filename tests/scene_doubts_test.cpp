@@ -53,6 +53,22 @@ TEST(SceneDoubts, are_moments_that_no_body_has) {
   EXPECT_THAT(doubts(scene), ElementsAre(testing::MatchesRegex("body 'a' .*; 1 more like it")));
 }
 
+TEST(SceneDoubts, are_springs_that_push_from_one_point) {
+  Scene scene = two_rods();
+  Spring spring;
+  spring.name = "strut", spring.i = 0, spring.j = 1, spring.s_i = {0.5, 0, 0}, spring.s_j = {-0.5, 0, 0};
+  spring.stiffness = 100;
+  scene.forces = {spring};
+  EXPECT_THAT(doubts(scene), ElementsAre());
+  spring.length = 0.5;
+  scene.forces = {spring};
+  EXPECT_THAT(doubts(scene), ElementsAre("force 'strut' is 50 N between ends that are at one point, where it has no "
+                                         "direction: it acts in none there; start with its ends apart"));
+  spring.s_j.y() = 1e-6;
+  scene.forces = {spring};
+  EXPECT_THAT(doubts(scene), ElementsAre());
+}
+
 TEST(SceneDoubts, are_masses_and_lengths_far_apart) {
   Scene scene = two_rods();
   scene.bodies[1].mass = 1e6;

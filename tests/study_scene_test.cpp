@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "bench/study/scene_check.h"
+#include "bench/study/scene_check_text.h"
 #include "bench/study/scene_waste.h"
 #include "bench/study/startable_scene.h"
 #include "core/input_error.h"
@@ -12,6 +13,7 @@
 namespace poinsot::test {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -61,6 +63,29 @@ TEST(SceneCheck, tells_a_redundant_row_from_one_that_contradicts) {
   ASSERT_EQ(velocity.rank.conflicts.size(), 1u);
   EXPECT_EQ(velocity.rank.conflicts[0].level, Conflict::Level::velocity);
   EXPECT_NEAR(velocity.rank.conflicts[0].by, 1.5, 1e-12);
+}
+
+TEST(SceneCheck, says_of_a_row_that_nothing_satisfies_near_that_it_has_no_gradient) {
+  const study::SceneCheck found = study::check_scene(parse_scene(R"j({"scene": 1, "bodies": [
+      {"name": "a", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]}], "constraints": [
+      {"type": "D", "name": "rod", "bodies": ["ground", "a"], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "f": 0.04}]})j",
+                                                                 "rod.json"));
+  EXPECT_FALSE(found.sound());
+  EXPECT_THAT(study::check_text(found), HasSubstr("constraint 'rod' is violated and has no "
+                                                  "gradient here: no way leads to where it holds\n"));
+}
+
+// Undefined as its direction is, the derivatives of its force are not compared; that is told.
+TEST(SceneCheck, tells_of_a_spring_without_direction) {
+  const study::SceneCheck found = study::check_scene(parse_scene(R"j({"scene": 1, "bodies": [
+      {"name": "a", "mass": 1, "inertia": [1, 1, 1], "position": [0, 0, 0]}], "forces": [
+      {"type": "spring", "name": "strut", "bodies": ["ground", "a"], "s_i": [0, 0, 0], "s_j": [0, 0, 0], "length": 0.5,
+       "stiffness": 100}]})j",
+                                                                 "strut.json"));
+  EXPECT_TRUE(found.sound());
+  EXPECT_EQ(found.derivatives, 0u);
+  EXPECT_THAT(found.notices,
+              Contains(HasSubstr("force 'strut' (/forces/0) is 50 N between ends that are at one point")));
 }
 
 TEST(SceneCheck, keeps_why_no_run_can_start) {

@@ -76,15 +76,19 @@ void add_constraints(std::string& text, const SceneCheck& found) {
     text += fmt::format("  {} dependent rows in a mechanism so connected: what each follows from is not worked out\n",
                         analysis.dependent.size());
   const auto from = [&](const Dependency& d) { return analysis.named ? groups_text(model, d.others) : "other rows"; };
+  const auto alone = [&](const Dependency& d) { return analysis.named && d.others.empty(); };
   const auto conflict_of = [&](const Dependency& d) { return std::ranges::find(conflicts, d.row, &Conflict::row); };
   for (const Dependency& d : analysis.dependent)
     if (conflict_of(d) == conflicts.end())
-      text += fmt::format("  {} follows from {}\n", describe_row(model, d.row), from(d));
+      text += fmt::format("  {} {}\n", describe_row(model, d.row),
+                          alone(d) ? "has no gradient here" : "follows from " + from(d));
   text += fmt::format("conflicting constraints: {}\n", conflicts.empty() ? "none" : counted(conflicts.size(), "row"));
   for (const Dependency& d : analysis.dependent)
     if (const auto conflict = conflict_of(d); conflict != conflicts.end())
-      text += fmt::format("  {} contradicts {}: off by {} where those hold\n", describe_row(model, d.row), from(d),
-                          describe(*conflict));
+      text += alone(d) ? fmt::format("  {} is violated and has no gradient here: no way leads to where it holds\n",
+                                     describe_row(model, d.row))
+                       : fmt::format("  {} contradicts {}: off by {} where those hold\n", describe_row(model, d.row),
+                                     from(d), describe(*conflict));
 }
 
 std::vector<int> undetermined_rows(const SceneCheck& found) {
