@@ -20,40 +20,46 @@ bool works(const Row& row) {
   return !row.f.is_constant() || (row.alternate && !row.alternate->f.is_constant());
 }
 
+EnergyFate of_damping(double damping) {
+  return damping == 0 ? EnergyFate::kept : damping > 0 ? EnergyFate::taken : EnergyFate::unknown;
+}
+
 // Of a spring or torsion spring.
 template <class Spring>
-bool takes_or_gives(const Spring& spring) {
-  return spring.law ? spring.law->depends_on_rate() || spring.law->depends_on_time() : spring.damping != 0;
+EnergyFate of_spring(const Spring& spring) {
+  if (!spring.law) return of_damping(spring.damping);
+  return spring.law->depends_on_rate() || spring.law->depends_on_time() ? EnergyFate::unknown : EnergyFate::kept;
 }
 
 }  // namespace
 
-std::vector<bool> conserving_mechanisms(const Model& model, std::span<const int> mechanism) {
-  std::vector<bool> conserves(mechanism_count(mechanism), true);
-  const auto moved = [&](int body) {
-    if (body != kGround) conserves[index(mechanism[index(body)])] = false;
+std::vector<EnergyFate> energy_fates(const Model& model, std::span<const int> mechanism) {
+  std::vector<EnergyFate> fates(mechanism_count(mechanism), EnergyFate::kept);
+  const auto moved = [&](int body, EnergyFate by = EnergyFate::unknown) {
+    if (body == kGround) return;
+    EnergyFate& fate = fates[index(mechanism[index(body)])];
+    fate = std::max(fate, by);
   };
-  const auto both = [&](int i, int j) { moved(i == kGround ? j : i); };
+  const auto both = [&](int i, int j, EnergyFate by = EnergyFate::unknown) { moved(i == kGround ? j : i, by); };
   for (const Row& row : model.rows)
     if (works(row)) both(row.i, row.j);
   for (const PointForce& force : model.point_forces)
     if (works(force.force)) moved(force.body);
   for (const Torque& torque : model.torques)
     if (works(torque.torque)) moved(torque.body);
-  for (const Spring& spring : model.springs)
-    if (takes_or_gives(spring)) both(spring.i, spring.j);
+  for (const Spring& spring : model.springs) both(spring.i, spring.j, of_spring(spring));
   for (const TorsionElement& torsion : model.torsions)
-    if (takes_or_gives(torsion.spring)) both(torsion.spring.i, torsion.spring.j);
+    both(torsion.spring.i, torsion.spring.j, of_spring(torsion.spring));
   for (const LinearDrag& drag : model.drags)
-    if (drag.translational != 0 || drag.rotational != 0) moved(drag.body);
+    moved(drag.body, std::max(of_damping(drag.translational), of_damping(drag.rotational)));
   for (const CallbackForce& callback : model.callbacks)
     for (const int body : callback.bodies) moved(body);
-  return conserves;
+  return fates;
 }
 
 bool conserves_energy(const Model& model) {
-  const std::vector<bool> conserves = conserving_mechanisms(model, mechanisms(model));
-  return std::ranges::all_of(conserves, [](bool one) { return one; });
+  return std::ranges::all_of(energy_fates(model, mechanisms(model)),
+                             [](EnergyFate fate) { return fate == EnergyFate::kept; });
 }
 
 }  // namespace poinsot

@@ -1,6 +1,7 @@
-// Which of a scene's mechanisms (core/mechanisms.h) keep their energy, kinetic and potential: nothing moves them from
-// outside and nothing dissipates. Their rows do not change with time, and all that acts on them is gravity, and springs
-// whose force follows from their length or angle alone.
+// What becomes of the energy, kinetic and potential, of a scene's mechanisms (core/mechanisms.h).
+//
+// Where rows do not change with time and all that acts is gravity, and springs whose force follows from their length or
+// angle alone, it is kept. Linear dampers and drags beside these take of it, and never give.
 #pragma once
 
 #include <span>
@@ -10,10 +11,12 @@
 
 namespace poinsot {
 
-// By number of the mechanism; `mechanism` by body, as mechanisms() gives it.
-std::vector<bool> conserving_mechanisms(const Model& model, std::span<const int> mechanism);
+enum class EnergyFate { kept, taken, unknown };
 
-// All of them.
+// By number of the mechanism; `mechanism` by body, as mechanisms() gives it.
+std::vector<EnergyFate> energy_fates(const Model& model, std::span<const int> mechanism);
+
+// Of all of them.
 bool conserves_energy(const Model& model);
 
 }  // namespace poinsot

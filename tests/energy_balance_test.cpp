@@ -17,6 +17,8 @@
 namespace poinsot::test {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -113,6 +115,22 @@ TEST(EnergyBalance, what_is_invented_is_told_too) {
   EXPECT_LT(of.percent, -10);
   expect_as_it_is(of);
   EXPECT_THAT(of.said, HasSubstr("J higher at t = 20 s than at the start"));
+}
+
+// However little a drag takes, it does not give.
+TEST(EnergyBalance, what_is_invented_beside_a_drag_is_told) {
+  Settings settings = dynamics("rA", 1e-3, 20);
+  settings.integrator = "half_implicit";
+  Scene scene = free_body();
+  LinearDrag drag;
+  drag.body = 0, drag.rotational = 1e-9;
+  scene.forces.push_back(drag);
+  const Outcome run = simulate(scene, settings, [](const Sample&) {});
+  EXPECT_THAT(run.notices, Contains(AllOf(HasSubstr("J higher at t = 20 s than at the start"),
+                                          HasSubstr("dampers take of it and nothing gives; a step below "))));
+  EXPECT_FALSE(run.statistics.energy_change);
+  std::get<LinearDrag>(scene.forces[0]).rotational = 0.01;  // enough to make up for it
+  EXPECT_THAT(simulate(scene, settings, [](const Sample&) {}).notices, Not(Contains(HasSubstr("dampers take"))));
 }
 
 TEST(EnergyBalance, the_step_that_is_offered_keeps_it) {
@@ -232,49 +250,55 @@ TEST(EnergyBalance, of_what_is_driven_or_damped_nothing_is_known) {
   }
 }
 
-std::vector<bool> conserving(const Scene& scene) {
+std::vector<EnergyFate> fates(const Scene& scene) {
   const Model model = compile(scene);
-  return conserving_mechanisms(model, mechanisms(model));
+  return energy_fates(model, mechanisms(model));
 }
 
 TEST(ConservedEnergy, what_moves_or_brakes_a_mechanism_is_seen) {
+  using enum EnergyFate;
   Scene two = free_body();
   two.bodies.push_back(two.bodies[0]);
   two.bodies[1].name = "other", two.bodies[1].position = {3, 0, 0};
-  EXPECT_THAT(conserving(two), ElementsAre(true, true));
+  EXPECT_THAT(fates(two), ElementsAre(kept, kept));
   const auto with_force = [&](const Force& force) {
     Scene scene = two;
     scene.forces.push_back(force);
-    return conserving(scene);
+    return fates(scene);
   };
   PointForce push;
   push.body = 1;
-  EXPECT_THAT(with_force(push), ElementsAre(true, true));
+  EXPECT_THAT(with_force(push), ElementsAre(kept, kept));
   push.force[1] = Expression(1.0);
-  EXPECT_THAT(with_force(push), ElementsAre(true, false));
+  EXPECT_THAT(with_force(push), ElementsAre(kept, unknown));
   Torque twist;
   twist.body = 0, twist.torque[2] = Expression::parse("t");
-  EXPECT_THAT(with_force(twist), ElementsAre(false, true));
+  EXPECT_THAT(with_force(twist), ElementsAre(unknown, kept));
   LinearDrag drag;
   drag.body = 0;
-  EXPECT_THAT(with_force(drag), ElementsAre(true, true));
+  EXPECT_THAT(with_force(drag), ElementsAre(kept, kept));
   drag.rotational = 1;
-  EXPECT_THAT(with_force(drag), ElementsAre(false, true));
+  EXPECT_THAT(with_force(drag), ElementsAre(taken, kept));
+  drag.rotational = -1;
+  EXPECT_THAT(with_force(drag), ElementsAre(unknown, kept));
   CallbackForce callback;
   callback.bodies = {1}, callback.loads = [](double, std::span<const BodyState>, std::span<Load>) {};
-  EXPECT_THAT(with_force(callback), ElementsAre(true, false));
+  EXPECT_THAT(with_force(callback), ElementsAre(kept, unknown));
   Spring spring;
   spring.i = kGround, spring.j = 1, spring.stiffness = 1;
-  EXPECT_THAT(with_force(spring), ElementsAre(true, true));
+  EXPECT_THAT(with_force(spring), ElementsAre(kept, kept));
   spring.damping = 1;
-  EXPECT_THAT(with_force(spring), ElementsAre(true, false));
+  EXPECT_THAT(with_force(spring), ElementsAre(kept, taken));
+  two.forces.push_back(push);
+  EXPECT_THAT(with_force(spring), ElementsAre(kept, unknown));
+  two.forces.clear();
   TorsionSpring torsion;
   torsion.i = kGround, torsion.j = 0, torsion.axis = {0, 0, 1}, torsion.law = Expression::parse_law("x^3");
-  EXPECT_THAT(with_force(torsion), ElementsAre(true, true));
+  EXPECT_THAT(with_force(torsion), ElementsAre(kept, kept));
   torsion.law = Expression::parse_law("x^3 + v");
-  EXPECT_THAT(with_force(torsion), ElementsAre(false, true));
+  EXPECT_THAT(with_force(torsion), ElementsAre(unknown, kept));
   torsion.law = Expression::parse_law("x^3*t");
-  EXPECT_THAT(with_force(torsion), ElementsAre(false, true));
+  EXPECT_THAT(with_force(torsion), ElementsAre(unknown, kept));
 
   const auto with_row = [&](ConstraintType type, const char* f) {
     Scene scene = two;
@@ -282,12 +306,12 @@ TEST(ConservedEnergy, what_moves_or_brakes_a_mechanism_is_seen) {
     row.type = type, row.i = kGround, row.j = 1, row.c = row.a_j = {1, 0, 0}, row.s_i = {3, 0, 0};
     row.f = Expression::parse(f);
     scene.constraints.push_back(row);
-    return conserving(scene);
+    return fates(scene);
   };
-  EXPECT_THAT(with_row(ConstraintType::CD, "0"), ElementsAre(true, true));
-  EXPECT_THAT(with_row(ConstraintType::CD, "t"), ElementsAre(true, false));
-  EXPECT_THAT(with_row(ConstraintType::pfaffian, "0"), ElementsAre(true, true));
-  EXPECT_THAT(with_row(ConstraintType::pfaffian, "1"), ElementsAre(true, false));
+  EXPECT_THAT(with_row(ConstraintType::CD, "0"), ElementsAre(kept, kept));
+  EXPECT_THAT(with_row(ConstraintType::CD, "t"), ElementsAre(kept, unknown));
+  EXPECT_THAT(with_row(ConstraintType::pfaffian, "0"), ElementsAre(kept, kept));
+  EXPECT_THAT(with_row(ConstraintType::pfaffian, "1"), ElementsAre(kept, unknown));
 }
 
 }  // namespace

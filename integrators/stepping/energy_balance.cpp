@@ -7,7 +7,6 @@
 #include <limits>
 #include <string>
 
-#include "core/conserved_energy.h"
 #include "core/index.h"
 #include "core/mechanisms.h"
 #include "formulations/law_potential.h"
@@ -26,9 +25,9 @@ Vector3 place(std::span<const BodyState> bodies, int body, const Vector3& s) {
 
 EnergyBalance::EnergyBalance(const Problem& problem) : parts_(problem), of_(parts_.count()) {
   const std::vector<int> mechanism = mechanisms(problem.model());
-  const std::vector<bool> conserves = conserving_mechanisms(problem.model(), mechanism);
-  for (std::size_t k = 0; k < of_.size(); ++k) of_[k].conserves = conserves[k];
-  none_ = std::ranges::none_of(of_, &Mechanism::conserves);
+  const std::vector<EnergyFate> fates = energy_fates(problem.model(), mechanism);
+  for (std::size_t k = 0; k < of_.size(); ++k) of_[k].fate = fates[k];
+  none_ = std::ranges::all_of(fates, [](EnergyFate fate) { return fate == EnergyFate::unknown; });
   if (none_) return;
   momentum_.resize(problem.nv());
   bodies_.resize(problem.model().bodies.size());
@@ -48,7 +47,8 @@ void EnergyBalance::end(const Sample& end) {
 void EnergyBalance::look(const Problem& problem, const Eigen::VectorXd& v) {
   problem.momentum(span(v), span(momentum_));
   for (std::size_t k = 0; k < of_.size(); ++k)
-    if (of_[k].conserves) of_[k].most_kinetic = std::max(of_[k].most_kinetic, 0.5 * parts_.dot(k, v, momentum_));
+    if (of_[k].fate != EnergyFate::unknown)
+      of_[k].most_kinetic = std::max(of_[k].most_kinetic, 0.5 * parts_.dot(k, v, momentum_));
 }
 
 void EnergyBalance::add_energies(const Sample& at, double Mechanism::*sum) {
@@ -74,7 +74,7 @@ void EnergyBalance::add_energies(const Sample& at, double Mechanism::*sum) {
     const double from = x_first_[springs++];
     if (spring.i == kGround && spring.j == kGround) return;
     Mechanism& of = of_[parts_.of_body(spring.i == kGround ? spring.j : spring.i)];
-    if (!of.conserves) return;
+    if (of.fate == EnergyFate::unknown) return;
     if (spring.law)
       add(of, law_work(*spring.law, from, x, at.t), spring.law->law(Arguments<double>{at.t, x, 0}).F);
     else
@@ -107,26 +107,29 @@ void EnergyBalance::conclude(const Run& run, const IntegratorEntry& integrator) 
   if (!ended_) return;
   const Model& model = run.problem.model();
   const double off = 10 * run.statistics.violation.position * std::max(1.0, longest_arm(model));  // m, or rad
-  double most = -1;
+  double most = -1, most_of_all = -1;
   const Mechanism* told = nullptr;
   for (const Mechanism& of : of_) {
-    const double noise = of.rounding + off * of.loads;
-    if (!of.conserves || !(of.most_kinetic > noise)) continue;
-    const double share = std::abs(of.last - of.first) / of.most_kinetic;
-    if (!(share > most)) continue;
-    most = share;
-    told = std::abs(of.last - of.first) > noise ? &of : nullptr;
+    const double noise = of.rounding + off * of.loads, more = of.last - of.first;
+    if (of.fate == EnergyFate::unknown || !(of.most_kinetic > noise)) continue;
+    const double share = std::abs(more) / of.most_kinetic;
+    if (of.fate == EnergyFate::kept) most = std::max(most, share);
+    if (!(share > most_of_all) || (of.fate == EnergyFate::taken && more <= 0)) continue;
+    most_of_all = share;
+    told = std::abs(more) > noise ? &of : nullptr;
   }
-  if (most < 0) return;
-  run.statistics.energy_change = most;
+  if (most >= 0) run.statistics.energy_change = most;
   const double late = integrator.order == 1 ? kLate / static_cast<double>(run.statistics.steps) : 0;
-  if (!told || most < kTold + late) return;
+  if (!told || most_of_all < kTold + late) return;
   const std::string whose = of_mechanism(model, mechanisms(model), static_cast<int>(told - of_.data()));
   run.tell(fmt::format(
       "{} leaves the energy{} {:.3g} J {} at t = {:.6g} s than at the start, by {:.3g} % of {} largest "
-      "kinetic energy: nothing drives or damps it, so it should stay as it is; {}",
+      "kinetic energy: {}; {}",
       run.settings.integrator, whose, std::abs(told->last - told->first), told->last < told->first ? "lower" : "higher",
-      run.state.t, 100 * most, whose.empty() ? "the" : "its", remedy(run.settings, integrator, most)));
+      run.state.t, 100 * most_of_all, whose.empty() ? "the" : "its",
+      told->fate == EnergyFate::kept ? "nothing drives or damps it, so it should stay as it is"
+                                     : "dampers take of it and nothing gives",
+      remedy(run.settings, integrator, most_of_all)));
 }
 
 }  // namespace poinsot

@@ -2,14 +2,16 @@
 //
 // What steps take from a motion or add to it, each so little that nothing shows, adds up over many of them. Where
 // T + V, V of gravity and springs, is constant, it shows at the end: there it is set beside that of the start, by
-// mechanism, and told where they differ by more than 6 % of the largest kinetic energy on the way, 3 % of speeds. Of
-// other mechanisms nothing is known in this way, and nothing is looked at.
+// mechanism, and told where they differ by more than 6 % of the largest kinetic energy on the way, 3 % of speeds. Where
+// dampers take of it, it is told where it has become more all the same. Of other mechanisms nothing is known in this
+// way, and nothing is looked at.
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include "core/conserved_energy.h"
 #include "integrators/integrator.h"
 #include "integrators/stepping/parts.h"
 
@@ -21,7 +23,7 @@ class EnergyBalance {
 
   bool none() const { return none_; }
   // Whether it knows of a mechanism what was lost, so that nobody else needs to guess.
-  bool covers(std::size_t mechanism) const { return of_[mechanism].conserves; }
+  bool covers(std::size_t mechanism) const { return of_[mechanism].fate == EnergyFate::kept; }
 
   // The first sample.
   void begin(const Sample& start);
@@ -43,7 +45,7 @@ class EnergyBalance {
 
  private:
   struct Mechanism {
-    bool conserves = false;
+    EnergyFate fate = EnergyFate::unknown;
     double first = 0, last = 0;  // J, T + V
     double most_kinetic = 0;     // J
     double loads = 0;            // N, of gravity and springs; or N m
