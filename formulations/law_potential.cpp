@@ -122,12 +122,12 @@ double LawPotential::at(double x, double t) {
 double LawPotential::origin(double x, double t) {
   constexpr double kBeside = 0x1p-40;
   const double side = std::copysign(1.0, x);
-  if (law_->depends_on_time() || !bounded_) {
+  std::optional<bool>& bounded = bounded_[side < 0];
+  if (law_->depends_on_time() || !bounded) {
     const Bounds zero{std::min(0.0, kBeside * side), std::max(0.0, kBeside * side)};
-    bounded_ =
-        law_->is_constant() || law_->is_function() || std::isfinite(law_->range({{t, t}, zero, {0, 0}}).f.size());
+    bounded = law_->is_constant() || law_->is_function() || std::isfinite(law_->range({{t, t}, zero, {0, 0}}).f.size());
   }
-  return *bounded_ ? 0 : side;
+  return *bounded ? 0 : side;
 }
 
 // Level 0 are the powers of two, from where each next one has more bits; x itself is of the last.

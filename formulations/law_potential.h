@@ -29,7 +29,7 @@ class LawPotential {
   double up_to(double x, int level);
 
   const Expression* law_;
-  std::optional<bool> bounded_;  // at 0, where it does not depend on t
+  std::optional<bool> bounded_[2];  // at 0, of x above and below; where it does not depend on t
   std::unordered_map<double, double> known_;
 };
 

@@ -25,7 +25,6 @@ class Residual {
   double size(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
               std::span<const double> x);
   std::span<double> vector() { return r_; }
-  std::span<const double> vector() const { return r_; }
 
  private:
   double in_sums(const CscLayout& layout, std::span<const double> values, std::span<const double> b,
