@@ -8,8 +8,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/index.h"
-
 namespace poinsot {
 namespace {
 
@@ -151,10 +149,7 @@ std::string too_large(const std::string& whose, std::string_view what, double si
 
 double force_without_direction(const Model& model, const Spring& spring) {
   constexpr double kAtOne = 1e-12;  // of the places of its ends
-  const auto place = [&](int body, const Vector3& s) -> Vector3 {
-    return body == kGround ? s : model.bodies[index(body)].position + model.bodies[index(body)].orientation * s;
-  };
-  const Vector3 from = place(spring.i, spring.s_i), to = place(spring.j, spring.s_j);
+  const Vector3 from = initial_point(model, spring.i, spring.s_i), to = initial_point(model, spring.j, spring.s_j);
   if ((to - from).norm() > kAtOne * std::max(from.norm(), to.norm())) return 0;
   const double x = -spring.length,
                F = spring.law ? spring.law->law(Arguments<double>{0, x, 0}).F : spring.stiffness * x;
