@@ -81,9 +81,7 @@ std::vector<Candidate> candidates(const Settings& given, const Status& status, b
       for (const char* other : {"dop853", "radau5"}) add_integrator(other);
     // Steps of fixed length go over what drivers ask for that no position has.
     if (controls && !driven) add_integrator("rattle");
-    for (const char* other : {"rA", "rp"})
-      if (given.formulation != other)
-        add(fmt::format("--formulation {}", other), [other](Settings& s) { s.formulation = other; });
+    if (given.formulation != "rA") add("--formulation rA", [](Settings& s) { s.formulation = "rA"; });
   } else if (status.failure == Failure::singular_position) {
     add("--analysis dynamics --integrator dop853", [](Settings& s) {
       s.analysis = Analysis::dynamics;
