@@ -118,5 +118,26 @@ TEST_P(PassedLawsTest, CombsAreFelt) {
   }
 }
 
+// Forces that turn over within less than a step: what an estimate of the error makes of them is luck, up to some
+// hundred tolerances. Energy tells, by the potential V.
+TEST_P(PassedLawsTest, SteepForcesAreResolved) {
+  const std::pair<const char*, double (*)(double)> laws[] = {
+      {"5*tanh(1e4*x)", [](double x) { return 5e-4 * (1e4 * std::abs(x) + std::log1p(std::exp(-2e4 * std::abs(x)))); }},
+      {"5*x/sqrt(x^2 + 1e-8)", [](double x) { return 5 * std::sqrt(x * x + 1e-8); }},
+      {"5*atan(1e5*x)", [](double x) { return 5 * x * std::atan(1e5 * x) - 2.5e-5 * std::log1p(1e10 * x * x); }}};
+  const double most = GetParam().integrator == "ida" ? 400 : 50;  // tolerances
+  constexpr double kRtol = 1e-7, kSpeeds[] = {1.7, 1.9, 2.1, 2.3, 2.5, 2.7};
+  for (const auto& [law, V] : laws) {
+    const auto energy = [&](const BodyState& ball) { return 0.5 * ball.rd.squaredNorm() + V(ball.r.x()); };
+    for (const double speed : kSpeeds) {
+      const Recorded r = run(flying({speed, 0, 0}, law, 3), settings(kRtol, 1.2, 1.2));
+      ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+      EXPECT_THAT(r.outcome.notices, IsEmpty()) << law;
+      EXPECT_NEAR(energy(r.samples.back().bodies[0]), energy(r.samples[0].bodies[0]), most * kRtol) << law << speed;
+      EXPECT_LT(r.outcome.statistics.steps, 600) << law << speed;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -68,7 +68,7 @@ double entry_into(const LawPath& path, Seen&& seen, double from, double to) {
 
 UnseenForce first_in_part(const LawPath& path, const SeenForce& seen, double from, double to, int partings,
                           int& pieces) {
-  if (seen.holds(path.force(from, to))) return {};
+  if (seen.holds(path.close_force(from, to))) return {};
   const double middle = from + 0.5 * (to - from);
   const auto holds = [&](double, double F) { return seen.holds({F, F}); };
   if (!holds(middle, path.force(middle))) return {entry_into(path, holds, from, middle), true};
@@ -197,17 +197,20 @@ void LawPath::lead(const Vector& from, const Vector& from_rate, const Vector& st
   v_ = moving(0.5).v;
 }
 
+Arguments<double> LawPath::moving(double s) const {
+  return of_.arguments(place(s), t_ + s * h_);
+}
+
 Arguments<double> LawPath::arguments(double s) const {
   const Vector d = at(s);
   return {t_ + s * h_, (of_.torsion >= 0 ? d.x() : d.norm()) - of_.zero, v_};
 }
 
-Arguments<double> LawPath::moving(double s) const {
-  return of_.arguments(place(s), t_ + s * h_);
-}
-
-double LawPath::force(double s) const {
-  return of_.F->law(arguments(s)).F;
+Jet2<double> LawPath::along(double s) const {
+  const Vector d = at(s), by_s = derivative(s);
+  const double length = of_.torsion >= 0 ? d.x() : d.norm();
+  const double longer = of_.torsion >= 0 ? by_s.x() : length > 0 ? d.dot(by_s) / length : 0;
+  return of_.F->along<double>({{t_ + s * h_, h_, 0}, {length - of_.zero, longer, 0}, {v_, 0, 0}});
 }
 
 double LawPath::slope(double s) const {
@@ -215,6 +218,32 @@ double LawPath::slope(double s) const {
 }
 
 Bounds LawPath::force(double from, double to) const {
+  return of_.F->range(reached(from, to)).f;
+}
+
+// Taylor's formula about the middle of x, too.
+Bounds LawPath::close_force(double from, double to) const {
+  const Expression& F = *of_.F;
+  Arguments<Bounds> at = reached(from, to);
+  const Jet2<Bounds> all = F.law_range(at);
+  const auto switches = [&] {
+    for (int k = 0; k < F.switch_count(); ++k) {
+      const Bounds side = F.switch_range(k, at);
+      if (!(side.least > 0 || side.most < 0)) return true;
+    }
+    return false;
+  };
+  if (F.depends_on_time() || switches()) return all.f;
+  const double middle = at.x.least + 0.5 * (at.x.most - at.x.least);
+  const Bounds off{at.x.least - middle, at.x.most - middle};
+  at.x = {middle, middle};
+  const Jet2<Bounds> there = F.law_range(at);
+  const Bounds by_slope = there.f + all.fd * off;
+  const Bounds by_bend = there.f + there.fd * off + 0.5 * (all.fdd * square(off));
+  return {std::max({all.f.least, by_slope.least, by_bend.least}), std::min({all.f.most, by_slope.most, by_bend.most})};
+}
+
+Arguments<Bounds> LawPath::reached(double from, double to) const {
   Bounds x;
   if (of_.torsion >= 0) {
     x = component(0, from, to);
@@ -226,7 +255,7 @@ Bounds LawPath::force(double from, double to) const {
   // At its ends the step may touch switches of time, which are not within it.
   const double instant = std::min(kSwitchInstant * (std::abs(t_) + h_), 0.25 * (to - from) * h_);
   const double begin = t_ + from * h_ + (from == 0 ? instant : 0), end = t_ + to * h_ - (to == 1 ? instant : 0);
-  return of_.F->range({{begin, end}, {least, most}, {v_, v_}}).f;
+  return {{begin, end}, {least, most}, {v_, v_}};
 }
 
 // A cubic stays within its Bézier points.
@@ -236,8 +265,36 @@ Bounds LawPath::component(int k, double from, double to) const {
   return {std::min({first, second, before, last}) - error_, std::max({first, second, before, last}) + error_};
 }
 
-UnseenForce first_unseen(const LawPath& path, Bounds ends, double nothing) {
-  SeenForce seen(ends, nothing);
+namespace {
+
+// Hermite's cubic, what the ends and the slopes there lead to.
+double led_to(const LawEnds& ends, double s) {
+  const double r = 1 - s;
+  return r * r * ((1 + 2 * s) * ends.from.f + s * ends.from.fd) + s * s * ((1 + 2 * r) * ends.to.f - r * ends.to.fd);
+}
+
+// Where F is off that by more than `much`; at the places it is as given.
+UnseenForce first_off(const LawPath& path, const LawEnds& ends, std::span<const double> places,
+                      std::span<const double> there, double much) {
+  const auto led = [&](double s, double F) { return !(std::abs(F - led_to(ends, s)) > much); };
+  for (std::size_t k = 0; k < places.size(); ++k)
+    if (!led(places[k], there[k])) return {entry_into(path, led, k == 0 ? 0 : places[k - 1], places[k]), true};
+  return {};
+}
+
+// F at places of the step, and the range with its ends.
+template <std::size_t n>
+double look_at(const LawPath& path, const LawEnds& ends, const double (&places)[n], std::array<double, n>& there) {
+  std::ranges::transform(places, there.begin(), [&](double s) { return path.force(s); });
+  const auto [least, most] = std::ranges::minmax(there);
+  const Bounds range = ends.range();
+  return std::max(most, range.most) - std::min(least, range.least);
+}
+
+}  // namespace
+
+UnseenForce first_unseen(const LawPath& path, const LawEnds& ends, double nothing) {
+  SeenForce seen(ends.range(), nothing);
   if (seen.holds(path.force(0, 1))) return {};
   std::array<double, std::size(kLookedAt)> there;
   std::ranges::transform(kLookedAt, there.begin(), [&](double s) { return path.force(s); });
@@ -247,22 +304,32 @@ UnseenForce first_unseen(const LawPath& path, Bounds ends, double nothing) {
   return first_in_part(path, seen, 0, 1, kLawPartings, pieces);
 }
 
-UnseenForce first_between(const LawPath& path, Bounds ends, double nothing) {
-  constexpr double kBeside = 1e-3, kOff = 0.35;  // of the step; of the range of F over it, more than a kink is
-  const double from = path.force(0), to = path.force(1);
-  if (SeenForce(ends, nothing).holds(path.force(0, 1)) && from == to) return {};
-  const double out = (path.force(kBeside) - from) / kBeside, in = (to - path.force(1 - kBeside)) / kBeside;
+UnseenForce first_between(const LawPath& path, const LawEnds& ends, double nothing) {
+  constexpr double kOff = 0.35;  // of the range, more than a kink is
   std::array<double, std::size(kLookedAt)> there;
-  std::ranges::transform(kLookedAt, there.begin(), [&](double s) { return path.force(s); });
-  const auto [least, most] = std::ranges::minmax(there);
-  const double much = std::max(kOff * (most - least), nothing);
-  const auto led_to = [&](double s, double F) {  // by Hermite's cubic
-    const double r = 1 - s;
-    return !(std::abs(F - r * r * ((1 + 2 * s) * from + s * out) - s * s * ((1 + 2 * r) * to - r * in)) > much);
+  const double range = look_at(path, ends, kLookedAt, there);
+  return first_off(path, ends, kLookedAt, there, std::max(kOff * range, nothing));
+}
+
+UnseenForce first_steep(const LawPath& path, const LawEnds& ends, double nothing) {
+  constexpr double kPlaces[] = {0.3, 0.5, 0.7}, kBetween[] = {0.12, 0.88};
+  constexpr double kOff = 1e-3, kFar = 0.2;  // of the range
+  std::array<double, std::size(kPlaces)> there, off;
+  const double range = look_at(path, ends, kPlaces, there), much = std::max(kOff * range, nothing);
+  for (std::size_t k = 0; k < off.size(); ++k) off[k] = there[k] - led_to(ends, kPlaces[k]);
+  if (std::ranges::none_of(off, [&](double x) { return std::abs(x) > much; })) return {};
+  // The polynomial is the cubic + s² (1 − s)² q(s).
+  const auto weight = [](double s) { return s * s * (1 - s) * (1 - s); };
+  for (std::size_t k = 0; k < off.size(); ++k) off[k] /= weight(kPlaces[k]);
+  const auto by_polynomial = [&](double s) {
+    const double x = (s - kPlaces[1]) / (kPlaces[2] - kPlaces[1]);
+    const double q = off[1] + 0.5 * x * (off[2] - off[0] + x * (off[0] - 2 * off[1] + off[2]));
+    return led_to(ends, s) + weight(s) * q;
   };
-  for (std::size_t k = 1; k < there.size(); ++k)
-    if (!led_to(kLookedAt[k], there[k])) return {entry_into(path, led_to, kLookedAt[k - 1], kLookedAt[k]), true};
-  return {};
+  const auto is_off = [&](double s) { return std::abs(path.force(s) - by_polynomial(s)) > much; };
+  if (std::ranges::none_of(kBetween, is_off)) return {};
+  const UnseenForce far = first_off(path, ends, kPlaces, there, std::max(kFar * range, nothing));
+  return {std::min(far.s, 0.5), true};
 }
 
 }  // namespace poinsot

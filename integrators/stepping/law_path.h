@@ -8,6 +8,7 @@
 // four of nine places in between, widened by twice as much to either side.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string>
@@ -51,6 +52,12 @@ std::vector<SpringLaw> springs_that_turn_round(const Model& model);
 // These, and those of laws: their force may turn round.
 std::vector<SpringLaw> springs_that_may_turn_round(const Model& model);
 
+// F at the ends of a step, and its first derivatives by s.
+struct LawEnds {
+  Jet2<double> from, to;
+  Bounds range() const { return {std::min(from.f, to.f), std::max(from.f, to.f)}; }
+};
+
 // F by s from 0 to 1.
 class LawPath {
  public:
@@ -59,10 +66,15 @@ class LawPath {
   // As the motion goes on from a place.
   LawPath(const SpringLaw& of, const LawPlace& from, double t_from, double t_to);
 
-  double force(double s) const;
+  double force(double s) const { return along(s).f; }
+  Jet2<double> along(double s) const;  // F, and its first derivative by s
+  LawEnds ends() const { return {along(0), along(1)}; }
   // What the law depends on at s, with the rate there: not the derivative of d, which in a short step is rounding.
   Arguments<double> moving(double s) const;
   Bounds force(double from, double to) const;
+  // The same, closer to it in short pieces without a switch where x occurs twice, as in x/√(x² + ε), which arithmetic
+  // on intervals alone makes far too wide; for more work.
+  Bounds close_force(double from, double to) const;
   double slope(double s) const;  // of F by x
   // Of a spring, d and ḋ at s as moving() has them.
   LawPlace place(double s) const { return {at(s), rate_ + s * (change_ + (1 - s) * bulge_)}; }
@@ -73,6 +85,7 @@ class LawPath {
   Vector at(double s) const { return c_[0] + s * (c_[1] + s * (c_[2] + s * c_[3])); }
   Vector derivative(double s) const { return c_[1] + s * (2 * c_[2] + 3 * s * c_[3]); }
   Arguments<double> arguments(double s) const;
+  Arguments<Bounds> reached(double from, double to) const;
   Bounds component(int k, double from, double to) const;
 
   const SpringLaw& of_;
@@ -87,10 +100,13 @@ struct UnseenForce {
   double s = 1;
   bool known = false;
 };
-// `ends`: of F at the ends of the step.
-UnseenForce first_unseen(const LawPath& path, Bounds ends, double nothing);
+UnseenForce first_unseen(const LawPath& path, const LawEnds& ends, double nothing);
 // The same for a method that looks at forces where its steps end, and nowhere between: where F leaves what its ends,
 // and the slopes there, lead to.
-UnseenForce first_between(const LawPath& path, Bounds ends, double nothing);
+UnseenForce first_between(const LawPath& path, const LawEnds& ends, double nothing);
+// Where F varies more steeply than the stages of a step can tell, as tanh(1e4 x) in passing, which makes estimates of
+// the error a matter of luck: it is off the polynomial of degree six through its values and slopes at the ends and its
+// values at three places between.
+UnseenForce first_steep(const LawPath& path, const LawEnds& ends, double nothing);
 
 }  // namespace poinsot

@@ -118,11 +118,10 @@ bool PassedInSteps::find_box(Law& law, double t, double way, double h) const {
 // The step of h to t passes over nothing that counts, or not for certain.
 bool PassedInSteps::stays(Law& law, const LawPlace& to, double t, double h) const {
   const LawPath path(law.of, law.from, to, t - h, t);
-  const double before = path.force(0), after = path.force(1);
-  law.largest = std::max({law.largest, std::abs(before), std::abs(after)});
+  const LawEnds ends = path.ends();
+  law.largest = std::max({law.largest, std::abs(ends.from.f), std::abs(ends.to.f)});
   const double speed = std::max(law.from.rate.norm(), to.rate.norm());
-  const UnseenForce first =
-      first_unseen(path, {std::min(before, after), std::max(before, after)}, nothing(law, speed, h));
+  const UnseenForce first = first_unseen(path, ends, nothing(law, speed, h));
   if (first.s < 1 && first.known) {
     tell_passed(law, path, first.s, t, h);
     return false;

@@ -17,31 +17,41 @@ PassedLaws::PassedLaws(const LawSteps& steps, double end, double rtol, double at
 }
 
 double PassedLaws::reach() {
-  double reach = steps_.to();
-  for (std::size_t k = 0; k < watches_.size(); ++k)
-    if (watches_[k].on) reach = std::min(reach, cut(k, steps_.path(k), steps_.to(), first_unseen));
-  if (reach < steps_.to()) leave_unknown(reach);
+  const double to = steps_.to();
+  double reach = to;
+  for (std::size_t k = 0; k < watches_.size(); ++k) {
+    if (!watches_[k].on) continue;
+    const LawPath path = steps_.path(k);
+    const LawEnds ends = path.ends();
+    const double tolerance = atol_ + rtol_ * steps_.law(k).from.rate.norm();
+    reach =
+        std::min({reach, cut(k, path, ends, to, first_unseen, atol_), cut(k, path, ends, to, first_steep, tolerance)});
+  }
+  if (reach < to) leave_unknown(reach);
   return reach;
 }
 
 double PassedLaws::ahead(double to) {
   double reach = to;
-  for (std::size_t k = 0; k < watches_.size(); ++k)
-    if (watches_[k].on) {
-      const LawPath path = steps_.ahead(k, to);
-      reach = std::min({reach, cut(k, path, to, first_unseen), cut(k, path, to, first_between)});
-    }
+  for (std::size_t k = 0; k < watches_.size(); ++k) {
+    if (!watches_[k].on) continue;
+    const LawPath path = steps_.ahead(k, to);
+    const LawEnds ends = path.ends();
+    reach =
+        std::min({reach, cut(k, path, ends, to, first_unseen, atol_), cut(k, path, ends, to, first_between, atol_)});
+  }
   if (reach < to) leave_unknown(reach);
   return reach;
 }
 
-double PassedLaws::cut(std::size_t k, const LawPath& path, double to, Look look) {
+double PassedLaws::cut(std::size_t k, const LawPath& path, const LawEnds& ends, double to, Look look,
+                       double tolerance) {
   Watch& watch = watches_[k];
-  const double from = steps_.from(), h = to - from, before = path.force(0), after = path.force(1);
-  watch.largest = std::max({watch.largest, std::abs(before), std::abs(after)});
+  const double from = steps_.from(), h = to - from;
+  watch.largest = std::max({watch.largest, std::abs(ends.from.f), std::abs(ends.to.f)});
   if (h <= kResolved * end_) return to;
-  const double nothing = kUnseen * std::max(rtol_ * watch.largest, atol_ * steps_.law(k).of.inertia / h);
-  const UnseenForce first = look(path, {std::min(before, after), std::max(before, after)}, nothing);
+  const double nothing = kUnseen * std::max(rtol_ * watch.largest, tolerance * steps_.law(k).of.inertia / h);
+  const UnseenForce first = look(path, ends, nothing);
   if (!(first.s < 1)) return to;
   watch.unknown = first.known ? 0 : watch.unknown + 1;
   return from + h * (first.known || first.s > kPart ? first.s : 0.5);

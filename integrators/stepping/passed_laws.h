@@ -2,11 +2,11 @@
 // a second, a catch that a slide runs over.
 //
 // A step that does not see what F comes to (law_path.h) is cut to where it is known to come to more, or is not known to
-// stay below, from where error control sees it. What is below the tolerance, as a velocity of the lighter body, does
-// not matter.
+// stay below, from where error control sees it; one over which F varies too steeply, to where that begins or to its
+// half. What is below the tolerance, as a velocity of the lighter body, does not matter.
 //
 // That F varies with v is left to error control, and with time alone to pulses.h. A scene without laws costs nothing,
-// and one whose laws show in a step two bounds and three values of each.
+// and one whose laws show in a step two bounds and five values of each.
 #pragma once
 
 #include <vector>
@@ -40,8 +40,9 @@ class PassedLaws {
     int unknown = 0;     // steps on end that it cut for nothing
   };
 
-  using Look = UnseenForce (*)(const LawPath&, Bounds, double);
-  double cut(std::size_t k, const LawPath& path, double to, Look look);
+  using Look = UnseenForce (*)(const LawPath&, const LawEnds&, double);
+  double cut(std::size_t k, const LawPath& path, const LawEnds& ends, double to, Look look,
+             double tolerance);  // m/s, rad/s
   void leave_unknown(double t);
 
   const LawSteps& steps_;

@@ -4,8 +4,8 @@
 // (schedule.h); factor() runs it. What the order takes for granted is checked by numbers:
 //
 //   fresh      the first factorization, and later ones whose pivots left three decades around those of the last fresh
-//              one. Bodies and groups with a pivot block that is not regular are fused and the order is chosen again;
-//              then Bauer's condition (condition.h) and the residual of a solve decide;
+//              one (fresh_factors.h). Bodies and groups with a pivot block that is not regular are fused and the order
+//              is chosen again;
 //   kept       pivots within a decade: as good as the fresh one. Beyond, every solve checks its residual and refines.
 //
 // Where the fresh one left rounding, and few constraints are as well eliminated after all bodies (schur.h), that is
@@ -29,11 +29,12 @@
 #include "core/check.h"
 #include "core/index.h"
 #include "linsolve/back_ends.h"
-#include "linsolve/block/cancellation.h"
 #include "linsolve/block/factor.h"
+#include "linsolve/block/fresh_factors.h"
 #include "linsolve/block/fusion.h"
 #include "linsolve/block/graph.h"
 #include "linsolve/block/mass_units.h"
+#include "linsolve/block/refinement.h"
 #include "linsolve/block/schedule.h"
 #include "linsolve/block/schedules.h"
 #include "linsolve/block/schur.h"
@@ -41,7 +42,6 @@
 #include "linsolve/csc_layout.h"
 #include "linsolve/equilibration.h"
 #include "linsolve/finite.h"
-#include "linsolve/residual.h"
 
 namespace poinsot::block {
 namespace {
@@ -50,17 +50,9 @@ constexpr double kSymmetric = 0.9;  // share of mirrored entries: saddle points 
 // Drift of pivots. Growth of rounding errors goes with it at worst: within a decade solutions lose one digit of the
 // three that condition and elimination usually leave free; within three, what refinement brings back in one step.
 constexpr double kNear = 10, kFar = 1e3;
-// Residuals, relative; rounding of a sum of a few terms leaves about 1e-15.
-constexpr double kSmallResidual = 2e-15;  // above, residuals of later solutions are looked at
-constexpr double kGoodResidual = 1e-14;   // above, a solution is refined: about klu's own largest
-constexpr double kFairResidual = 1e-12;   // above, other pivots are tried: refinement would take more than one step
-constexpr double kLargeResidual = 1e-13;  // above after refinement, it is not accepted
 // Where all else was of no use and all solutions would be refined, up to here they are good: klu's own largest along
 // motions of planar loops are 2e-15 to 6e-13.
 constexpr double kGoodEnough = 5e-14;
-// Part of its size that is left of a pivot. Of 16 digits 10 remain at the first, which refinement makes good, though
-// another order may do without; at the second no more than 6, of which refinement may converge to anything.
-constexpr double kCancelled = 1e-6, kRounding = 1e-10;
 // Solutions along a motion are like one another. Where the residuals of random right sides are within what is accepted
 // and those of so many solutions in a row were good, one in so many is looked at, and fewer later; both steps of two
 // Newton iterations come by turns, these numbers being odd. So, too, where pivots have drifted, as long as they are not
@@ -71,7 +63,6 @@ constexpr int kCalm = 8, kSeldom = 7, kLongCalm = 15 * kSeldom, kRarely = 3 * kS
 // elimination may be the cause, or inverses of pivot blocks; to do without costs less than that refinement.
 constexpr int kOften = 8, kShare = 10;
 constexpr int kWorthwhile = 64;  // good solutions, after which bodies first are examined; refined ones, for masses
-constexpr int kRefinements = 3;  // each gains three digits or more of kFairResidual; beyond, they do not converge
 constexpr int kRepairs = 8;      // each fuses all that is bad at the time and costs an analysis
 constexpr int kPatience = 3;     // times in a row that klu has to help before it takes over
 
@@ -89,12 +80,9 @@ enum class Answer {
 // What is done where too many solutions need refinement: one after the other, while they still do.
 enum class Remedy { none, calm_fronts, substitution, by_masses, exhausted };
 
-// What a fresh factorization is worth.
-enum class Pivots {
-  good,
-  doubtful,  // solutions are good once they are refined, but some pivots are mostly rounding
-  bad,       // or some are nothing else
-};
+Answer answer(LookAt later) {
+  return later == LookAt::none ? Answer::trusted : later == LookAt::some ? Answer::sampled : Answer::checked;
+}
 
 enum class BodiesFirst { unfit, unexamined, serve };
 
@@ -111,7 +99,7 @@ class Solver final : public LinearSolver {
     bool fits = symmetric && schur_.lay_out(pattern, layout_);
     node_ = std::move(pattern.node);
     pattern = {};
-    residual_.resize(layout_);
+    refinement_.resize();
     values_.assign(index(layout_.nonzeros()), 0);
     statistics_.nonzeros = layout_.nonzeros();
     klu_.reset();
@@ -121,7 +109,7 @@ class Solver final : public LinearSolver {
     answer_ = symmetric && order() ? Answer::open : Answer::handed_over;
     fits = fits && answer_ == Answer::open;
     bodies_first_ = fits ? BodiesFirst::unexamined : BodiesFirst::unfit;
-    if (fits) examination_.resize(layout_.n), sizes_.resize(index(layout_.n)), b_.reserve(sizes_.size());
+    if (fits) examination_.resize(layout_.n), sizes_.resize(index(layout_.n));
     slots_ = std::exchange(layout_.slots, {});
     return {};
   }
@@ -208,25 +196,28 @@ class Solver final : public LinearSolver {
       Equilibration equilibration;
       equilibration.resize(layout_.n);
       (void)equilibration.find(layout_, values_);
-      residual_.measure_by(equilibration.row(), equilibration.col());
+      refinement_.measure_by(equilibration);
       if (by_masses()) by_masses_ = mass_units(layout_, values_, node_, equilibration.col());
     }
     answer_ = Answer::open;
-    std::vector<int> bad;
+    FreshFactors fresh(layout_, values_, factor_, refinement_, by_masses() ? by_masses_ : refinement_.rows(),
+                       good_residual());
     const std::vector<int> fused = fused_;
-    const Pivots first = factor_looking(bad);
+    const Pivots first = fresh.factor(*schedule_);
     Pivots last = first;
     for (int repairs = 0; last != Pivots::good; ++repairs) {
-      if (repairs == kRepairs || !fuse(layout_, node_, *schedule_, bad, fused_) || !order()) break;
-      last = factor_looking(bad);
+      if (repairs == kRepairs || !fuse(layout_, node_, *schedule_, fresh.bad(), fused_) || !order()) break;
+      last = fresh.factor(*schedule_);
     }
     if (last != Pivots::good && first == Pivots::doubtful) {  // repairs came to nothing better, and are undone
       fused_ = fused;
-      if (order() && trustworthy()) last = Pivots::good;
+      if (order() && fresh.trustworthy(*schedule_)) last = Pivots::good;
       near_ = Answer::checked;
+    } else {
+      near_ = answer(fresh.look_at());
     }
+    statistics_.reciprocal_condition = fresh.reciprocal_condition();
     if (!schedule_) answer_ = Answer::handed_over;
-    std::vector<double>().swap(weight_);
     if (last != Pivots::good) return factor_by_klu();
     answer_ = near_;
     drift_ = looked_ = {};
@@ -235,15 +226,6 @@ class Solver final : public LinearSolver {
     return {};
   }
 
-  // Solutions, and in `size` the largest residual they left.
-  template <class Solve>
-  auto looking(Solve&& solve, double& size) {
-    return [this, solve, &size](std::span<double> b) {
-      b_.assign(b.begin(), b.end());
-      solve(b);
-      size = std::max(size, residual(b_, b));
-    };
-  }
   bool bodies_first() const { return bodies_first_ == BodiesFirst::serve; }
 
   // After a factorization in the usual order: whether to eliminate bodies first leaves residuals that are rounding,
@@ -254,79 +236,18 @@ class Solver final : public LinearSolver {
     by_schur_ = 0;
     if (!worthwhile || (answer_ != Answer::trusted && answer_ != Answer::sampled)) return;
     if (!again) schur_.take_values(values_);
-    if (!all_finite(values_) || !schur_.choose(residual_.rows())) return;
+    if (!all_finite(values_) || !schur_.choose(refinement_.rows())) return;
     (void)schur_.factor(kNear);
     double size = 0;
-    const auto solve = looking([&](std::span<double> b) { schur_.solve(b); }, size);
-    for (std::size_t j = 0; j < sizes_.size(); ++j) sizes_[j] = residual_.column(j);
+    const auto solve = [&](std::span<double> b) {
+      refinement_.begin(b);
+      schur_.solve(b);
+      size = std::max(size, refinement_.residual(b));
+    };
+    for (std::size_t j = 0; j < sizes_.size(); ++j) sizes_[j] = refinement_.column(j);
     if (examination_.estimate(layout_, values_, solve, sizes_) >= kSingularCondition || size > kSmallResidual) return;
     bodies_first_ = BodiesFirst::serve;
     answer_ = Answer::by_schur;
-  }
-
-  // Factorizes, and finds the pivots that may be why the factors are not to be trusted.
-  Pivots factor_looking(std::vector<int>& bad) {
-    const std::span<const double> first = first_weights();
-    const auto cancelled = [&](std::span<const double> weight, double part) {
-      return cancelled_pivots(*schedule_, values_, weight, part);
-    };
-    constexpr double kNone = 1 / kSingularCondition;
-    Cancelled found = cancelled(first, kRounding);
-    // Solutions need not tell what is nothing but rounding, and looking at them takes as long as all else.
-    const bool trusted = found.least > kNone && trustworthy();
-    if (!trusted)
-      found = cancelled(first, kCancelled);
-    else if (!std::ranges::equal(weight_, first))
-      found = cancelled(weight_, kRounding);  // above, they may pass for pivots, as of very different masses
-    bad = std::move(found.pivots);
-    if (!trusted) return Pivots::bad;
-    if (found.least > kCancelled) return Pivots::good;
-    near_ = std::max(near_, Answer::sampled);
-    if (bad.empty()) return Pivots::good;
-    near_ = Answer::checked;
-    return cancelled(weight_, kNone).pivots.empty() ? Pivots::doubtful : Pivots::bad;
-  }
-
-  // The units of rows in which pivots are chosen first.
-  std::span<const double> first_weights() const { return by_masses() ? by_masses_ : residual_.rows(); }
-
-  // Factorizes with pivots chosen in these units; where they do not serve, in those of the equilibrated matrix, and in
-  // those the condition estimate finds. Finds out whether solutions need refinement.
-  bool trustworthy() {
-    const std::span<const double> rows = residual_.rows();
-    Condition condition;
-    condition.resize(layout_.n);
-    std::vector<double> x(rows.size());  // sizes of the unknowns, then a solution
-    double size = 0;
-    std::int64_t corrections = 0;
-    const auto solve = looking([&](std::span<double> b) { factor_.solve(*schedule_, b); }, size);
-    const auto serves = [&](bool last) {
-      factor_.weigh_rows(*schedule_, weight_);
-      (void)factor_.factor(*schedule_, values_, false);
-      size = 0;
-      const double estimate = condition.estimate(layout_, values_, solve, x);
-      statistics_.reciprocal_condition = 1 / estimate;
-      if (!std::isfinite(estimate)) return false;
-      std::ranges::transform(rows, x.begin(), [](double row) { return 1 / row; });
-      solve(x);
-      near_ = size <= kSmallResidual ? Answer::trusted : size <= kLargeResidual ? Answer::sampled : Answer::checked;
-      return estimate < kSingularCondition &&
-             (size <= kFairResidual || (last && refine(x, corrections) <= kLargeResidual));
-    };
-    const auto begin_with = [&](std::span<const double> weight) {
-      weight_.assign(weight.begin(), weight.end());
-      for (std::size_t j = 0; j < x.size(); ++j) x[j] = residual_.column(j);
-    };
-    begin_with(first_weights());
-    if (serves(false)) return true;
-    if (by_masses()) {
-      begin_with(rows);
-      if (serves(false)) return true;
-    }
-    if (!(statistics_.reciprocal_condition > 0)) return false;
-    std::ranges::transform(condition.rows(), weight_.begin(), [](double w) { return 1 / w; });
-    std::ranges::copy(condition.columns(), x.begin());
-    return serves(true);
   }
 
   LinearStatus do_solve(std::span<double> b) override {
@@ -337,29 +258,30 @@ class Solver final : public LinearSolver {
       return {};
     }
     const bool unseen = answer_ == Answer::trusted || (answer_ == Answer::sampled && passes_unseen());
-    if (!unseen) b_.assign(b.begin(), b.end());
+    if (!unseen) refinement_.begin(b);
     if (std::exchange(begun_, false))
       factor_.back(*schedule_, b);
     else
       solve_in_order(b);
     ++good_;
     if (unseen) return {};
-    const double size = residual(b_, b);
+    const double size = refinement_.residual(b);
     ++looked_at_;
-    if (good(size)) {
+    if (size <= good_residual()) {
       looked_ = drift_;
       return {};
     }
     good_ = 0;
+    const auto again = [this](std::span<double> r) { solve_in_order(r); };
     if (size <= kLargeResidual) {  // factors that leave so little leave no more than rounding of a correction
-      correct(b);
+      refinement_.correct(b, again);
       ++statistics_.refinements;
       ++refined_;
       return {};
     }
     ++refined_;
-    if (refine(b, statistics_.refinements) <= kLargeResidual) return {};
-    std::ranges::copy(b_, b.begin());
+    if (refinement_.refine(b, good_residual(), statistics_.refinements, again) <= kLargeResidual) return {};
+    std::ranges::copy(refinement_.b(), b.begin());
     if (LinearStatus status = factor_by_klu(); !status.ok()) return status;
     return klu_->solve(b);
   }
@@ -375,29 +297,7 @@ class Solver final : public LinearSolver {
     factor_.solve(*schedule_, b);
   }
 
-  // Corrects x, whose residual for b_ was found, until the residual is small, a few times at most; the residual.
-  double refine(std::span<double> x, std::int64_t& corrections) {
-    double size = HUGE_VAL;
-    for (int step = 0; step < kRefinements && !good(size); ++step) {
-      correct(x);
-      ++corrections;
-      size = residual(b_, x);
-    }
-    return size;
-  }
-
-  // x ← x + A⁻¹ r with the last residual r.
-  void correct(std::span<double> x) {
-    const std::span<double> r = residual_.vector();
-    solve_in_order(r);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += r[i];
-  }
-
-  bool good(double size) const { return size <= (remedy_ < Remedy::by_masses ? kGoodResidual : kGoodEnough); }
-
-  double residual(std::span<const double> b, std::span<const double> x) {
-    return residual_.size(layout_, values_, b, x);
-  }
+  double good_residual() const { return remedy_ < Remedy::by_masses ? kGoodResidual : kGoodEnough; }
 
   LinearStatus factor_by_klu() {
     if (!klu_) {
@@ -427,11 +327,9 @@ class Solver final : public LinearSolver {
   Condition examination_;      // of bodies first, which is to allocate nothing within a step
   std::vector<double> sizes_;  // of the unknowns, for it
   std::unique_ptr<LinearSolver> klu_;
-  Residual residual_;
-  std::vector<double> b_;
+  Refinement refinement_{layout_, values_};
   bool begun_ = false;             // the right-hand side to be solved for was eliminated with the factorization
   std::vector<double> by_masses_;  // units of rows
-  std::vector<double> weight_;     // of rows in the choice of pivots, within factor_fresh()
   Answer answer_ = Answer::open;
   Answer near_ = Answer::trusted;  // with pivots near those of the last fresh factorization, by what that one left
   Drift drift_, looked_;           // of the pivots at hand, and of those whose last solution was seen to be good
