@@ -13,16 +13,18 @@
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/controlled_methods.h"
 #include "integrators/stepping/controlled_run.h"
+#include "integrators/stepping/narrow_gap.h"
 #include "integrators/stepping/rest_watch.h"
 
 namespace poinsot {
 namespace {
 
-constexpr int kPasses = 2;        // one soon after the other that see no singular position: then none is the cause
+constexpr int kPasses = 4;        // one soon after the other that see no singular position: then none is the cause
 constexpr double kNear = 0.5;     // rad: so soon after one failure another has the same cause
 constexpr double kOnward = 1e-4;  // and so little of the run later
 constexpr double kMark = 0.01;    // rad, between two points that are remembered
 constexpr double kTurned = 0.1;   // rad: beyond, accelerations may be others
+constexpr double kStands = 0.5;   // rad: so far on the motion is made the state, whoever asks for it
 
 class Session {
  public:
@@ -35,6 +37,7 @@ class Session {
         parts_(problem_),
         consistent_(problem_, run.systems.add(), statistics_, clock_),
         passage_(problem_, consistent_),
+        gap_(problem_, consistent_),
         at_(run.state),
         next_(problem_),
         course_(run, clock_) {
@@ -80,7 +83,7 @@ class Session {
       ++statistics_.steps;
       const double h = ida_.last_step(), t = at_t_;
       statistics_.largest_rotation = std::max(statistics_.largest_rotation, course_.turned(h));
-      since_pass_ += course_.turned(h);
+      since_pass_ += course_.turned(h), since_stood_ += course_.turned(h);
       ida_.read_end(t, next_);
       if (Status status = course_.follow(next_); !status.ok()) {
         (void)stand_at(t);  // for what is said of it
@@ -101,7 +104,7 @@ class Session {
       creeping.completed(h);
       const bool crosses = t == turn.before;  // given out beyond the switch
       const bool given = !crosses && (course_.every_step || times.next() == t);
-      if (status.ok() && (crosses || given)) status = stand_at(t);
+      if (status.ok() && (crosses || given || since_stood_ > kStands)) status = stand_at(t);
       if (status.ok() && given) {
         times.pass();
         course_.give_out(at_);
@@ -235,9 +238,10 @@ class Session {
     const Status status = controlled_steps(*passing_, dop853_pair().rule, course_, [&] {
       by_singular_ = by_singular_ || passing_->by_singular();
       since_pass_ = passing_->by_singular() ? 0 : since_pass_ + course_.turned(passing_->last_step());
-      return since_pass_ > kFar || (!by_singular_ && ++steps == kSteps);
+      return since_pass_ > kFar || (!by_singular_ && ++steps == kSteps << passes_);
     });
     at_ = passing_->state();
+    gap_.forget();
     if (!std::exchange(told_, true)) tell_passage(from);
     if (!status.ok()) return status;
     return renew();
@@ -253,8 +257,11 @@ class Session {
   Status stand_at(double t) {
     ida_.read(t, next_);
     if (Status status = passage_.complete(next_); !status.ok()) return status;
-    if (consistent_.leaves_branch(next_)) return {Failure::singular_position, t, {}};
+    if (consistent_.leaves_branch(next_) || gap_.goes_over(at_, next_, passage_.settled()))
+      return {Failure::singular_position, t, {}};
     consistent_.follow(next_);
+    gap_.follow(next_, passage_.settled());
+    since_stood_ = 0;
     std::swap(at_, next_);
     return {};
   }
@@ -283,6 +290,7 @@ class Session {
   const Parts parts_;
   Consistent consistent_;
   Passage passage_;
+  NarrowGap gap_;
   State at_, next_;  // the last point given out, and the next one while it is made
   double at_t_ = 0;  // IDA's time
   Course course_;
@@ -292,6 +300,7 @@ class Session {
   bool told_ = false;
   bool by_singular_ = false;      // the last pass came by one
   double since_pass_ = HUGE_VAL;  // rad
+  double since_stood_ = 0;        // rad
   struct Mark {
     bool known = false;
     double t = 0, way = 0;  // rad, since the one before

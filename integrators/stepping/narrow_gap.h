@@ -34,6 +34,8 @@ class NarrowGap {
   // A step ends there that stands. The factorization at hand is that of `at`; `settled`: it is the limit of states
   // beside a singular position (passage.h), and of one of these.
   void follow(const State& at, bool settled);
+  // The next step begins elsewhere.
+  void forget() { forgotten_ = -1; }
   // Of a step that may stand. The problem stands at `to`, whose factorization is at hand, before and after.
   bool goes_over(const State& from, const State& to, bool settled);
 

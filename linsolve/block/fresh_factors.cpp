@@ -13,7 +13,7 @@ namespace {
 // Part of its size that is left of a pivot. Of 16 digits 10 remain at the first, which refinement makes good, though
 // another order may do without; at the second no more than 6, of which refinement may converge to anything.
 constexpr double kCancelled = 1e-6, kRounding = 1e-10;
-constexpr double kNothing = 1 / kSingularCondition;
+constexpr double kSingularPivot = 1 / kSingularCondition;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ Pivots FreshFactors::factor(const Schedule& schedule) {
   };
   Cancelled found = cancelled(first_, kRounding);
   // Solutions need not tell what is nothing but rounding, and looking at them takes as long as all else.
-  const bool trusted = found.least > kNothing && trustworthy(schedule);
+  const bool trusted = found.least > kSingularPivot && trustworthy(schedule);
   if (!trusted)
     found = cancelled(first_, kCancelled);
   else if (!std::ranges::equal(weight_, first_))
@@ -34,7 +34,7 @@ Pivots FreshFactors::factor(const Schedule& schedule) {
   look_at_ = std::max(look_at_, LookAt::some);
   if (bad_.empty()) return Pivots::good;
   look_at_ = LookAt::all;
-  return cancelled(weight_, kNothing).pivots.empty() ? Pivots::doubtful : Pivots::bad;
+  return cancelled(weight_, kSingularPivot).pivots.empty() ? Pivots::doubtful : Pivots::bad;
 }
 
 bool FreshFactors::trustworthy(const Schedule& schedule) {
