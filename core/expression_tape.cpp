@@ -2,12 +2,23 @@
 
 #include <cmath>
 
+#include "core/wide.h"
+
 namespace poinsot {
 namespace {
+
+using std::abs, std::acos, std::asin, std::atan, std::atan2, std::cos, std::cosh, std::exp, std::hypot, std::log,
+    std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
 
 template <class T>
 bool is_number(const T& x) {
   return x == x;
+}
+
+// So large or small that its cube may be no number or nothing.
+template <class T>
+bool outside(const T& x) {
+  return abs(x) > T(1e75) || (abs(x) < T(1e-75) && !(x == 0));
 }
 
 // A value that varies with nothing on either side of a jump; no number stays none.
@@ -16,14 +27,38 @@ Jet2<T> level(const Jet2<T>& x, T value) {
   return {is_number(x.f) ? value : x.f, T(0), T(0)};
 }
 
-// xⁿ with a constant exponent. A vanishing coefficient comes before a negative power of x = 0.
+// xⁿ with a constant exponent. A vanishing coefficient comes before a negative power of x = 0; and where n > 1 so does
+// ẋ = 0, beside which x, and so xⁿ, is as flat on either side.
 template <class T>
 Jet2<T> power_constant(const Jet2<T>& x, T n) {
   if (n == 0) return level(x, T(1));
   if (n == 2) return compose(x, x.f * x.f, 2 * x.f, T(2));
-  const T first = n * std::pow(x.f, n - 1);
-  const T second = n == 1 ? T(0) : n * (n - 1) * std::pow(x.f, n - 2);
-  return compose(x, std::pow(x.f, n), first, second);
+  const T f = pow(x.f, n);
+  if (n == 1) return x;
+  if (outside(x.f)) {  // powers of it that n is lessened for may not be
+    const T r = x.fd / x.f;
+    return {f, f * n * r, f * n * ((n - 1) * r * r + x.fdd / x.f)};
+  }
+  const T first = n * pow(x.f, n - 1);
+  if (n > 1 && x.fd == 0) return {f, first * x.fd, first * x.fdd};
+  return compose(x, f, first, n * (n - 1) * pow(x.f, n - 2));
+}
+
+// ḟ = ẋ/x, where x² may be outside of all numbers.
+template <class T>
+Jet2<T> logarithm(const Jet2<T>& x) {
+  const T fd = x.fd / x.f;
+  return {log(x.f), fd, x.fdd / x.f - fd * fd};
+}
+
+template <class T>
+Jet2<T> of_table(const Spline& table, const Jet2<T>& x) {
+  return table.at(x);
+}
+template <class M>
+Jet2<Wide<M>> of_table(const Spline& table, const Jet2<Wide<M>>& x) {
+  const Jet2<M> f = table.at(Jet2<M>{M(x.f), M(x.fd), M(x.fdd)});
+  return {f.f, f.fd, f.fdd};
 }
 
 template <class T>
@@ -32,48 +67,48 @@ Jet2<T> function(const TapeInstruction& instruction, const Jet2<T>& x) {
     case TapeOp::negate:
       return {-x.f, -x.fd, -x.fdd};
     case TapeOp::sin: {
-      const T s = std::sin(x.f), c = std::cos(x.f);
+      const T s = sin(x.f), c = cos(x.f);
       return compose(x, s, c, -s);
     }
     case TapeOp::cos: {
-      const T s = std::sin(x.f), c = std::cos(x.f);
+      const T s = sin(x.f), c = cos(x.f);
       return compose(x, c, -s, -c);
     }
     case TapeOp::tan: {
-      const T f = std::tan(x.f), first = 1 + f * f;
+      const T f = tan(x.f), first = 1 + f * f;
       return compose(x, f, first, 2 * f * first);
     }
     case TapeOp::asin:
     case TapeOp::acos: {
-      const T square = (1 - x.f) * (1 + x.f), first = 1 / std::sqrt(square), second = x.f * first / square;
-      return instruction.op == TapeOp::asin ? compose(x, std::asin(x.f), first, second)
-                                            : compose(x, std::acos(x.f), -first, -second);
+      const T square = (1 - x.f) * (1 + x.f), first = 1 / sqrt(square), second = x.f * first / square;
+      return instruction.op == TapeOp::asin ? compose(x, asin(x.f), first, second)
+                                            : compose(x, acos(x.f), -first, -second);
     }
     case TapeOp::atan: {
       const T first = 1 / (1 + x.f * x.f);
-      return compose(x, std::atan(x.f), first, -2 * x.f * first * first);
+      return compose(x, atan(x.f), first, -2 * x.f * first * first);
     }
     case TapeOp::sinh: {
-      const T f = std::sinh(x.f);
-      return compose(x, f, std::cosh(x.f), f);
+      const T f = sinh(x.f);
+      return compose(x, f, cosh(x.f), f);
     }
     case TapeOp::cosh: {
-      const T f = std::cosh(x.f);
-      return compose(x, f, std::sinh(x.f), f);
+      const T f = cosh(x.f);
+      return compose(x, f, sinh(x.f), f);
     }
     case TapeOp::tanh: {
-      const T f = std::tanh(x.f), c = std::cosh(x.f), first = 1 / (c * c);  // 1 − f² would cancel
+      const T f = tanh(x.f), c = cosh(x.f), first = 1 / (c * c);  // 1 − f² would cancel
       return compose(x, f, first, -2 * f * first);
     }
     case TapeOp::exp: {
-      const T f = std::exp(x.f);
+      const T f = exp(x.f);
       return compose(x, f, f, f);
     }
     case TapeOp::log:
-      return compose(x, std::log(x.f), 1 / x.f, -1 / (x.f * x.f));
+      return logarithm(x);
     case TapeOp::sqrt: {
-      const T f = std::sqrt(x.f), first = 1 / (2 * f);
-      return compose(x, f, first, -first / (2 * x.f));
+      const T f = sqrt(x.f), fd = x.fd / (2 * f);
+      return {f, fd, (x.fdd / 2 - fd * fd) / f};
     }
     case TapeOp::abs:
       return x.f < 0 ? Jet2<T>{-x.f, -x.fd, -x.fdd} : x;
@@ -82,11 +117,11 @@ Jet2<T> function(const TapeInstruction& instruction, const Jet2<T>& x) {
     case TapeOp::step:
       return level(x, T(x.f >= 0));
     case TapeOp::fold: {
-      const T s = std::sin(x.f);
-      return compose(x, std::atan2(std::abs(s), std::cos(x.f)), T(s < 0 ? -1 : 1), T(0));
+      const T s = sin(x.f);
+      return compose(x, atan2(abs(s), cos(x.f)), T(s < 0 ? -1 : 1), T(0));
     }
     case TapeOp::table:
-      return instruction.table->at(x);
+      return of_table(*instruction.table, x);
     default:
       return power_constant(x, T(instruction.value));
   }
@@ -106,15 +141,14 @@ Jet2<T> operation(TapeOp op, const Jet2<T>& x, const Jet2<T>& y) {
       return {f, fd, (x.fdd - 2 * fd * y.fd - f * y.fdd) / y.f};
     }
     case TapeOp::power: {  // f = exp(g), g = y log x
-      const Jet2<T> logarithm = compose(x, std::log(x.f), 1 / x.f, -1 / (x.f * x.f));
-      const Jet2<T> g = operation(TapeOp::multiply, y, logarithm);
-      const T f = is_number(x.f) && is_number(y.f) ? std::pow(x.f, y.f) : g.f;  // 1^y and x^0 are 1 whatever y and x
+      const Jet2<T> g = operation(TapeOp::multiply, y, logarithm(x));
+      const T f = is_number(x.f) && is_number(y.f) ? pow(x.f, y.f) : g.f;  // 1^y and x^0 are 1 whatever y and x
       return compose(g, f, f, f);
     }
     case TapeOp::atan2: {  // angle of the point (y, x): ḟ = (y ẋ − x ẏ) / (x² + y²)
-      const T square = x.f * x.f + y.f * y.f;
-      const T fd = (y.f * x.fd - x.f * y.fd) / square;
-      return {std::atan2(x.f, y.f), fd, (y.f * x.fdd - x.f * y.fdd - 2 * fd * (x.f * x.fd + y.f * y.fd)) / square};
+      const T r = hypot(x.f, y.f), a = x.f / r, b = y.f / r, ad = x.fd / r, bd = y.fd / r;
+      const T fd = b * ad - a * bd;
+      return {atan2(x.f, y.f), fd, b * (x.fdd / r) - a * (y.fdd / r) - 2 * fd * (a * ad + b * bd)};
     }
     case TapeOp::min:
       return y.f < x.f || !is_number(y.f) ? y : x;
@@ -169,7 +203,13 @@ Arguments<Jet2<double>> constants(const Arguments<double>& at) {
 
 template <class T>
 Jet2<T> run_tape(std::span<const TapeInstruction> tape, const Arguments<Jet2<T>>& at) {
-  return run<T>(tape, at, [](const TapeInstruction&, const T&, const T&) {});
+  const auto nothing = [](const TapeInstruction&, const auto&, const auto&) {};
+  const Jet2<T> f = run<T>(tape, at, nothing);
+  if (std::isfinite(f.fd) && std::isfinite(f.fdd)) [[likely]]
+    return f;
+  const auto wide = [](const Jet2<T>& x) { return Jet2<Wide<T>>{x.f, x.fd, x.fdd}; };
+  const Jet2<Wide<T>> again = run<Wide<T>>(tape, {wide(at.t), wide(at.x), wide(at.v)}, nothing);
+  return {T(again.f), T(again.fd), T(again.fdd)};
 }
 
 template Jet2<double> run_tape(std::span<const TapeInstruction>, const Arguments<Jet2<double>>&);
@@ -178,7 +218,7 @@ template Jet2<long double> run_tape(std::span<const TapeInstruction>, const Argu
 void tape_switches(std::span<const TapeInstruction> tape, const Arguments<double>& at, std::span<double> out) {
   std::size_t k = 0;
   run<double>(tape, constants(at), [&](const TapeInstruction& instruction, double x, double y) {
-    if (has_switch(instruction.op)) out[k++] = instruction.op == TapeOp::fold ? std::sin(x) : x - y;
+    if (has_switch(instruction.op)) out[k++] = instruction.op == TapeOp::fold ? sin(x) : x - y;
   });
 }
 

@@ -5,7 +5,7 @@
 //   f = φ(x),   ḟ = φ'(x) ẋ,   f̈ = φ''(x) ẋ² + φ'(x) ẍ,
 // and correspondingly for two arguments. Where φ has a kink or a jump (abs, sign, step, fold, min, max) the derivatives
 // are those of one side, and the value whose sign tells the sides apart is a switch of the tape. What is not a number
-// stays so, whatever it is combined with.
+// stays so, whatever it is combined with; what overflows on the way to a derivative is evaluated again in wide.h.
 #pragma once
 
 #include <cstddef>
