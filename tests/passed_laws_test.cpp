@@ -139,5 +139,31 @@ TEST_P(PassedLawsTest, SteepForcesAreResolved) {
   }
 }
 
+// So are those that turn over with the rate, as where a slider that a spring pulls comes to stick and breaks loose.
+TEST_P(PassedLawsTest, SteepForcesOfTheRateAreResolved) {
+  const double most = GetParam().integrator == "ida" ? 2000 : 200;  // tolerances
+  for (const char* friction : {"(3 + 2*exp(-(v/0.05)^2))*tanh(v/1e-3)", "4*v/sqrt(v^2 + 1e-6)"}) {
+    Scene scene = flying({0, 0, 0}, friction, 3);
+    Spring pull = std::get<Spring>(scene.forces[0]);
+    pull.law = Expression::parse_law("1000*(x + 1 - 0.5*t)");
+    scene.forces.push_back(pull);
+    const auto moved = [&](const Settings& settings) {
+      const Recorded r = run(scene, settings);
+      EXPECT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+      EXPECT_THAT(r.outcome.notices, IsEmpty()) << friction;
+      return r.samples;
+    };
+    const auto right = moved(controlled("dop853", "rA", 1e-11, 2, 0.02));
+    for (const double rtol : {1e-6, 1e-7}) {
+      const auto samples = moved(settings(rtol, 2, 0.02));
+      ASSERT_EQ(samples.size(), right.size());
+      double off = 0;
+      for (std::size_t k = 0; k < samples.size(); ++k)
+        off = std::max(off, (samples[k].bodies[0].rd - right[k].bodies[0].rd).norm());
+      EXPECT_LT(off, most * rtol) << friction << rtol;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace poinsot::test

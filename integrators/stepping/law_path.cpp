@@ -57,11 +57,11 @@ class SeenForce {
 
 // Where F comes to what is not seen, about: shortly after `from`, where it is, or before `to`, where it is not. In the
 // middle of it a force may have no direction.
-template <class Seen>
-double entry_into(const LawPath& path, Seen&& seen, double from, double to) {
+template <class Force, class Seen>
+double entry_into(const Force& force, Seen&& seen, double from, double to) {
   for (int k = 0; k < kTowardsEntry; ++k) {
     const double middle = from + 0.5 * (to - from);
-    (seen(middle, path.force(middle)) ? from : to) = middle;
+    (seen(middle, force(middle)) ? from : to) = middle;
   }
   return to;
 }
@@ -71,7 +71,8 @@ UnseenForce first_in_part(const LawPath& path, const SeenForce& seen, double fro
   if (seen.holds(path.close_force(from, to))) return {};
   const double middle = from + 0.5 * (to - from);
   const auto holds = [&](double, double F) { return seen.holds({F, F}); };
-  if (!holds(middle, path.force(middle))) return {entry_into(path, holds, from, middle), true};
+  const auto force = [&](double s) { return path.force(s); };
+  if (!holds(middle, force(middle))) return {entry_into(force, holds, from, middle), true};
   if (partings == 0 || --pieces < 0) return {from, false};
   const UnseenForce sooner = first_in_part(path, seen, from, middle, partings - 1, pieces);
   return sooner.s < 1 ? sooner : first_in_part(path, seen, middle, to, partings - 1, pieces);
@@ -213,6 +214,19 @@ Jet2<double> LawPath::along(double s) const {
   return of_.F->along<double>({{t_ + s * h_, h_, 0}, {length - of_.zero, longer, 0}, {v_, 0, 0}});
 }
 
+Jet2<double> LawPath::moving_along(double s) const {
+  if (!of_.F->depends_on_rate()) return along(s);
+  const LawPlace here = place(s);
+  const Vector faster = change_ + (1 - 2 * s) * bulge_;
+  const Arguments<double> x = of_.arguments(here, t_ + s * h_);
+  double accelerated = faster.x();
+  if (of_.torsion < 0) {
+    const double length = here.d.norm();
+    accelerated = length > 0 ? (here.d.dot(faster) + h_ * (here.rate.squaredNorm() - x.v * x.v)) / length : 0;
+  }
+  return of_.F->along<double>({{x.t, h_, 0}, {x.x, h_ * x.v, 0}, {x.v, accelerated, 0}});
+}
+
 double LawPath::slope(double s) const {
   return of_.F->law(arguments(s)).F_x;
 }
@@ -274,18 +288,19 @@ double led_to(const LawEnds& ends, double s) {
 }
 
 // Where F is off that by more than `much`; at the places it is as given.
-UnseenForce first_off(const LawPath& path, const LawEnds& ends, std::span<const double> places,
+template <class Force>
+UnseenForce first_off(const Force& force, const LawEnds& ends, std::span<const double> places,
                       std::span<const double> there, double much) {
   const auto led = [&](double s, double F) { return !(std::abs(F - led_to(ends, s)) > much); };
   for (std::size_t k = 0; k < places.size(); ++k)
-    if (!led(places[k], there[k])) return {entry_into(path, led, k == 0 ? 0 : places[k - 1], places[k]), true};
+    if (!led(places[k], there[k])) return {entry_into(force, led, k == 0 ? 0 : places[k - 1], places[k]), true};
   return {};
 }
 
 // F at places of the step, and the range with its ends.
-template <std::size_t n>
-double look_at(const LawPath& path, const LawEnds& ends, const double (&places)[n], std::array<double, n>& there) {
-  std::ranges::transform(places, there.begin(), [&](double s) { return path.force(s); });
+template <std::size_t n, class Force>
+double look_at(const Force& force, const LawEnds& ends, const double (&places)[n], std::array<double, n>& there) {
+  std::ranges::transform(places, there.begin(), force);
   const auto [least, most] = std::ranges::minmax(there);
   const Bounds range = ends.range();
   return std::max(most, range.most) - std::min(least, range.least);
@@ -306,16 +321,19 @@ UnseenForce first_unseen(const LawPath& path, const LawEnds& ends, double nothin
 
 UnseenForce first_between(const LawPath& path, const LawEnds& ends, double nothing) {
   constexpr double kOff = 0.35;  // of the range, more than a kink is
+  const auto force = [&](double s) { return path.force(s); };
   std::array<double, std::size(kLookedAt)> there;
-  const double range = look_at(path, ends, kLookedAt, there);
-  return first_off(path, ends, kLookedAt, there, std::max(kOff * range, nothing));
+  const double range = look_at(force, ends, kLookedAt, there);
+  return first_off(force, ends, kLookedAt, there, std::max(kOff * range, nothing));
 }
 
-UnseenForce first_steep(const LawPath& path, const LawEnds& ends, double nothing) {
+UnseenForce first_steep(const LawPath& path, const LawEnds& still, double nothing) {
   constexpr double kPlaces[] = {0.3, 0.5, 0.7}, kBetween[] = {0.12, 0.88};
   constexpr double kOff = 1e-3, kFar = 0.2;  // of the range
+  const LawEnds ends = path.moves() ? LawEnds{path.moving_along(0), path.moving_along(1)} : still;
+  const auto force = [&](double s) { return path.moving_along(s).f; };
   std::array<double, std::size(kPlaces)> there, off;
-  const double range = look_at(path, ends, kPlaces, there), much = std::max(kOff * range, nothing);
+  const double range = look_at(force, ends, kPlaces, there), much = std::max(kOff * range, nothing);
   for (std::size_t k = 0; k < off.size(); ++k) off[k] = there[k] - led_to(ends, kPlaces[k]);
   if (std::ranges::none_of(off, [&](double x) { return std::abs(x) > much; })) return {};
   // The polynomial is the cubic + s² (1 − s)² q(s).
@@ -326,9 +344,9 @@ UnseenForce first_steep(const LawPath& path, const LawEnds& ends, double nothing
     const double q = off[1] + 0.5 * x * (off[2] - off[0] + x * (off[0] - 2 * off[1] + off[2]));
     return led_to(ends, s) + weight(s) * q;
   };
-  const auto is_off = [&](double s) { return std::abs(path.force(s) - by_polynomial(s)) > much; };
+  const auto is_off = [&](double s) { return std::abs(force(s) - by_polynomial(s)) > much; };
   if (std::ranges::none_of(kBetween, is_off)) return {};
-  const UnseenForce far = first_off(path, ends, kPlaces, there, std::max(kFar * range, nothing));
+  const UnseenForce far = first_off(force, ends, kPlaces, there, std::max(kFar * range, nothing));
   return {std::min(far.s, 0.5), true};
 }
 

@@ -69,6 +69,9 @@ class LawPath {
   double force(double s) const { return along(s).f; }
   Jet2<double> along(double s) const;  // F, and its first derivative by s
   LawEnds ends() const { return {along(0), along(1)}; }
+  // The same with v as it is at s, of a law that varies with it.
+  Jet2<double> moving_along(double s) const;
+  bool moves() const { return of_.F->depends_on_rate(); }
   // What the law depends on at s, with the rate there: not the derivative of d, which in a short step is rounding.
   Arguments<double> moving(double s) const;
   Bounds force(double from, double to) const;
