@@ -267,6 +267,8 @@ Status Consistent::cross(State& at, double t) {
   bool moved = false;
   const Status status = project(at, moved);
   if (!status.ok() || largest(span(moved_by_, 0, problem_.nv())) > kJump * std::max(1.0, largest(span(at.q)))) {
+    const int row = problem_.model_rows()[static_cast<std::size_t>(jumping)];
+    if (problem_.model().rows[static_cast<std::size_t>(row)].f.is_constant()) return singular_switch(at.t);
     return jump_of_positions(at.t, problem_.describe_unknown(problem_.nv() + static_cast<int>(jumping)));
   }
   return moved ? accelerations(at) : Status{};  // velocities may have jumped: no refinement of those before

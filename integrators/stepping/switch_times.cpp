@@ -156,4 +156,11 @@ Status jump_of_positions(double t, std::string_view what) {
                      "let it pass through the values between");
 }
 
+Status singular_switch(double t) {
+  return {Failure::singular_position, t,
+          fmt::format("at t = {:.9g} s a force or a driver has a kink or a jump where the mechanism is in a singular "
+                      "position, or all but: what it does on the other side is left to rounding",
+                      t)};
+}
+
 }  // namespace poinsot

@@ -70,5 +70,7 @@ struct PositionJump {
 PositionJump first_jump(const Model& model, double end);
 // The stop where it does, by `what`.
 Status jump_of_positions(double t, std::string_view what);
+// A kink or a jump of the data at a singular position, where no state is found just past it.
+Status singular_switch(double t);
 
 }  // namespace poinsot
