@@ -2,7 +2,8 @@
 // jumps of the data stepped onto, pulses and what laws do on the way not stepped over, an exact end.
 //
 // A Method is a stepper with: Status attempt(to, rejections, error), trial_end(), Status complete(error),
-// Status interpolate(t), Status lead(t), interpolated(), take_back(), settle(), bool choose_rows(), cross(t), state();
+// Status interpolate(t), Status lead(t), interpolated(), take_back(), settle(), bool choose_rows(), cross(t),
+// bool cross_singular(from, t, singular_for), near_singular(), state();
 // double first_step(end, singular_for), Run's; double retry(h, rejections, usual), the step to try after so many
 // rejections in a row; double adopt(h, wanted), the step after a completed one of length h.
 #pragma once
@@ -21,7 +22,7 @@ namespace poinsot {
 // From the method's state to the end, or to the first step after which leave() says so.
 template <class Method, class Leave>
 Status controlled_steps(Method& method, const StepRule& rule, Course& course, const Leave& leave) {
-  constexpr double kForgotten = 0.8;
+  constexpr double kForgotten = 0.8, kBeside = 2e-3;  // kBeside: rad
   constexpr int kAsksForRows =
       4;  // rejections: of redundant rows the kept ones may all but depend on one another ahead
   const double end = course.end(), smallest = 16 * std::numeric_limits<double>::epsilon() * end;
@@ -34,12 +35,37 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
   double usual = singular_for > 0 ? h : 0;  // length of the steps so far, those long ago forgotten
   int rejections = 0;                       // in a row
   double asked_at = -1;
-  bool cut = false;  // h is what laws leave of a step
+  bool cut = false;                               // h is what laws leave of a step
+  const auto begin_anew = [&](double singular) {  // what error control has learnt is of the motion before
+    controller = StepController(rule);
+    creeping = Creeping(end);
+    course.begin_anew(method.state());
+    h = method.first_step(end, singular);
+    rejections = 0;
+    cut = false;
+  };
+  // Over a switch of a law at `to` that lies at a singular position; whether it does.
+  const auto over_singular = [&](Before from, double to) {
+    double singular = 0;
+    if (!method.cross_singular(from, to, singular)) return false;
+    for (; !course.every_step && times.next() <= method.state().t; times.pass()) {
+      if (!method.lead(times.next()).ok()) break;
+      course.give_out(method.interpolated());
+    }
+    if (course.every_step) course.give_out(method.state());
+    begin_anew(singular);
+    return true;
+  };
+  const auto beside_switch = [&](double stop) {
+    const double to = course.law_switches.crossed_within(kBeside / course.problem().fastest_turn());
+    return to < stop && (over_singular(Before::step, to) || over_singular(Before::now, to));
+  };
   while (method.state().t < end) {
     const double t = method.state().t;
     if (interruption_requested) return interrupted(t);
     const SwitchTimes::Switch turn = course.switches.first(t, std::min(t + 1.01 * h, end));
     const double stop = std::min(turn.before, end), beyond_law = course.law_switches.beyond();
+    if (method.near_singular() && beside_switch(stop)) continue;
     const bool leads = beyond_law < stop;  // to a switch of a law that is as near as that
     const double wanted = leads ? t : t + (cut ? 1 : 1.01) * h >= stop ? stop : t + h;
     const double to = course.pulses.reach(t, wanted);
@@ -58,6 +84,7 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
           cut = true;
           continue;
         }
+        if (!status.ok() && beside_switch(stop)) continue;
         if (rejections == kAsksForRows && std::exchange(asked_at, t) != t && method.choose_rows()) {
           h = std::max(h, usual);
           rejections = 0;
@@ -109,19 +136,19 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
     }
     const double other_side = leads ? beyond_law : std::min(turn.after, end);
     if (Status status = course.driver_jumps.look(crosses ? other_side : method.state().t); !status.ok()) return status;
-    if (Status status = crosses ? method.cross(other_side) : method.settle(); !status.ok()) return status;
+    if (Status status = crosses ? method.cross(other_side) : method.settle(); !status.ok()) {
+      const bool singular = leads && status.failure == Failure::singular_position;
+      if (!singular || !(over_singular(Before::step, other_side) || over_singular(Before::now, other_side)))
+        return status;
+      continue;
+    }
     if (course.every_step) {
       if (to > t) course.give_out(method.state());
     } else if (times.next() <= method.state().t) {
       course.give_out(method.state(), times.next());
       times.pass();
     }
-    if (crosses) {  // what error control has learnt is of the motion before
-      controller = StepController(rule);
-      creeping = Creeping(end);
-      course.begin_anew(method.state());
-      h = method.first_step(end, 0);
-    }
+    if (crosses) begin_anew(0);
     if (leave()) return {};
   }
   return {};

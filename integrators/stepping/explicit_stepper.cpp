@@ -91,8 +91,25 @@ bool ExplicitStepper::choose_rows() {
 
 Status ExplicitStepper::cross(double t) {
   elsewhere_ = true;
-  if (Status status = consistent_.cross(state_, t); !status.ok()) return status;
+  sample_ = state_;
+  if (Status status = consistent_.cross(state_, t); !status.ok()) {
+    std::swap(state_, sample_);
+    return status;
+  }
   return settle();
+}
+
+bool ExplicitStepper::cross_singular(Before from, double t, double& singular_for) {
+  const State& before = from == Before::step ? next_ : state_;
+  singular_for = from == Before::step && !(before.t < state_.t)
+                     ? 0
+                     : cross_singular_switch(problem_, consistent_, before, t, rtol_, sample_);
+  if (singular_for == 0) return false;
+  elsewhere_ = true;
+  std::swap(state_, sample_);
+  if (settle().ok()) return true;
+  std::swap(state_, sample_);
+  return false;
 }
 
 void ExplicitStepper::advance(double h, Terms terms, Vector& y) const {

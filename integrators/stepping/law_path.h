@@ -1,11 +1,10 @@
-// A spring that has a law over one step: the way its ends go, and where the law comes to more on it than a method sees.
+// A spring that has a law over one step: the way its ends go, and what the law comes to on it.
 //
 // Over a step the ends of a spring go by d(s) = the cubic of Hermite through d and ḋ at both ends, s = (t − t_n)/h. It
 // errs by no more than e ≈ h²/50 (|δ_n| + |δ_{n+1}|), δ what its second derivative and the true one differ by at an
 // end, no more than the turning of bodies and the change of ḋ account for: stiff forces make noise of accelerations.
 // With x(s) = |d(s)| − length (an angle less its zero for a torsion spring), F(s) = law(x(s), v, t), v that of the
-// middle: the step sees F where interval arithmetic holds it, piece by piece, within what it comes to at its ends or at
-// four of nine places in between, widened by twice as much to either side.
+// middle.
 #pragma once
 
 #include <algorithm>
@@ -97,19 +96,5 @@ class LawPath {
   Vector rate_, change_, bulge_;  // of the rate: where the step begins, over it, beyond a straight line in its middle
   double error_ = 0, v_ = 0;
 };
-
-// The first place of a step at which F may come to more than is seen, by more than `nothing`; known: it does.
-struct UnseenForce {
-  double s = 1;
-  bool known = false;
-};
-UnseenForce first_unseen(const LawPath& path, const LawEnds& ends, double nothing);
-// The same for a method that looks at forces where its steps end, and nowhere between: where F leaves what its ends,
-// and the slopes there, lead to.
-UnseenForce first_between(const LawPath& path, const LawEnds& ends, double nothing);
-// Where F varies more steeply than the stages of a step can tell, as tanh(1e4 x) in passing, which makes estimates of
-// the error a matter of luck: it is off the polynomial of degree six through its values and slopes at the ends and its
-// values at three places between.
-UnseenForce first_steep(const LawPath& path, const LawEnds& ends, double nothing);
 
 }  // namespace poinsot

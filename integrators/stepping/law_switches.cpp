@@ -99,22 +99,31 @@ void LawSwitches::accept() {
 
 double LawSwitches::length(double h) {
   if (!approached_.of) return h;
+  const double from = steps_.from(), left = this->left();
+  if (left == kNever) return std::min(h, span());
+  const double rounding = resolution();
+  const double within = long_ > 0 ? std::min(left * left / long_, 0.5 * left) : 0.5 * left;
+  const double near = std::max({(approached_.of->jumps ? kNearJump : kNearKink) * long_, kMoment * end_, rounding});
+  if (left > near) return std::min(h, left - within);
+  beyond_ = from + left + within + kMoment * end_ + rounding;
+  return h;
+}
+
+double LawSwitches::crossed_within(double time) {
+  const double left = approached_.of ? this->left() : kNever;
+  return left <= time ? steps_.from() + left : kNever;
+}
+
+// s, until the switch is crossed that is approached, as the motion goes on at its beginning.
+double LawSwitches::left() {
   const Switch& of = *approached_.of;
-  const double from = steps_.from(), span = 2 * (expected_ - from + within_);
-  const LawPath path = steps_.ahead(approached_.law, from + span);
+  const LawPath path = steps_.ahead(approached_.law, steps_.from() + span());
   double before = 0;
   for (const double s : kSideLooks) {
-    if (of.side * value(approached_.law, of, path, s) < 0) {
-      const double left = span * root(approached_.law, of, path, before, s), rounding = resolution();
-      const double within = long_ > 0 ? std::min(left * left / long_, 0.5 * left) : 0.5 * left;
-      const double near = std::max({(of.jumps ? kNearJump : kNearKink) * long_, kMoment * end_, rounding});
-      if (left > near) return std::min(h, left - within);
-      beyond_ = from + left + within + kMoment * end_ + rounding;
-      return h;
-    }
+    if (of.side * value(approached_.law, of, path, s) < 0) return span() * root(approached_.law, of, path, before, s);
     before = s;
   }
-  return std::min(h, span);
+  return kNever;
 }
 
 // s, what rounding of places leaves open of when the switch approached is crossed.

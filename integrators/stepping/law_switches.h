@@ -31,6 +31,8 @@ class LawSwitches {
   void accept();  // that step, which is steps.accept()ed thereafter
   // s, just beyond the switch that the motion stands before; none so near: infinity.
   double beyond() const { return beyond_; }
+  // s, when that switch is crossed that a step comes to within a time; none: infinity.
+  double crossed_within(double time);
   // The length of the next step, where one of h was wanted.
   double length(double h);
 
@@ -60,6 +62,8 @@ class LawSwitches {
   double value(std::size_t law, const Switch& of, const LawPath& path, double s);
   bool begins_on(const Switch& of, const LawPath& path) const;
   double root(std::size_t law, const Switch& of, const LawPath& path, double from, double to);
+  double left();
+  double span() const { return 2 * (expected_ - steps_.from() + within_); }
   double resolution() const;
   void note_crossing(Switch& of, double t) const;
   bool counts(std::size_t law, const Switch& of, const LawPath& path, double s, double h) const;

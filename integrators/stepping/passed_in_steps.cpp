@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/index.h"
+#include "integrators/stepping/law_looks.h"
 
 namespace poinsot {
 namespace {

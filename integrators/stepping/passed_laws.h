@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "integrators/integrator.h"
+#include "integrators/stepping/law_looks.h"
 #include "integrators/stepping/law_steps.h"
 
 namespace poinsot {

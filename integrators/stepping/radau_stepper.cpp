@@ -87,9 +87,26 @@ Status RadauStepper::take_rows() {
 }
 
 Status RadauStepper::cross(double t) {
-  if (Status status = consistent_.cross(state_, t); !status.ok()) return status;
+  sample_ = state_;
+  if (Status status = consistent_.cross(state_, t); !status.ok()) {
+    std::swap(state_, sample_);
+    return status;
+  }
   h_before_ = step_.h = 0;  // the stages are those of other forces
   return settle();
+}
+
+bool RadauStepper::cross_singular(Before from, double t, double& singular_for) {
+  const State& before = from == Before::step ? before_ : state_;
+  singular_for = from == Before::step && !(before.t < state_.t)
+                     ? 0
+                     : cross_singular_switch(problem_, consistent_, before, t, rtol_, sample_);
+  if (singular_for == 0) return false;
+  std::swap(state_, sample_);
+  h_before_ = step_.h = 0;  // the stages are those of other forces
+  if (settle().ok()) return true;
+  std::swap(state_, sample_);
+  return false;
 }
 
 double RadauStepper::first_step(double end) const {

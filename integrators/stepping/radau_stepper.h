@@ -27,6 +27,7 @@
 #include "integrators/stepping/linearization.h"
 #include "integrators/stepping/narrow_gap.h"
 #include "integrators/stepping/passage.h"
+#include "integrators/stepping/singular_switch.h"
 #include "integrators/stepping/step_control.h"
 
 namespace poinsot {
@@ -63,8 +64,12 @@ class RadauStepper {
   Status settle();
   // Of redundant rows keeps others where those kept are not the best here: true where they are others now.
   bool choose_rows();
-  // Goes over a switch of the data, on to the time just past it.
+  // Goes over a switch of the data, on to the time just past it; the state is else what it was.
   Status cross(double t);
+  // Over one of a law that lies at a singular position, so near that accelerations vary linearly up to it: whether that
+  // was possible, and for how long the position is near, as Run has it. From where the last step began, or ended.
+  bool cross_singular(Before from, double t, double& singular_for);
+  bool near_singular() const { return consistent_.amplification() > 1; }
 
   // Whether steps of the same length are worth their kept matrix.
   bool converges_fast() const { return fast_; }
