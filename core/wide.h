@@ -54,7 +54,7 @@ class Wide {
   }
   friend Wide pow(const Wide& x, const Wide& y) {
     const M f = std::pow(M(x), M(y));
-    if ((std::isfinite(f) && f != 0) || !x.usual() || !y.usual()) return Wide(f);
+    if ((f != 0 && !std::isinf(f)) || !x.usual() || !y.usual()) return Wide(f);  // no number stays none
     const Wide size = exp(y * log(abs(x)));
     return std::signbit(f) ? -size : size;
   }

@@ -62,6 +62,7 @@ TEST(Wide, KeepsWhatIsNoNumber) {
   EXPECT_EQ(double(log(W(0))), -infinity);
   EXPECT_TRUE(std::isnan(double(W(0) * W(infinity))));
   EXPECT_TRUE(std::isnan(double(log(W(-1)))));
+  EXPECT_TRUE(std::isnan(double(pow(W(-1), W(2.5)))));
   EXPECT_TRUE(std::isnan(double(W(infinity) - W(infinity))));
 }
 
@@ -147,6 +148,7 @@ TEST(Wide, PowersOfWhatVanishesAreFlat) {
   }
   EXPECT_FALSE(std::isfinite(Expression::parse("t^1.5").at(0.0).fdd));
   EXPECT_FALSE(std::isfinite(Expression::parse("sqrt(t)").at(0.0).fd));
+  EXPECT_FALSE(std::isfinite(Expression::parse("t^2.5").at(-1.0).f));
   EXPECT_FALSE(std::isfinite(Expression::parse("1/t").at(0.0).f));
   EXPECT_FALSE(std::isfinite(Expression::parse("1/(1/t)").at(0.0).fd));
 }

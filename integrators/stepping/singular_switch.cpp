@@ -10,14 +10,14 @@ namespace poinsot {
 namespace {
 
 constexpr double kApart = 0.006;  // rad, τ: rounding 63 ε/τ³ of accelerations and 720 (τ/R)⁶ of velocities are small
-constexpr double kNear = 0.06;  // rad: so far on it is near
+constexpr double kNearby = 0.06;  // rad: so far on it is near
 constexpr int kOnASide = 6;
 // What one place less may change of velocities and positions, of accelerations and multipliers: R is as small as that
 // allows. And what velocities of either side may differ by, further on by some of how far that is in rad.
 constexpr double kSameVelocity = 1e-6, kSameForce = 3e-3, kOfBeyond = 10;
 constexpr double kLinear = 3e-3;  // rad: so far accelerations vary linearly
-constexpr double kMostNoise =
-    1e-4;  // of the velocity: what rounding makes of that across, it makes the square of along
+// Of the velocity: what rounding makes of that across, it makes the square of along.
+constexpr double kMostNoise = 1e-4;
 // rad, and tolerances: so far from the switch errors of the position do not decide on its side.
 constexpr double kBeyondLeast = 1e-6, kBeyondMost = 1e-5, kBeyondTolerances = 10;
 
@@ -124,7 +124,7 @@ double cross_singular_switch(Problem& problem, Consistent& consistent, const Sta
   consistent.forget_approach();
   consistent.lead(at, t + beyond / rate);
   consistent.stand(at);
-  return kNear / rate;
+  return kNearby / rate;
 }
 
 }  // namespace poinsot
