@@ -35,8 +35,9 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
   double usual = singular_for > 0 ? h : 0;  // length of the steps so far, those long ago forgotten
   int rejections = 0;                       // in a row
   double asked_at = -1;
-  bool cut = false;                               // h is what laws leave of a step
-  const auto begin_anew = [&](double singular) {  // what error control has learnt is of the motion before
+  bool cut = false;  // h is what laws leave of a step
+  // What error control has learnt is of the motion before.
+  const auto begin_anew = [&](double singular) {
     controller = StepController(rule);
     creeping = Creeping(end);
     course.begin_anew(method.state());
@@ -44,15 +45,15 @@ Status controlled_steps(Method& method, const StepRule& rule, Course& course, co
     rejections = 0;
     cut = false;
   };
-  // Over a switch of a law at `to` that lies at a singular position; whether it does.
+  // Over a switch of a law at `to` that lies at a singular position; whether it does. What is to be given out before it
+  // is, first.
   const auto over_singular = [&](Before from, double to) {
     double singular = 0;
+    if (!course.every_step && times.next() < to) return false;
     if (!method.cross_singular(from, to, singular)) return false;
-    for (; !course.every_step && times.next() <= method.state().t; times.pass()) {
-      if (!method.lead(times.next()).ok()) break;
-      course.give_out(method.interpolated());
-    }
     if (course.every_step) course.give_out(method.state());
+    for (; !course.every_step && times.next() <= method.state().t; times.pass())
+      course.give_out(method.state(), times.next());
     begin_anew(singular);
     return true;
   };

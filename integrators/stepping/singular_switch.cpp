@@ -32,9 +32,7 @@ double weight(int k, int places, double x) {
 struct Beside {
   Eigen::VectorXd c, v, a, lambda;
 
-  void add(double weight, const Beside& x) {
-    c += weight * x.c, v += weight * x.v, a += weight * x.a, lambda += weight * x.lambda;
-  }
+  void add(double by, const Beside& x) { c += by * x.c, v += by * x.v, a += by * x.a, lambda += by * x.lambda; }
 };
 
 class OneSided {
