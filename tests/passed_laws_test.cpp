@@ -127,8 +127,8 @@ TEST_P(PassedLawsTest, SteepForcesAreResolved) {
       {"5*atan(1e5*x)", [](double x) { return 5 * x * std::atan(1e5 * x) - 2.5e-5 * std::log1p(1e10 * x * x); }}};
   const double most = GetParam().integrator == "ida" ? 400 : 50;  // tolerances
   constexpr double kRtol = 1e-7, kSpeeds[] = {1.7, 1.9, 2.1, 2.3, 2.5, 2.7};
-  for (const auto& [law, V] : laws) {
-    const auto energy = [&](const BodyState& ball) { return 0.5 * ball.rd.squaredNorm() + V(ball.r.x()); };
+  for (const auto& [law, potential] : laws) {
+    const auto energy = [V = potential](const BodyState& ball) { return 0.5 * ball.rd.squaredNorm() + V(ball.r.x()); };
     for (const double speed : kSpeeds) {
       const Recorded r = run(flying({speed, 0, 0}, law, 3), settings(kRtol, 1.2, 1.2));
       ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
