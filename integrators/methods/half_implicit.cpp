@@ -25,6 +25,7 @@ class HalfImplicit final : public FixedSteps {
         growth_(run) {}
 
   double index3_scale() const override { return h_ * h_; }
+  double phase_error() const override { return 1.0 / 24; }
   Status prepare() override { return ends_.prepare(); }
   void resize(double before) override { extrapolation_.resize(x_.z, h_ / before); }
   Status forget() override {

@@ -30,6 +30,7 @@ class Rattle final : public FixedSteps {
         zeros_(Vector::Zero(nv_ + nc_)),
         growth_(run) {}
 
+  double phase_error() const override { return 1.0 / 24; }
   Status prepare() override { return ends_.prepare(); }
   Status forget() override {  // the factorization may be that of the end
     place(ends_.begin().problem);

@@ -54,6 +54,8 @@ Status FixedSteps::march() {
   if (integrates() && turned_.due(h_)) turned_.look(problem_, x_, h_);
   jumps_.look(problem_, x_, sides_);
   if (run_.singular_for > 0) start_ = Start::limit;
+  if (phase_error() != 0) coarse_.emplace(run_, phase_error());
+  if (coarse_ && coarse_->none()) coarse_.reset();
   divides_ = settings_.retry && divides();
   repeats_ = divides_ && !remembers();
   for (std::int64_t n = 1; n <= grid_.steps && status.ok(); ++n) {
@@ -72,6 +74,7 @@ Status FixedSteps::march() {
     status = advance(grid_.time(n), sampled);
     if (run_.statistics.steps > before + 1) ++run_.statistics.divided_steps;
     if (status.ok() && damps()) damping_.look(last_seen(), x_);
+    if (status.ok() && coarse_) coarse_->look(last_seen(), x_);
     if (status.ok() && run_.energy && run_.energy->due()) run_.energy->look(last_seen(), x_.v);
     if (n % kStillSteps == 0 && status.ok() && integrates()) still_.look(problem_, x_);
     if (status.ok() && integrates() && rests_.due()) status = rests_.look(problem_, settings_.linear(), x_);
@@ -79,6 +82,7 @@ Status FixedSteps::march() {
   }
   finish(clock_, run_.statistics);
   if (status.ok() && damps()) damping_.say(run_, h_);
+  if (status.ok() && coarse_) coarse_->say(run_, h_);
   if (!status.ok()) x_.z = run_.state.z;  // not what Newton's method left
   run_.state = x_;
   if (const std::int64_t divided = run_.statistics.divided_steps; divided > 0)

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "integrators/stepping/branch.h"
+#include "integrators/stepping/coarse_steps.h"
 #include "integrators/stepping/driver_jumps.h"
 #include "integrators/stepping/index1_output.h"
 #include "integrators/stepping/law_jumps.h"
@@ -78,6 +79,9 @@ class FixedSteps {
   virtual bool divides() const { return true; }
   // Whether it takes from the motion what implicit Euler does (numerical_damping.h).
   virtual bool damps() const { return false; }
+  // What it makes too much of the phase of a vibration in a step, of (h ω)³, where it keeps amplitudes
+  // (coarse_steps.h).
+  virtual double phase_error() const { return 0; }
   // Whether a step depends on more of those before it than x_.
   virtual bool remembers() const { return false; }
   // The next step is one of h_, which has been `before`.
@@ -170,6 +174,7 @@ class FixedSteps {
   RestWatch rests_;
   StillWatch still_;
   NumericalDamping damping_;
+  std::optional<CoarseSteps> coarse_;
   SingularEnds singular_ends_;
   PassedInSteps passed_;
   TurnedInSteps turned_;

@@ -1,0 +1,163 @@
+// Steps of a fixed length that are too long for a vibration: how far its phase is off is told as it is, and the step
+// offered keeps it small.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <optional>
+#include <regex>
+
+#include "tests/support/remedies.h"
+#include "tests/support/simulation.h"
+
+namespace poinsot::test {
+namespace {
+
+constexpr double kOmega = 40;  // rad/s, of what vibrates
+
+struct Vibration {
+  Scene scene;
+  double (*of)(const BodyState&);    // the coordinate less its mean, and its rate
+  double (*rate)(const BodyState&);  //
+};
+
+Vibration on_a_spring() {
+  Scene scene;
+  Body block;
+  block.name = "block", block.mass = 2, block.inertia = Matrix3::Identity();
+  block.position = {1.1, 0, 0};
+  scene.bodies.push_back(block);
+  Spring spring;
+  spring.i = kGround, spring.j = 0, spring.length = 1, spring.stiffness = 2 * kOmega * kOmega;
+  scene.forces.push_back(spring);
+  return {scene, [](const BodyState& at) { return at.r.x() - 1; }, [](const BodyState& at) { return at.rd.x(); }};
+}
+
+// A wheel that turns to and fro, its axle carried along evenly.
+Vibration on_a_torsion_spring() {
+  Scene scene;
+  Body wheel;
+  wheel.name = "wheel", wheel.mass = 1, wheel.inertia = Vector3(1, 2, 3).asDiagonal();
+  wheel.angular_velocity = {0, 0, 4};
+  scene.bodies.push_back(wheel);
+  Joint hinge;
+  hinge.type = JointType::revolute, hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
+  scene.joints.push_back(hinge);
+  TorsionSpring spring;
+  spring.i = kGround, spring.j = 0, spring.axis = {0, 0, 1}, spring.stiffness = 3 * kOmega * kOmega;
+  scene.forces.push_back(spring);
+  return {scene, [](const BodyState& at) { return std::atan2(at.A(1, 0), at.A(0, 0)); },
+          [](const BodyState& at) { return at.w.z(); }};
+}
+
+Settings fixed(std::string_view method, std::string_view formulation, double step, double end) {
+  Settings s;
+  s.integrator = method, s.formulation = formulation, s.step = step, s.end = end, s.tolerance = 1e-6;
+  return s;
+}
+
+// rad, of the vibration at the end beside its own.
+double phase_ahead(const Vibration& of, const std::vector<Snapshot>& motion) {
+  const auto phase = [&](const Snapshot& at) {
+    return std::atan2(-of.rate(at.bodies[0]) / kOmega, of.of(at.bodies[0]));
+  };
+  return std::remainder(phase(motion.back()) - phase(motion.front()) - kOmega * motion.back().t, 2 * std::numbers::pi);
+}
+
+struct Told {
+  double ahead = 0;  // rad
+  double step = 0;   // s, that is offered
+};
+
+std::optional<Told> told(const Recorded& run) {
+  std::smatch found;
+  const std::regex pattern(
+      "coarsely: in .* they are about ([0-9.e+-]+) rad (ahead|behind) .* a step below ([0-9.e+-]+) s");
+  for (const std::string& notice : run.outcome.notices)
+    if (std::regex_search(notice, found, pattern))
+      return Told{std::stod(found[1]) * (found[2] == "ahead" ? 1 : -1), std::stod(found[3])};
+  return {};
+}
+
+// Of the methods whose steps are of one length and that keep amplitudes.
+constexpr std::array kKeepAmplitudes{"rattle", "half_implicit", "generalized_alpha", "generalized_alpha_i2"};
+
+TEST(CoarseSteps, are_told_with_the_phase_that_is_off) {
+  for (const Vibration& of : {on_a_spring(), on_a_torsion_spring()})
+    for (const char* method : kKeepAmplitudes)
+      for (const char* formulation : {"rA", "rp", "reps"})
+        for (const double h_omega : {0.3, 0.45, 0.6}) {
+          SCOPED_TRACE(fmt::format("{} {} {}", method, formulation, h_omega));
+          const double steps = std::ceil(1.2 * 12 / std::pow(h_omega, 3));  // 0.6 and 1.2 rad
+          const Settings settings = fixed(method, formulation, h_omega / kOmega, steps * h_omega / kOmega);
+          const Recorded coarse = run(of.scene, settings);
+          ASSERT_TRUE(coarse.outcome.status.ok()) << coarse.outcome.status.message;
+          const std::optional<Told> of_phase = told(coarse);
+          ASSERT_TRUE(of_phase);
+          const double ahead = phase_ahead(of, coarse.samples);
+          const bool staggered = method == std::string_view("half_implicit");  // velocities half a step from positions
+          EXPECT_NEAR(of_phase->ahead, ahead, 0.3 * std::abs(ahead) + (staggered ? h_omega / 2 : 0));
+          const Settings offered = with_step(settings, of_phase->step);
+          const Recorded finer = run(of.scene, offered);
+          EXPECT_LT(std::abs(phase_ahead(of, finer.samples)), 0.25 + (staggered ? kOmega * offered.step / 2 : 0));
+          EXPECT_FALSE(told(finer));
+        }
+}
+
+// With a spectral radius below 1 frequencies fall further.
+TEST(CoarseSteps, of_a_method_that_damps_are_told_as_they_are) {
+  for (const double radius : {0.0, 0.5, 1.0}) {
+    SCOPED_TRACE(radius);
+    const Vibration of = on_a_spring();
+    Settings settings = fixed("generalized_alpha", "rA", 0.2 / kOmega, 2.0);
+    settings.parameters["spectral_radius"] = radius;
+    const Recorded coarse = run(of.scene, settings);
+    ASSERT_TRUE(told(coarse));
+    const double ahead = phase_ahead(of, coarse.samples);
+    EXPECT_NEAR(told(coarse)->ahead, ahead, 0.3 * std::abs(ahead));
+  }
+}
+
+// What goes evenly, is driven, or is damped after the start has no phase to lose, however long the steps are for it.
+TEST(CoarseSteps, are_not_told_of_what_does_not_vibrate) {
+  const auto silent = [](const char* what, const Scene& scene, double h, double end) {
+    for (const char* method : kKeepAmplitudes) {
+      SCOPED_TRACE(fmt::format("{} {}", what, method));
+      const Recorded r = run(scene, fixed(method, "rA", h, end));
+      ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+      EXPECT_FALSE(told(r));
+    }
+  };
+  Scene spinning = on_a_torsion_spring().scene;
+  spinning.forces.clear();
+  spinning.bodies[0].angular_velocity = {0, 0, 0.3 * kOmega};
+  silent("even rotation", spinning, 1 / kOmega, 50);
+
+  Scene flying = spinning;
+  flying.joints.clear();
+  flying.bodies[0].velocity = {3, 1, 2};
+  silent("flight", flying, 1 / kOmega, 50);
+
+  Scene driven = on_a_spring().scene;
+  PointForce force;
+  force.body = 0, force.force[0] = Expression::parse("sin(20*t)"), force.force[1] = force.force[2] = Expression(0.0);
+  driven.forces.push_back(force);
+  silent("driven", driven, 0.5 / kOmega, 20);
+
+  Scene damped = on_a_spring().scene;
+  std::get<Spring>(damped.forces[0]).damping = 2 * 2 * kOmega;
+  silent("damped after the start", damped, 0.4 / kOmega, 20);
+}
+
+TEST(CoarseSteps, are_not_told_where_models_are_followed) {
+  for (const std::string& name : model_names()) {
+    if (name == "andrews") continue;  // it goes round in 0.015 s
+    for (const char* method : kKeepAmplitudes) {
+      SCOPED_TRACE(name + " " + method);
+      EXPECT_FALSE(told(run(scene_of(name), fixed(method, "rA", 1e-3, 1))));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace poinsot::test
