@@ -265,8 +265,12 @@ ParsedTape parse_expression(std::string_view text, Variables variables, Expressi
 }
 
 std::string describe(const Uncovered& found) {
-  return fmt::format("table '{}' has no value at {:.9g}: its points go from {:.9g} to {:.9g}", found.table->name(),
-                     found.argument, found.table->first(), found.table->last());
+  const double first = found.table->first(), last = found.table->last();
+  const std::string least = fmt::format("{:.9g}", first), most = fmt::format("{:.9g}", last);
+  std::string at = fmt::format("{:.9g}", found.argument);
+  if (at == least || at == most) at = fmt::format("{:.17g}", found.argument);  // that it is beyond is to be seen
+  return fmt::format("table '{}' has no value at {}: its points go from {} to {}", found.table->name(), at, least,
+                     most);
 }
 
 std::vector<std::string_view> Expression::function_names() {

@@ -9,8 +9,10 @@
 namespace poinsot::test {
 namespace {
 
+using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 // A rod on a hinge, one metre to its centre, from the horizontal.
 Scene swinging_body() {
@@ -194,6 +196,38 @@ TEST(AutoIntegrator, ExplicitMethodsSayThatAMotionIsStiff) {
     EXPECT_THAT(outcome.notices[0], HasSubstr("stiff"));
     EXPECT_THAT(outcome.notices[0], HasSubstr("radau5"));
     EXPECT_THAT(simulate(swinging_body(), settings, {}).notices, IsEmpty());
+  }
+}
+
+// A steady rotation, about which next to nothing swings as fast as the body turns: the steps of an implicit method
+// would be no longer.
+TEST(AutoIntegrator, StaysExplicitWhereABodyTurnsSteadily) {
+  struct Spin {
+    Vector3 inertia, w;
+  };
+  for (const auto& [inertia, w] : {Spin{{1, 1, 1.0001}, {1e-3, 0, 1000}},
+                                   {{1, 1.1, 2}, {0, 1e-6, 100}},
+                                   {{2, 2.001, 1}, {0, 1e-6, 100}},
+                                   {{1, 1.00001, 1.00002}, {0, 1e-6, 100}}}) {
+    Scene scene;
+    Body body;
+    body.name = "body", body.mass = 1, body.inertia = inertia.asDiagonal(), body.angular_velocity = w;
+    scene.bodies.push_back(body);
+    for (const char* integrator : {"dopri5", "dop853", "auto"})
+      for (const FormulationEntry& formulation : formulations()) {
+        SCOPED_TRACE(fmt::format("{} {} {}", inertia.z(), integrator, formulation.name));
+        Settings settings;
+        settings.integrator = integrator, settings.formulation = formulation.name;
+        settings.end = settings.every = 10 * 100 / w.z();
+        const Outcome outcome = simulate(scene, settings, {});
+        ASSERT_TRUE(outcome.status.ok()) << outcome.status.message;
+        EXPECT_THAT(outcome.notices, Each(Not(HasSubstr("stiff"))));
+        if (integrator == std::string_view("auto")) {
+          settings.integrator = "dop853";
+          const Outcome alone = simulate(scene, settings, {});
+          EXPECT_LT(static_cast<double>(work(outcome.statistics)), 1.5 * static_cast<double>(work(alone.statistics)));
+        }
+      }
   }
 }
 

@@ -90,7 +90,12 @@ TEST_F(Scale, ExponentsFollowFromTheTable) {
     EXPECT_EQ(f[8], "-") << "memory takes two scenes of 1000 bodies and more";
     ++rows;
   }
-  EXPECT_EQ(rows, scene_generators().size());
+  // Times are differences of two runs, and nothing is fitted to those that other work on the machine has made negative.
+  const auto measured = [](const auto& of) {
+    return std::ranges::all_of(of.second, [](const Cell& c) { return c.us > 0; });
+  };
+  EXPECT_EQ(rows, static_cast<std::size_t>(std::ranges::count_if(cells, measured)));
+  EXPECT_GT(rows, 0u);
 }
 
 TEST_F(Scale, WhatAnInterruptionLeftIsGoneWhenAllIsMeasured) {

@@ -96,6 +96,8 @@ TEST(ExpressionLaw, uses_the_names_of_the_scene) {
   EXPECT_THAT(error_in([&] { return Expression::parse("x", &with); }), testing::StartsWith("unknown name 'x'"));
   EXPECT_EQ(error_in([&] { return Expression::parse_constant("road(5)", &with); }),
             "table 'road' has no value at 5: its points go from 0 to 4");
+  EXPECT_EQ(error_in([&] { return Expression::parse_constant("road(4 + 1e-12)", &with); }),
+            "table 'road' has no value at 4.0000000000010001: its points go from 0 to 4");
   EXPECT_EQ(error_in([&] { return Expression::parse("road", &with); }), "expected '(' at character 5, found the end");
   with.parameters["v"] = 3;
   EXPECT_EQ(Expression::parse("v*t", &with).at(2.0).f, 6);

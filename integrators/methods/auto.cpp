@@ -78,7 +78,7 @@ class Auto final : public Integrator {
                       const Leave& leave) {
     const double from = method.state().t;
     const std::int64_t before = run.statistics.steps;
-    const Status status = controlled_steps(method, rule, course, leave);
+    const Status status = ControlledSteps(method, rule, course).march(leave);
     run.state = method.state();
     run.statistics.methods.push_back({name, from, run.state.t, run.statistics.steps - before});
     return status;

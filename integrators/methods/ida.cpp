@@ -235,7 +235,7 @@ class Session {
     by_singular_ = false;
     int steps = 0;
     since_pass_ = 0;
-    const Status status = controlled_steps(*passing_, dop853_pair().rule, course_, [&] {
+    const Status status = ControlledSteps(*passing_, dop853_pair().rule, course_).march([&] {
       by_singular_ = by_singular_ || passing_->by_singular();
       since_pass_ = passing_->by_singular() ? 0 : since_pass_ + course_.turned(passing_->last_step());
       return since_pass_ > kFar || (!by_singular_ && ++steps == kSteps << passes_);

@@ -186,9 +186,11 @@ Status ExplicitStepper::run_through_stages(double to, State& at) {
   return {};
 }
 
-// After f(y_{n+1}). A difference that is rounding, or was projected, says nothing.
+// After f(y_{n+1}). A difference that is rounding, or was projected, says nothing; nor does one of a step that turns a
+// body by so much that no method's could be much longer: next to nothing swings fast about a steady rotation.
 void ExplicitStepper::test_stiffness() {
-  if (project_stages_) return;
+  constexpr double kTurned = 1;  // rad
+  if (project_stages_ || h_ * problem_.fastest_turn() > kTurned) return;
   combined_ = y_ - g_;
   const double apart = norm_(span(combined_), span(scale_));
   if (!(apart * rtol_ > kNoise)) return;
