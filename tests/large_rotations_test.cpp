@@ -66,9 +66,10 @@ TEST(LargeRotations, are_measured_and_warned_of_where_the_pair_is_wrong) {
         for (const Snapshot& at : r.samples) largest = std::max(largest, part * wrong * at.bodies[0].w.norm());
         EXPECT_NEAR(r.outcome.statistics.largest_rotation, largest, 1e-2 * largest)
             << where;  // Newton saw it last before a correction
-        EXPECT_EQ(std::ranges::count_if(
-                      r.outcome.notices,
-                      [](const std::string& notice) { return notice.find("rad in a step") != std::string::npos; }),
+        EXPECT_EQ(std::ranges::count_if(r.outcome.notices,
+                                        [](const std::string& notice) {
+                                          return notice.find("rad in a step: from") != std::string::npos;
+                                        }),
                   part > 1 ? 1 : 0)
             << where;
       }

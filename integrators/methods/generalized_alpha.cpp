@@ -56,7 +56,7 @@ class GeneralizedAlpha : public FixedSteps {
         there_(nv_ + nc_) {}
 
   double index3_scale() const override { return scale_.position; }
-  double phase_error() const override { return -1.0 / 12 - 0.375 * k_.shift() * k_.shift(); }
+  PhaseError phase_error() const override { return {-1.0 / 12 - 0.375 * k_.shift() * k_.shift(), -1.0 / 24}; }
   // Beside a singular position, where steps fail, stabilized index 2 has made velocities of noise in steps before:
   // those are done without its velocity constraints, as a whole.
   bool divides() const override { return form_ == Form::index3; }

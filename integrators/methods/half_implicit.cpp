@@ -3,9 +3,9 @@
 #include "integrators/stepping/broyden.h"
 #include "integrators/stepping/extrapolation.h"
 #include "integrators/stepping/fixed_steps.h"
-#include "integrators/stepping/growth.h"
 #include "integrators/stepping/newton_loop.h"
 #include "integrators/stepping/step_ends.h"
+#include "integrators/stepping/to_and_fro.h"
 #include "integrators/stepping/velocity_rows.h"
 
 namespace poinsot {
@@ -22,10 +22,10 @@ class HalfImplicit final : public FixedSteps {
         extrapolation_(x_.z),
         dq_(nv_),
         rows_(nc_),
-        growth_(run) {}
+        to_and_fro_(run) {}
 
   double index3_scale() const override { return h_ * h_; }
-  double phase_error() const override { return 1.0 / 24; }
+  PhaseError phase_error() const override { return {1.0 / 24}; }
   Status prepare() override { return ends_.prepare(); }
   void resize(double before) override { extrapolation_.resize(x_.z, h_ / before); }
   Status forget() override {
@@ -73,7 +73,7 @@ class HalfImplicit final : public FixedSteps {
     advance();
     end.problem.set_velocity(span(x_.v));
     ends_.take_turns();
-    growth_.watch(run_, x_.v, v_n_, t, h_);
+    to_and_fro_.watch(run_, x_.v, v_n_, t, h_);
     return {};
   }
 
@@ -84,7 +84,7 @@ class HalfImplicit final : public FixedSteps {
   std::vector<int> velocity_rows_;
   Extrapolation extrapolation_;
   Vector dq_, rows_;
-  Growth growth_;
+  ToAndFro to_and_fro_;
 };
 
 }  // namespace

@@ -188,7 +188,9 @@ class Session {
   // at_ stands at a switch.
   Status cross(double t) {
     if (Status status = course_.driver_jumps.look(t); !status.ok()) return status;
+    course_.driver_impulses.expect(at_, t);
     if (Status status = consistent_.cross(at_, t); !status.ok()) return status;
+    course_.driver_impulses.look(at_);
     before_.known = last_.known = false;
     bool other_rows = false;
     if (Status status = poinsot::accept(problem_, at_, other_rows); !status.ok()) return status;

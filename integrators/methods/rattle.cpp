@@ -3,9 +3,9 @@
 #include "integrators/stepping/broyden.h"
 #include "integrators/stepping/extrapolation.h"
 #include "integrators/stepping/fixed_steps.h"
-#include "integrators/stepping/growth.h"
 #include "integrators/stepping/newton_loop.h"
 #include "integrators/stepping/step_ends.h"
+#include "integrators/stepping/to_and_fro.h"
 #include "integrators/stepping/velocity_rows.h"
 
 namespace poinsot {
@@ -28,9 +28,9 @@ class Rattle final : public FixedSteps {
         rows_(nc_),
         rhs_(nv_ + nc_),
         zeros_(Vector::Zero(nv_ + nc_)),
-        growth_(run) {}
+        to_and_fro_(run) {}
 
-  double phase_error() const override { return 1.0 / 24; }
+  PhaseError phase_error() const override { return {1.0 / 24, 1.0 / 6}; }
   Status prepare() override { return ends_.prepare(); }
   Status forget() override {  // the factorization may be that of the end
     place(ends_.begin().problem);
@@ -61,7 +61,7 @@ class Rattle final : public FixedSteps {
     if (Status status = first_half(t); !status.ok()) return status;
     if (Status status = second_half(t); !status.ok()) return status;
     ends_.take_turns();
-    growth_.watch(run_, x_.v, v_n_, t, h_);
+    to_and_fro_.watch(run_, x_.v, v_n_, t, h_);
     return {};
   }
 
@@ -176,7 +176,7 @@ class Rattle final : public FixedSteps {
   Vector z_;  // unknowns of the first half; x_.z is the (a, λ) given out
   Extrapolation extrapolation_;
   Vector u_, dq_, e_, momentum_, rows_, rhs_, zeros_;
-  Growth growth_;
+  ToAndFro to_and_fro_;
 };
 
 }  // namespace

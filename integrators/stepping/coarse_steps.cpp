@@ -4,17 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "core/index.h"
 #include "core/mechanisms.h"
+#include "formulations/registry.h"
+#include "integrators/stepping/by_mechanism.h"
 
 namespace poinsot {
 namespace {
 
-constexpr int kWindow = 32;  // looks
+constexpr int kWindow = 32;    // looks
+constexpr double kTold = 0.1;  // rad
 
 bool is_still(const Expression (&components)[3]) {
   return std::ranges::all_of(components, [](const Expression& f) { return f.is_constant(); });
@@ -43,22 +46,22 @@ std::vector<bool> driven(const Model& model, std::span<const int> mechanism) {
 
 }  // namespace
 
-CoarseSteps::CoarseSteps(const Run& run, double phase_error)
-    : mechanism_(mechanisms(run.problem.model())), phase_error_(phase_error) {
-  constexpr double kNoise = 1e3 * std::numeric_limits<double>::epsilon();  // of a position, from step to step
+CoarseSteps::CoarseSteps(const Run& run, const PhaseError& error)
+    : mechanism_(mechanisms(run.problem.model())), error_(error) {
   constexpr double kShort = 4 * kWindow, kLong = 32;
   const Model& model = run.problem.model();
   const std::vector<bool> is_driven = driven(model, mechanism_);
-  for (const bool it_is : is_driven) mechanisms_.emplace_back().watched = !it_is;
+  const std::vector<int> free = freedoms(run.problem, mechanism_);
+  const std::vector<double> noise = kinetic_noise(model, mechanism_, run.settings.step);
+  mechanisms_.resize(free.size());
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    mechanisms_[k].watched = free[k] > 0;
+    mechanisms_[k].driven = is_driven[k];
+    mechanisms_[k].noise = noise[k];
+  }
   none_ = std::ranges::none_of(mechanisms_, &Mechanism::watched);
   apart_ = static_cast<int>(std::clamp(run.settings.end / run.settings.step / kShort, 1.0, kLong));
   if (none_) return;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const Body& body = model.bodies[b];
-    const double speed = kNoise / run.settings.step;
-    mechanisms_[index(mechanism_[b])].noise +=
-        0.5 * speed * speed * (body.mass * body.position.squaredNorm() + body.inertia.trace());
-  }
   bodies_.resize(model.bodies.size());
   motions_.resize(model.bodies.size());
 }
@@ -77,7 +80,9 @@ void CoarseSteps::add(const Problem& problem, const State& x) {
   const double uneven = 0.5 + std::fmod(kGolden * static_cast<double>(looks_), 1.0);
   until_ = std::max(1, static_cast<int>(apart_ * uneven));
   if (looks_++ == 0) return;
-  window_steps_ += kInRow - 1 + until_;
+  const int steps = kInRow - 1 + until_;
+  for (Mechanism& of : mechanisms_) of.turned += steps * std::pow(std::exchange(of.fastest, 0), 3);
+  window_steps_ += steps;
   if (++in_window_ == kWindow) end_window();
 }
 
@@ -105,6 +110,7 @@ void CoarseSteps::take_differences(const Model& model) {
       of.now += translation.first + rotation.first;
       of.second += translation.second + rotation.second;
     }
+    of.fastest = std::max(of.fastest, in[1].w_body.norm());
     of.kinetic += 0.5 * (moved(in[1].rd) + turned(in[1].w_body));
   }
   for (Mechanism& of : mechanisms_) {
@@ -117,18 +123,21 @@ void CoarseSteps::take_differences(const Model& model) {
 
 void CoarseSteps::end_window() {
   constexpr double kOfSine = 1.5;  // looks at one, for each that counts as such: (Σ cos²)² / Σ cos⁴ of them do
+  constexpr double kLong = 0.15;   // h ω, of what is driven: of forced motions (h ω)²/12 is the error
   constexpr double kMost = 3.6;    // beyond, velocities change to and fro, which is told elsewhere
   for (Mechanism& of : mechanisms_) {
     const double seen = of.second / of.first;  // 4 sin²(½ Ω h); no number at rest
     if (seen > 0 && seen < kMost && of.most_kinetic > of.noise) {
       const double looks =
           std::min<double>(in_window_, kOfSine * of.first * of.first / of.squares);  // at what vibrates
-      const double square = phase_error_ > 0 ? seen : seen / (1 - seen / 4);         // (h ω)²
+      const double square = error_.vibration > 0 ? seen : seen / (1 - seen / 4);     // (h ω)²
       const double vibrates = of.first / seen / looks;  // J: twice the mean of its kinetic energy
       const double part = std::min(1.0, std::sqrt(vibrates / of.most_kinetic));
       const double steps = looks / in_window_ * window_steps_;
-      of.phase += part * steps * square * std::sqrt(square);
-      of.turns += part * steps * std::sqrt(square);
+      if (!of.driven || square > kLong * kLong) {
+        of.phase += part * steps * square * std::sqrt(square);
+        of.vibrated += part * steps * std::sqrt(square);
+      }
     }
     of.first = of.second = of.squares = 0;
   }
@@ -137,21 +146,40 @@ void CoarseSteps::end_window() {
 }
 
 void CoarseSteps::say(const Run& run, double h) {
-  constexpr double kTold = 0.2;  // rad
-  constexpr int kEnough = 4;     // looks
+  constexpr int kEnough = 4;  // looks
   if (in_window_ >= kEnough) end_window();
   if (steps_ == 0) return;
+  const double all = static_cast<double>(run.statistics.steps) / static_cast<double>(steps_);
+  say_of_vibrations(run, h, all);
+  say_of_turns(run, h, all);
+}
+
+void CoarseSteps::say_of_vibrations(const Run& run, double h, double scale) {
   const Mechanism& of = *std::ranges::max_element(mechanisms_, {}, &Mechanism::phase);
-  const double lost =
-      std::abs(phase_error_) * of.phase * static_cast<double>(run.statistics.steps) / static_cast<double>(steps_);
-  if (!(lost > kTold) || of.turns < 2 * std::numbers::pi) return;
+  const double off = error_.vibration * of.phase * scale, lost = std::abs(off);
+  if (!(lost > kTold) || of.vibrated < 2 * std::numbers::pi) return;
   const std::string whose = of_mechanism(run.problem.model(), mechanism_, static_cast<int>(&of - mechanisms_.data()));
   run.tell(fmt::format(
-      "steps of {:.3g} s follow the vibrations{} coarsely: in {} they are about {:.2g} rad {} of the motion's own by "
-      "the end, and what vibrates is off by as much of its amplitude; a step below {:.2g} s, or error control, keeps "
+      "steps of {:.3g} s follow the vibrations{} coarsely: in {} they are about {:.2g} rad {} the motion's own by "
+      "the end{}, and what vibrates is off by as much of its amplitude; a step below {:.2g} s, or error control, keeps "
       "that below {:g} rad",
-      h, whose, run.settings.integrator, lost, phase_error_ > 0 ? "ahead" : "behind", 0.9 * h * std::sqrt(kTold / lost),
-      kTold));
+      h, whose, run.settings.integrator, lost, off > 0 ? "ahead of" : "behind",
+      of.driven ? ", where functions of time do not keep them" : "", 0.9 * h * std::sqrt(kTold / lost), kTold));
+}
+
+void CoarseSteps::say_of_turns(const Run& run, double h, double scale) {
+  if (formulations().require(run.problem.formulation()).space != CoordinateSpace::vector_space) return;
+  const auto turned = [](const Mechanism& of) { return of.watched ? of.turned : 0; };
+  const Mechanism& of = *std::ranges::max_element(mechanisms_, {}, turned);
+  const double off = error_.turn * turned(of) * std::pow(h, 3) * scale, lost = std::abs(off);
+  if (!(lost > kTold)) return;
+  const std::string whose = of_mechanism(run.problem.model(), mechanism_, static_cast<int>(&of - mechanisms_.data()));
+  run.tell(
+      fmt::format("a body{} turns by up to {:.2g} rad in a step: in formulation {} {} is about {:.2g} rad {} its turns "
+                  "by the end{}; a step below {:.2g} s, error control or formulation rA keeps that below {:g} rad",
+                  whose, run.statistics.largest_rotation, run.problem.formulation(), run.settings.integrator, lost,
+                  off > 0 ? "ahead of" : "behind", of.driven ? ", where no driver turns it" : "",
+                  0.9 * h * std::sqrt(kTold / lost), kTold));
 }
 
 }  // namespace poinsot

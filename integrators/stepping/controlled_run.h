@@ -157,11 +157,14 @@ class ControlledSteps {
       course_.give_out(method_.interpolated());
     }
     if (Status status = course_.driver_jumps.look(aim.crosses ? aim.beyond : t()); !status.ok()) return status;
+    const bool turns = aim.crosses && !aim.leads;  // over a switch of a function of time
+    if (turns) course_.driver_impulses.expect(method_.state(), aim.beyond);
     if (Status status = aim.crosses ? method_.cross(aim.beyond) : method_.settle(); !status.ok()) {
       const bool singular = aim.leads && status.failure == Failure::singular_position;
       anew = singular && over_singular(aim.beyond);
       return anew ? Status{} : status;
     }
+    if (turns) course_.driver_impulses.look(method_.state());
     if (course_.every_step) {
       if (aim.to > aim.from) course_.give_out(method_.state());
     } else if (course_.times.next() <= t()) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "integrators/stepping/consistent.h"
+#include "integrators/stepping/driver_impulses.h"
 #include "integrators/stepping/driver_jumps.h"
 #include "integrators/stepping/energy_balance.h"
 #include "integrators/stepping/law_switches.h"
@@ -40,6 +41,7 @@ class Course {
         switches(run.problem.model(), run.settings.end, run.tell),
         pulses(run.problem.model(), run.settings.end, run.settings.rtol, run.tell),
         driver_jumps(run.problem.model(), run.settings.end),
+        driver_impulses(run),
         laws(run.problem.model()),
         passed_laws(laws, run.settings.end, run.settings.rtol, run.settings.absolute_tolerance(), run.tell),
         law_switches(laws, run.settings.end, run.settings.rtol, run.settings.absolute_tolerance()),
@@ -129,6 +131,7 @@ class Course {
   SwitchTimes switches;
   Pulses pulses;
   DriverJumps driver_jumps;
+  DriverImpulses driver_impulses;
   LawSteps laws;
   PassedLaws passed_laws;
   LawSwitches law_switches;

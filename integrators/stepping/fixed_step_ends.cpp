@@ -58,9 +58,10 @@ void FixedSteps::look_for_jumps() {
 Status FixedSteps::measure_rotation(Problem& problem, double t) {
   constexpr double kSudden = 10;
   const double before = std::exchange(rotation_, h_ * problem.fastest_turn());
+  if (t == 0) rotation_began_ = rotation_;
   if (rotation_ > run_.most_rotation) {
     const double led_to = t > 0 && rotation_ > kSudden * before ? before : rotation_;
-    return rotated_too_far(problem, x_.a(), t, h_, run_.most_rotation,
+    return rotated_too_far(problem, x_.a(), t, h_, run_.most_rotation, rotation_began_,
                            step_that_serves(settings_, problem, h_, run_.most_rotation, led_to / h_));
   }
   if (Status status = check_turns(problem, t); !status.ok()) return status;

@@ -54,7 +54,7 @@ Status FixedSteps::march() {
   if (integrates() && turned_.due(h_)) turned_.look(problem_, x_, h_);
   jumps_.look(problem_, x_, sides_);
   if (run_.singular_for > 0) start_ = Start::limit;
-  if (phase_error() != 0) coarse_.emplace(run_, phase_error());
+  if (phase_error().vibration != 0) coarse_.emplace(run_, phase_error());
   if (coarse_ && coarse_->none()) coarse_.reset();
   divides_ = settings_.retry && divides();
   repeats_ = divides_ && !remembers();

@@ -79,9 +79,8 @@ class FixedSteps {
   virtual bool divides() const { return true; }
   // Whether it takes from the motion what implicit Euler does (numerical_damping.h).
   virtual bool damps() const { return false; }
-  // What it makes too much of the phase of a vibration in a step, of (h ω)³, where it keeps amplitudes
-  // (coarse_steps.h).
-  virtual double phase_error() const { return 0; }
+  // What it loses of phases, where it keeps amplitudes.
+  virtual PhaseError phase_error() const { return {}; }
   // Whether a step depends on more of those before it than x_.
   virtual bool remembers() const { return false; }
   // The next step is one of h_, which has been `before`.
@@ -167,6 +166,7 @@ class FixedSteps {
   Vector z_began_;               // of a step that may be done again, where it began
   double shortest_ = 0;          // of the steps done
   double rotation_ = 0;          // of the last step, the largest of a body
+  double rotation_began_ = 0;    // at the start
   Vector change_;
   BranchWatch branch_;
   const PositionJump jump_;  // up to which steps go

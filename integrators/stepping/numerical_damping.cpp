@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "core/index.h"
 #include "core/mechanisms.h"
+#include "integrators/stepping/by_mechanism.h"
 #include "integrators/stepping/energy_balance.h"
 #include "integrators/stepping/vectors.h"
 
@@ -16,30 +16,19 @@ namespace poinsot {
 
 NumericalDamping::NumericalDamping(const Run& run)
     : mechanism_(mechanisms(run.problem.model())), momentum_(run.problem.nv()) {
-  constexpr double kNoise = 1e3 * std::numeric_limits<double>::epsilon();  // of a position, from step to step
   const Problem& problem = run.problem;
   const Model& model = problem.model();
-  if (model.bodies.empty()) return;
-  mechanisms_.resize(mechanism_count(mechanism_));
-  const int bodies = problem.bodies(), rows = static_cast<int>(problem.model_rows().size());
-  const int per_body = (problem.nv() - (problem.nc() - rows)) / bodies;  // less its normalization
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const Body& body = model.bodies[b];
-    Mechanism& of = mechanisms_[index(mechanism_[b])];
-    of.freedoms += per_body;
-    const double speed = kNoise / run.settings.step;
-    of.noise += 0.5 * speed * speed * (body.mass * body.position.squaredNorm() + body.inertia.trace());
+  const std::vector<int> free = freedoms(problem, mechanism_);
+  const std::vector<double> noise = kinetic_noise(model, mechanism_, run.settings.step);
+  mechanisms_.resize(free.size());
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    mechanisms_[k].noise = noise[k];
+    const bool known = run.energy && run.energy->covers(k);  // what it lost
+    mechanisms_[k].freedoms = known ? 0 : free[k];
   }
-  for (const int k : problem.model_rows()) {
-    const Row& row = model.rows[index(k)];
-    if (row.i != kGround || row.j != kGround)
-      --mechanisms_[index(mechanism_[index(row.i == kGround ? row.j : row.i)])].freedoms;
-  }
-  for (std::size_t k = 0; run.energy && k < mechanisms_.size(); ++k)
-    if (run.energy->covers(k)) mechanisms_[k].freedoms = 0;  // what it lost is known
   moves_ = std::ranges::any_of(mechanisms_, [](const Mechanism& of) { return of.freedoms > 0; });
   if (!moves_) return;
-  bodies_.resize(index(bodies));
+  bodies_.resize(model.bodies.size());
   problem.to_bodies(run.state.a(), bodies_);
   for (std::size_t b = 0; b < bodies_.size(); ++b) then_.push_back(motion(model.bodies[b], bodies_[b]));
 }

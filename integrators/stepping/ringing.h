@@ -65,6 +65,10 @@ class Ringing {
     double change = 0, before = 0, along = 0;  // of the step under way: squares, product
   };
 
+  static bool has_forces(const Model& model) {
+    return !(model.springs.empty() && model.torsions.empty() && model.drags.empty() && model.callbacks.empty());
+  }
+
   // |q| of a mechanism, m.
   double place(const Eigen::VectorXd& q, int mechanism) const {
     const auto bodies = static_cast<Eigen::Index>(mechanism_.size());
@@ -93,9 +97,8 @@ class Ringing {
         "up to t = {:.6g} s accelerations{} turn round and change by more than their size within a step, step after "
         "step{}dies out by the factor spectral_radius a step; try integrator radau5 or a step that resolves it",
         t, of_mechanism(run.problem.model(), mechanism_, mechanism),
-        along ? fmt::format(": a stiff damper or spring moves that h = {:g} s does not resolve, and what is made of it "
-                            "here ",
-                            h)
+        along ? fmt::format(": {} that h = {:g} s does not resolve, and what is made of it here ",
+                            has_forces(run.problem.model()) ? "a stiff damper or spring moves" : "something moves", h)
               : fmt::format(", across the constraints: before that something changed faster than h = {:g} s follows, "
                             "and what it has left here in accelerations, reactions and velocities, not in positions, ",
                             h)));

@@ -59,14 +59,20 @@ Status turned_too_far(const Problem& problem, double t, double h) {
       0.3 * kMostCounted / turn.rate);
 }
 
-Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most,
+Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most, double began,
                        double serves) {
+  constexpr double kGrown = 4;
   const auto [name, rate] = fastest(problem, a);
+  const bool grown = t > 0 && h * rate > kGrown * began;
   return too_long_a_step(
       t,
       fmt::format("at t = {:.9g} s body '{}' turns by {:.3g} rad in a step; in formulation {} the integrator makes "
-                  "no sense beyond {:.2g}: rotation is lost or invented",
-                  t, name, h * rate, problem.formulation(), most),
+                  "no sense beyond {:.2g}: rotation is lost or invented{}",
+                  t, name, h * rate, problem.formulation(), most,
+                  grown ? fmt::format("; the run began with at most {:.2g} rad: it has become so fast since, or what "
+                                      "is computed grows by itself",
+                                      began)
+                        : ""),
       serves);
 }
 

@@ -24,8 +24,8 @@ std::string undefined_angle(const Problem& problem);
 // The stop of a fixed step, or of one that cannot be shorter. The problem stands at its end.
 Status turned_too_far(const Problem& problem, double t, double h);
 // The same for a body whose rotation in a step exceeds `most`, for a reason named by the integrator's registry.
-// `serves`: the step to try, s.
-Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most,
+// `began`: rad in a step at the start of the run; `serves`: the step to try, s.
+Status rotated_too_far(const Problem& problem, std::span<const double> a, double t, double h, double most, double began,
                        double serves);
 Status turned_unexpectedly(const Problem& problem, std::span<const double> a, double t, double h, double unexpected,
                            double serves);
