@@ -119,6 +119,11 @@ class Problem {
   // again. Fails where rows left out do not follow from the others any more.
   virtual Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a,
                         std::span<double> lambda, bool& rewritten) = 0;
+  // Whether accept() of a step to t that ends with accelerations a, at the end of which the problem stands, or where
+  // Newton's method saw it last, would find all as it is; then it is done.
+  virtual bool accepts_as_is(double /*t*/, std::span<const double> /*a*/) {
+    return !has_discrete_state() && !exchanges_rows();
+  }
   // The rows that take part depend on one another where the problem stands, or all but do. Whether others could take
   // their place, and do so now: then λ of the state (t, q, v) is that of those, and revision() has gone up. The problem
   // stands at that state afterwards.

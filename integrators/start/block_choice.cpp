@@ -28,8 +28,9 @@ constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
 constexpr double kBalanced = 1e-5;  // of a null vector: what steps leave of rows set aside, and no more
 constexpr double kGain = 2;         // times better is a choice of clearest rows that is worth an exchange
-constexpr double kForgotten = 0.8;  // of how fast a choice has worn before
-constexpr double kGrowth = 1.5;     // of a worn choice that is the best one found: then others are looked for again
+constexpr double kSteady = 0.02, kTurnsLeast = 0.5;  // rate at the last two looks, and to reckon with below
+constexpr double kForgotten = 0.8;                   // of how fast a choice has worn before
+constexpr double kGrowth = 1.5;  // of a worn choice that is the best one found: then others are looked for again
 
 double angle(double coefficient) {
   return std::atan(1 / coefficient);
@@ -135,14 +136,15 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead, bool
   look(space);
   const double change = turned > 0 ? (before - angle(worst_)) / turned : 0, soon = std::max(change, 0.0) * ahead;
   fastest_ = std::max(kForgotten * fastest_, change);
+  const double change_before = std::exchange(change_, std::abs(change));
   const bool controls = steps_ == Steps::error_controlled && left_out_.size() <= kFew;
   const double limit = asked ? kWornWhereAsked : controls ? kWornForControl : kWorn;
   worn_ = std::max(limit, given_);
   const bool will_be = has_coefficients() && angle(worst_) - kSooner * soon < angle(worn_);
   if (!worn() && !will_be) {
-    const double rate = kTurnsMore * std::abs(change);
+    const double rate = std::max(change_, change_before), little = rate < kSteady ? kTurnsLeast : kTurnsLittle;
     given_ = std::min(given_, kGrowth * worst_);
-    good_for_ = turn_until_worst(std::clamp(rate, kTurnsLittle, kTurnsMost));
+    good_for_ = turn_until_worst(std::clamp(kTurnsMore * rate, little, kTurnsMost));
     if (limit < kWorn) good_for_ = std::min(good_for_, turn_until_worn());
     return false;
   }

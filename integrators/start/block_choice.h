@@ -93,6 +93,7 @@ class BlockChoice {
   double worn_;                                 // from here on a choice is worn out
   double given_ = 0;                            // what it is allowed to be, where others were no better
   double good_for_ = 0;
+  double change_ = 1;     // of the angle of the largest coefficient, by a turn, at the last look
   double fastest_ = 0.3;  // that the angle of the largest coefficient has changed by a turn; to begin with a guess
 };
 

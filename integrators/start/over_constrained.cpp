@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -17,6 +18,10 @@ constexpr double kShrunk = 0.05;    // of the longest step since the last look: 
 constexpr double kLost = 1e-5;      // of a body's size: far above what steps leave, far below what opens to the eye
 // Of what kept rows are off, which a tolerance leaves off: rows that follow from them add them up.
 constexpr double kAsKept = 100;
+
+Eigen::Map<const Eigen::ArrayXd> as_array(std::span<const double> x) {
+  return {x.data(), static_cast<Eigen::Index>(x.size())};
+}
 
 }  // namespace
 
@@ -92,21 +97,20 @@ Problem::LeftOut OverConstrained::left_out() const {
   return {most_aside_, largest(aside_->velocity_residual(now_))};
 }
 
-// The rows set aside, where the kept problem stands.
+bool OverConstrained::hold(double t) {
+  const auto off = as_array(aside_->position_residual(t, *kept_)).abs();
+  most_aside_ = off.maxCoeff();
+  return (off * as_array(by_allowed_)).maxCoeff() <= 1;
+}
+
 Status OverConstrained::measure(double t, std::span<const double> a) {
   if (!aside_) return {};
-  const std::span<const double> residual = aside_->position_residual(t, *kept_);
-  std::size_t worst = 0;
-  double most = 0;
-  most_aside_ = 0;
-  for (std::size_t k = 0; k < by_allowed_.size(); ++k) {
-    const double off = std::abs(residual[k]);
-    most_aside_ = std::max(most_aside_, off);
-    if (const double part = off * by_allowed_[k]; part > most) most = part, worst = k;
-  }
   const auto go_on = [&] { return rates_aside_ ? measure_rates(t, a) : Status{}; };
-  if (most <= 1) return go_on();
-  const double off = std::abs(residual[worst]), kept = kept_off();
+  if (hold(t)) return go_on();
+  Eigen::Index worst = 0;
+  const auto residual = as_array(aside_->position_residual(t, *kept_)).abs();
+  (residual * as_array(by_allowed_)).maxCoeff(&worst);
+  const double off = residual[worst], kept = kept_off();
   const bool left_by_tolerance = off <= kAsKept * kept;
   if (left_by_tolerance && to_tolerance_) return go_on();
   const std::string why =
@@ -119,7 +123,7 @@ Status OverConstrained::measure(double t, std::span<const double> a) {
                 "it followed from the other constraints where the run began and was set aside, and does not "
                 "hold with them any more; the constraints contradict one another from here on, and one of "
                 "them has to go, or the steps leave them");
-  const int row = aside_->rows()[worst];
+  const int row = aside_->rows()[index(worst)];
   return with_settings({Failure::constraint_lost, t,
                         fmt::format("at t = {:.9g} s {} is violated by {}: {}", t, describe_row(model(), row),
                                     describe_residual(model(), row, off, 0), why)},
@@ -174,6 +178,31 @@ double OverConstrained::turned() const {
   return 2 * std::asin(std::min(std::sqrt(most / 8), 1.0));  // |A − B|² = 8 sin²(angle/2)
 }
 
+OverConstrained::Way OverConstrained::way_to(double t) const {
+  const double h = std::max(t - accepted_at_, 0.0), ahead = h * kept_->fastest_turn();
+  return {t, h, ahead, way_ + std::max(ahead, ahead_)};
+}
+
+// Whether the choice of rows is, at the end of it.
+bool OverConstrained::is_looked_at(const Way& way) const {
+  const bool creeps = way.h > 0 && way.h < kShrunk * longest_;
+  return creeps || way.done + way.ahead >= std::min(choice_->rows.good_for(), kLookedAgain);
+}
+
+void OverConstrained::go(const Way& way) {
+  accepted_at_ = way.t;
+  way_ = way.done;
+  ahead_ = way.ahead;
+  longest_ = std::max(longest_, way.h);
+}
+
+bool OverConstrained::accepts_as_is(double t, std::span<const double> a) {
+  const Way way = way_to(t);
+  if (rates_aside_ || is_looked_at(way) || !kept_->accepts_as_is(t, a) || (aside_ && !hold(t))) return false;
+  go(way);
+  return true;
+}
+
 Status OverConstrained::accept(double t, std::span<double> q, std::span<double> v, std::span<double> a,
                                std::span<double> lambda, bool& rewritten) {
   if (Status status = kept_->accept(t, q, v, a, lambda, rewritten); !status.ok()) return status;
@@ -182,17 +211,14 @@ Status OverConstrained::accept(double t, std::span<double> q, std::span<double> 
     kept_->set_velocity(v);
   }
   if (Status status = measure(t, a); !status.ok()) return status;
-  const double h = std::max(t - std::exchange(accepted_at_, t), 0.0), ahead = h * kept_->fastest_turn();
-  const double good_for = std::min(choice_->rows.good_for(), kLookedAgain);
-  way_ += std::max(ahead, std::exchange(ahead_, ahead));
-  longest_ = std::max(longest_, h);
-  const bool creeps = h > 0 && h < kShrunk * longest_;
-  if (!creeps && way_ + ahead < good_for) return {};
+  Way way = way_to(t);
+  go(way);
+  if (!is_looked_at(way)) return {};
   kept_->to_bodies(a, now_);
-  way_ = turned();
-  if (!creeps && way_ + ahead < good_for) return {};
-  longest_ = h;
-  const bool others = choice_->rows.renew(t, now_, std::exchange(way_, 0.0), ahead);
+  way_ = way.done = turned();
+  if (!is_looked_at(way)) return {};
+  longest_ = way.h;
+  const bool others = choice_->rows.renew(t, now_, std::exchange(way_, 0.0), way.ahead);
   choice_->at = now_;
   if (!others) return {};
   rewritten = true;

@@ -10,6 +10,7 @@
 // Scenes without redundant rows have none of this.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <string>
@@ -86,6 +87,7 @@ class OverConstrained final : public Problem {
   bool exchanges_rows() const override { return kept_->exchanges_rows(); }
   Status accept(double t, std::span<double> q, std::span<double> v, std::span<double> a, std::span<double> lambda,
                 bool& rewritten) override;
+  bool accepts_as_is(double t, std::span<const double> a) override;
   bool choose_rows_here(double t, std::span<const double> q, std::span<const double> v,
                         std::span<double> lambda) override;
   LeftOut left_out() const override;
@@ -98,9 +100,21 @@ class OverConstrained final : public Problem {
     std::vector<BodyState> at;  // where it was last looked at
   };
 
+  // What becomes of the way since the last look with a step.
+  struct Way {
+    double t;            // s, its end
+    double h;            // s
+    double ahead, done;  // rad: as much as in this step, by the fastest body; with it
+  };
+
   OverConstrained(const OverConstrained& other);
+  Way way_to(double t) const;
+  bool is_looked_at(const Way& way) const;
+  void go(const Way& way);
   void keep();
   void watch();
+  // Whether |Φ| of the rows set aside is allowed where the kept problem stands; of all that are measured.
+  bool hold(double t);
   Status measure(double t, std::span<const double> a);
   double kept_off();
   Status measure_rates(double t, std::span<const double> a);

@@ -70,11 +70,13 @@ Status ExplicitStepper::start(const State& state) {
 }
 
 Status ExplicitStepper::settle() {
-  if (elsewhere_ || problem_.has_discrete_state()) consistent_.stand(state_);
+  if (elsewhere_ || !problem_.accepts_as_is(state_.t, state_.a())) {
+    consistent_.stand(state_);
+    bool rewritten = false;
+    if (Status status = accept(problem_, state_, rewritten); !status.ok()) return status;
+    if (rewritten) consistent_.forget_approach();
+  }
   elsewhere_ = false;
-  bool rewritten = false;
-  if (Status status = accept(problem_, state_, rewritten); !status.ok()) return status;
-  if (rewritten) consistent_.forget_approach();
   if (std::exchange(revision_, problem_.revision()) != problem_.revision()) passage_.stand_on_rows(state_);
   component_sizes(problem_, span(state_.q), span(state_.v), span(sizes_));
   return {};

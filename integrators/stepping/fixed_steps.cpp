@@ -123,7 +123,7 @@ Status FixedSteps::reach(double t, bool sampled) {
   rows_asked_ = false;
   ++run_.statistics.steps;
   const bool due = discrete_ || (has_alternates_ && last_seen().exchanges_rows());
-  if (!due && !sampled) return {};
+  if (!sampled && (!due || last_seen().accepts_as_is(t, x_.a()))) return {};
   standing_ = &stand();
   return due ? accept(*standing_) : Status{};
 }
