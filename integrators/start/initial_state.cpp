@@ -26,6 +26,8 @@
 namespace poinsot {
 namespace {
 
+constexpr const char* kDigits = "; where axes and points of few digits are why, write them with 12 or more";
+
 // Positions off by more than this part of the mechanism's size are a mistake of the scene rather than its rounding.
 constexpr double kNearlyRight = 1e-2;
 
@@ -218,15 +220,20 @@ class Assembler {
           fmt::format("the initial pose is a singular position of the mechanism: singular here: {}; the run follows "
                       "the branch that the initial velocities lead to, if there is one",
                       names(rank.singular)));
-    if (rank.doubtful >= 0)
+    if (rank.doubtful >= 0 && rank.few_digits)
+      result_.notices.push_back(fmt::format(
+          "{} is a combination of the other constraints but for less than {:.0e} of its length: it is kept as "
+          "independent, and forbids a motion{}",
+          describe_row(*model_, rank.doubtful), rank.doubt, kDigits));
+    else if (rank.doubtful >= 0)
       result_.notices.push_back(fmt::format(
           "{} but for {:.0e} of its length; it is kept as independent, and reactions against it are large: the "
-          "mechanism "
-          "is that near to {}",
+          "mechanism is that near to {}{}",
           rank.vanishing ? "the gradient of " + describe_row(*model_, rank.doubtful) + " has vanished"
                          : describe_row(*model_, rank.doubtful) + " is a combination of the other constraints",
-          rank.doubt, rank.vanishing ? "a singular position" : "moving, or to being constrained once less"));
-    if (rank.degrees_of_freedom() == 0 && !model_->bodies.empty() &&
+          rank.doubt, rank.vanishing ? "a singular position" : "moving, or to being constrained once less",
+          rank.vanishing ? "" : ", as axes and points of few digits leave it"));
+    if (rank.degrees_of_freedom() == 0 && !rank.singular_position() && !model_->bodies.empty() &&
         std::ranges::all_of(model_->rows, [](const Row& row) { return row.f.is_constant(); }))
       result_.notices.push_back("the mechanism has no degree of freedom and no driver: it cannot move");
   }
@@ -279,8 +286,18 @@ class Assembler {
     const Conflict& worst = *std::ranges::max_element(result_.rank.conflicts, {}, &Conflict::by);
     throw InputError(
         fmt::format("the constraints conflict: with the others satisfied, {} is still violated by {}; `poinsot check` "
-                    "names what it depends on",
-                    describe_row(*model_, worst.row), describe(worst)));
+                    "names what it depends on{}",
+                    describe_row(*model_, worst.row), describe(worst), may_be_digits(worst) ? kDigits : ""));
+  }
+  // Whether a row is off by so little that the numbers of the scene may be rounded by as much.
+  bool may_be_digits(const Conflict& conflict) const {
+    constexpr double kLittle = 3e-4;  // of lengths and speeds
+    const double arm = longest_arm(*model_);
+    if (conflict.level == Conflict::Level::position || conflict.level == Conflict::Level::later)
+      return conflict.by < kLittle * arm;
+    double speed = 0;
+    for (const BodyState& body : given_) speed = std::max(speed, body.rd.norm() + arm * body.w.norm());
+    return conflict.by < kLittle * speed;
   }
 
   void tell_what_moved() {

@@ -48,11 +48,15 @@ class Examination {
     // Rows that are barely independent by the length of the mechanism are so wherever it stands: not singular here.
     const bool is_long = space_->rows().size() >= kLong;
     if (is_long && surely_.columns.size() + here_.stretched >= here_.columns.size()) here_ = surely_;
-    if (here_.columns.empty()) return std::move(result_);
+    if (here_.columns.empty()) {
+      tell_few_digits();
+      return std::move(result_);
+    }
     without_ = here_.from <= kDependent ? gathered(space_->columns(), here_, kDependent) : chosen(here_);
     std::shared_ptr<FrontQr> decomposition = here_.decomposition;
     here_.decomposition = surely_.decomposition = nullptr;
     look_beside(std::move(decomposition));
+    tell_few_digits();
     return std::move(result_);
   }
 
@@ -218,12 +222,34 @@ class Examination {
   }
 
   void tell_doubt(const Sparse& columns, const std::vector<int>& surely) {
-    result_.doubt = kIndependent;
+    doubt(columns, surely, kIndependent, kDependent);
+  }
+
+  // A row that follows from others but for less than `most`, of a scene where `surely` do for good.
+  void doubt(const Sparse& columns, const std::vector<int>& surely, double most, double least) {
+    result_.doubt = most;
     result_.vanishing = false;
-    for (const int column : dependent_columns(columns, kIndependent))
+    for (const int column : dependent_columns(columns, most))
       if (!std::ranges::binary_search(surely, column)) result_.doubtful = space_->rows()[index(column)];
-    for (double part = kIndependent / 10; part > kDependent; part /= 10)
+    for (double part = most / 10; part > least; part /= 10)
       if (dependent_columns(columns, part).size() > surely.size()) result_.doubt = part;
+  }
+
+  // Where axes and points are written with few digits, rows that follow from others are off that by as much: the
+  // mechanism is locked, or constrained once more than is meant. Of mechanisms of a few hundred rows; in longer ones
+  // independent rows come as near.
+  void tell_few_digits() {
+    constexpr double kFewDigits = 1e-3;
+    constexpr std::size_t kMostRows = 400;
+    const bool redundant = !result_.aside.empty(), moves = result_.degrees_of_freedom() > 0;
+    if (result_.doubtful >= 0 || result_.singular_position() || !result_.conflicts.empty()) return;
+    if ((!redundant && moves) || space_->rows().size() > kMostRows) return;
+    const Sparse columns = space_->columns();
+    if (dependent_columns(columns, kFewDigits).size() <= result_.aside.size()) return;
+    const std::vector<int> surely = dependent_columns(columns, kIndependent);
+    if (surely.size() != result_.aside.size()) return;
+    doubt(columns, surely, kFewDigits, kIndependent);
+    result_.few_digits = true;
   }
 
   std::shared_ptr<const Model> model_;

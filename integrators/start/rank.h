@@ -61,6 +61,8 @@ struct RankAnalysis {
   double doubt = 0;   // the largest part below kIndependent that is left of a row beside the others; 0: there is none
   int doubtful = -1;  // the row
   bool vanishing = false;  // its gradient is as small a part of its terms: by itself, not beside the others
+  // The doubt is no larger than numbers of few digits make it, beside redundant rows, or where nothing moves.
+  bool few_digits = false;
 
   int degrees_of_freedom() const { return variables - rank; }
   bool singular_position() const { return rank_here < rank; }
