@@ -106,6 +106,19 @@ TEST(CoarseSteps, are_told_with_the_phase_that_is_off) {
         }
 }
 
+// Steps that a swing is a whole number of, and of what looks are apart.
+TEST(CoarseSteps, are_told_whatever_the_swing) {
+  for (const int swing : {6, 9, 18, 34}) {
+    SCOPED_TRACE(swing);
+    const double h_omega = 2 * std::sin(std::numbers::pi / swing);  // a full one in so many steps
+    const int steps = 10'000;
+    const Recorded r = run(on_a_spring().scene, fixed("rattle", "rA", h_omega / kOmega, steps * h_omega / kOmega));
+    ASSERT_TRUE(told(r.outcome));
+    const double ahead = steps * (2 * std::numbers::pi / swing - h_omega);
+    EXPECT_NEAR(told(r.outcome)->ahead, ahead, 0.3 * ahead);
+  }
+}
+
 // With a spectral radius below 1 frequencies fall further.
 TEST(CoarseSteps, of_a_method_that_damps_are_told_as_they_are) {
   for (const double radius : {0.0, 0.5, 1.0}) {
@@ -169,7 +182,9 @@ TEST(CoarseSteps, are_not_told_of_what_does_not_vibrate) {
   };
   Scene spinning = on_a_torsion_spring().scene;
   spinning.forces.clear();
+  spinning.bodies[0].position = {0.3, 0, 0};
   spinning.bodies[0].angular_velocity = {0, 0, 0.3 * kOmega};
+  spinning.bodies[0].velocity = {0, 0.3 * 0.3 * kOmega, 0};
   silent("even rotation", spinning, 1 / kOmega, 50);
 
   Scene flying = spinning;
