@@ -9,6 +9,7 @@
 
 #include "tests/support/remedies.h"
 #include "tests/support/simulation.h"
+#include "tests/support/sprung_wheel.h"
 
 namespace poinsot::test {
 namespace {
@@ -36,20 +37,8 @@ Vibration on_a_spring() {
   return {scene, [](const BodyState& at) { return at.r.x() - 1; }, [](const BodyState& at) { return at.rd.x(); }};
 }
 
-// A wheel that turns to and fro, its axle carried along evenly.
 Vibration on_a_torsion_spring() {
-  Scene scene;
-  Body wheel;
-  wheel.name = "wheel", wheel.mass = 1, wheel.inertia = Vector3(1, 2, 3).asDiagonal();
-  wheel.angular_velocity = {0, 0, 4};
-  scene.bodies.push_back(wheel);
-  Joint hinge;
-  hinge.type = JointType::revolute, hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
-  scene.joints.push_back(hinge);
-  TorsionSpring spring;
-  spring.i = kGround, spring.j = 0, spring.axis = {0, 0, 1}, spring.stiffness = 3 * kOmega * kOmega;
-  scene.forces.push_back(spring);
-  return {scene, [](const BodyState& at) { return std::atan2(at.A(1, 0), at.A(0, 0)); },
+  return {sprung_wheel(4, 3 * kOmega * kOmega), [](const BodyState& at) { return std::atan2(at.A(1, 0), at.A(0, 0)); },
           [](const BodyState& at) { return at.w.z(); }};
 }
 

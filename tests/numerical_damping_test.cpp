@@ -5,6 +5,7 @@
 #include <regex>
 
 #include "tests/support/energy_course.h"
+#include "tests/support/sprung_wheel.h"
 
 namespace poinsot::test {
 namespace {
@@ -22,22 +23,6 @@ Scene point_on_rod() {
   Constraint rod;
   rod.type = ConstraintType::D, rod.i = kGround, rod.j = 0, rod.f = Expression(1.0);
   scene.constraints.push_back(rod);
-  return scene;
-}
-
-// Turns to and fro about a fixed axis, its centre at rest.
-Scene sprung_wheel() {
-  Scene scene;
-  Body wheel;
-  wheel.name = "wheel", wheel.mass = 1, wheel.inertia = Vector3(1, 2, 3).asDiagonal();
-  wheel.angular_velocity = {0, 0, 0.5};
-  scene.bodies.push_back(wheel);
-  Joint hinge;
-  hinge.type = JointType::revolute, hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
-  scene.joints.push_back(hinge);
-  TorsionSpring spring;
-  spring.i = kGround, spring.j = 0, spring.axis = {0, 0, 1}, spring.stiffness = 30;
-  scene.forces.push_back(spring);
   return scene;
 }
 
@@ -81,7 +66,7 @@ TEST(NumericalDamping, is_told_as_it_is) {
                             "single_pendulum_free", "steel_pendulum", "stiff_pendulum"}) {
     const std::string_view name = model;
     const Scene scene = hardly_damped(name.empty()      ? point_on_rod()
-                                      : name == "wheel" ? sprung_wheel()
+                                      : name == "wheel" ? sprung_wheel(0.5, 30)
                                                         : scene_of(model));
     for (const char* formulation : {"rA", "rp", "reps"})
       for (const double step : {1e-3, 1e-2, 2e-2}) {

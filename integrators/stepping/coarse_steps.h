@@ -60,7 +60,7 @@ class CoarseSteps {
     double phase = 0;                           // rad³, Σ (h ω)³
     double vibrated = 0;                        // rad, that were gone through
     double fastest = 0;                         // rad/s, of a body at this look
-    double turned = 0;                          // rad³, Σ (h |ω|)³ of the fastest
+    double turned = 0;                          // (rad/s)³, Σ |ω|³ of the fastest, by step
   };
 
   void add(const Problem& problem, const State& x);
