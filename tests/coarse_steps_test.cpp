@@ -193,13 +193,17 @@ TEST(CoarseSteps, are_not_told_of_what_does_not_vibrate) {
 }
 
 TEST(CoarseSteps, are_not_told_where_models_are_followed) {
+  int followed = 0;
   for (const std::string& name : model_names()) {
     if (name == "andrews") continue;  // it goes round in 0.015 s
     for (const char* method : kKeepAmplitudes) {
       SCOPED_TRACE(name + " " + method);
-      EXPECT_FALSE(told(run(scene_of(name), fixed(method, "rA", 1e-3, 1)).outcome));
+      const Outcome outcome = run(scene_of(name), fixed(method, "rA", 1e-3, 1)).outcome;
+      EXPECT_FALSE(told(outcome));
+      if (outcome.status.ok()) ++followed;
     }
   }
+  EXPECT_GT(followed, 100);  // some stop, as stiff springs do in methods that see forces at the start of a step
 }
 
 }  // namespace

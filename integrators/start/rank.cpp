@@ -113,7 +113,7 @@ class Examination {
       result_.moves_on = along && beside_->leads_on(start, *along, result_.aside);
       if (along) result_.time_beside = along->t;
     } else {
-      if (surely.size() < suspects) tell_doubt(columns, surely);
+      if (surely.size() < suspects) tell_doubt(columns, surely, kIndependent, kDependent);
       tell_redundant(columns, kDependent, surely_);
       if (along && !along->holds && surely.size() == suspects) {
         Trial other = beside_->begin(by_order());
@@ -221,12 +221,8 @@ class Examination {
     }
   }
 
-  void tell_doubt(const Sparse& columns, const std::vector<int>& surely) {
-    doubt(columns, surely, kIndependent, kDependent);
-  }
-
-  // A row that follows from others but for less than `most`, of a scene where `surely` do for good.
-  void doubt(const Sparse& columns, const std::vector<int>& surely, double most, double least) {
+  // Of a row that follows from others but for less than `most` of its length, where `surely` do all but for `least`.
+  void tell_doubt(const Sparse& columns, const std::vector<int>& surely, double most, double least) {
     result_.doubt = most;
     result_.vanishing = false;
     for (const int column : dependent_columns(columns, most))
@@ -248,7 +244,7 @@ class Examination {
     if (dependent_columns(columns, kFewDigits).size() <= result_.aside.size()) return;
     const std::vector<int> surely = dependent_columns(columns, kIndependent);
     if (surely.size() != result_.aside.size()) return;
-    doubt(columns, surely, kFewDigits, kIndependent);
+    tell_doubt(columns, surely, kFewDigits, kIndependent);
     result_.few_digits = true;
   }
 

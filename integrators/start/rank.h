@@ -58,10 +58,12 @@ struct RankAnalysis {
   bool named = true;                // false: too many to say what each depends on; `others` are empty
   bool moves_on = true;             // singular: whether the velocities lead away from the singular position
   double time_beside = 0;           // s: after which they have, by a thousandth of the bodies' sizes
-  double doubt = 0;   // the largest part below kIndependent that is left of a row beside the others; 0: there is none
-  int doubtful = -1;  // the row
+  // The power of ten below which a part is left of a row beside the others, kIndependent at most but for `few_digits`,
+  // or of a gradient that vanishes the part itself; 0: there is none so small.
+  double doubt = 0;
+  int doubtful = -1;       // the row
   bool vanishing = false;  // its gradient is as small a part of its terms: by itself, not beside the others
-  // The doubt is no larger than numbers of few digits make it, beside redundant rows, or where nothing moves.
+  // It is above kIndependent, as numbers of few digits make it, beside redundant rows or where nothing moves.
   bool few_digits = false;
 
   int degrees_of_freedom() const { return variables - rank; }

@@ -175,11 +175,11 @@ void CoarseSteps::say_of_turns(const Run& run, double h, double scale) {
   if (!(lost > kTold)) return;
   const std::string whose = of_mechanism(run.problem.model(), mechanism_, static_cast<int>(&of - mechanisms_.data()));
   run.tell(
-      fmt::format("a body{} turns by up to {:.2g} rad in a step: in formulation {} {} is about {:.2g} rad {} its turns "
+      fmt::format("a body{} turns by some {:.2g} rad in a step: in formulation {} {} is about {:.2g} rad {} its turns "
                   "by the end{}; a step below {:.2g} s, error control or formulation rA keeps that below {:g} rad",
-                  whose, run.statistics.largest_rotation, run.problem.formulation(), run.settings.integrator, lost,
-                  off > 0 ? "ahead of" : "behind", of.driven ? ", where no driver turns it" : "",
-                  0.9 * h * std::sqrt(kTold / lost), kTold));
+                  whose, h * std::cbrt(of.turned / static_cast<double>(steps_)), run.problem.formulation(),
+                  run.settings.integrator, lost, off > 0 ? "ahead of" : "behind",
+                  of.driven ? ", where no driver turns it" : "", 0.9 * h * std::sqrt(kTold / lost), kTold));
 }
 
 }  // namespace poinsot

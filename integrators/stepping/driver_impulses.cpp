@@ -44,8 +44,7 @@ void DriverImpulses::look(const State& beyond) {
   told_ = true;
   run_.tell(
       fmt::format("at t = {:.6g} s the rate of {} jumps by {:.3g}, and velocities with it: the impulse that does it, "
-                  "and the {:.3g} "
-                  "J that it {}, are in no reaction, effort or power",
+                  "and the {:.3g} J that it {}, are in no reaction, effort or power",
                   beyond.t, describe_row(run_.problem.model(), std::exchange(row_, -1)), jump_, std::abs(gain),
                   gain < 0 ? "takes" : "brings"));
 }
