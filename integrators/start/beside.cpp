@@ -11,7 +11,6 @@
 #include "core/mechanisms.h"
 #include "formulations/registry.h"
 #include "integrators/settings.h"
-#include "linsolve/column_dependencies.h"
 
 namespace poinsot {
 namespace {
@@ -213,6 +212,32 @@ bool Beside::leads_on(const PlaceBeside& start, const PlaceBeside& along, const 
     look(trial, place);
   }
   return place.holds && place.dependent == without.size();
+}
+
+std::vector<BodyState> Beside::bodies_at(const PlaceBeside& place) {
+  std::vector<BodyState> states(sizes_.size());
+  space_.stand_at(place.t, place.q);
+  space_.problem().to_bodies(std::vector<double>(place.v.size(), 0.0), states);
+  return states;
+}
+
+bool Beside::has_moved(const PlaceBeside& from, const PlaceBeside& to, const NullSpace& null) {
+  constexpr double kMoved = 1e-3 * kMove;
+  const std::vector<BodyState> before = bodies_at(from), after = bodies_at(to);
+  const auto seen = [](const std::vector<BodyState>& states, const Row& row) -> std::pair<Vector3, Matrix3> {
+    if (row.i == kGround) return {states[index(row.j)].r, states[index(row.j)].A};
+    const BodyState& i = states[index(row.i)];
+    if (row.j == kGround) return {i.r, i.A};
+    return {i.A.transpose() * (states[index(row.j)].r - i.r), i.A.transpose() * states[index(row.j)].A};
+  };
+  const auto moves = [&](const std::pair<int, double>& entry) {
+    const std::size_t k = index(entry.first);
+    const Row& row = model_->rows[index(space_.rows()[k])];
+    const auto [r, A] = seen(before, row);
+    const auto [to_r, to_A] = seen(after, row);
+    return (to_r - r).norm() > kMoved * space_.size_of_row(k) || (to_A - A).norm() > kMoved;
+  };
+  return std::ranges::all_of(null.vectors, [&](const SparseEntries& z) { return std::ranges::any_of(z, moves); });
 }
 
 }  // namespace poinsot

@@ -14,6 +14,7 @@
 #include "core/model.h"
 #include "integrators/start/onto_rows.h"
 #include "integrators/start/row_space.h"
+#include "linsolve/column_dependencies.h"
 #include "linsolve/front_qr.h"
 
 namespace poinsot {
@@ -67,6 +68,10 @@ class Beside {
   // but those left out.
   bool leads_on(const PlaceBeside& start, const PlaceBeside& along, const std::vector<int>& without);
 
+  // Whether bodies have moved against one another from one place to the other in each combination of rows: `null` has
+  // vectors on the space's columns.
+  bool has_moved(const PlaceBeside& from, const PlaceBeside& to, const NullSpace& null);
+
   double extent(std::span<const double> dq) const;  // largest move of a body by dq, in its size
 
  private:
@@ -83,6 +88,7 @@ class Beside {
   void look(Trial& trial, PlaceBeside& place);
   void look_at_rates(Trial& trial, PlaceBeside& place);
   double distance(std::span<const double> q, std::span<const double> from) const;
+  std::vector<BodyState> bodies_at(const PlaceBeside& place);
 
   std::shared_ptr<const Model> model_;
   RowSpace& space_;

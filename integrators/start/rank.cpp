@@ -10,6 +10,7 @@
 
 #include "core/index.h"
 #include "integrators/start/beside.h"
+#include "integrators/start/closed_beside.h"
 #include "integrators/start/few_groups.h"
 #include "integrators/start/loop_rows.h"
 #include "integrators/start/row_space.h"
@@ -24,6 +25,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr std::size_t kLong = 1000;  // rows of loops: less can make them barely independent otherwise only
 constexpr int kManyRows = 20'000;    // of loops: one place beside is looked at for all
 constexpr int kDirections = 2;       // at random
+constexpr int kClosings = 4;         // of closing it beside
 
 class Examination {
  public:
@@ -108,7 +110,11 @@ class Examination {
       start = std::move(trial.start);
     }
     if (best && best->dependent < suspects) {
-      tell_redundant(best->columns, kFreeBeside, few_null_vectors(best->columns, kFreeBeside));
+      NullSpace null = few_null_vectors(best->columns, kFreeBeside);
+      const bool tried = !best->holds && follows_along(start, along, best->dependent);
+      if (tried) best = along, null = few_null_vectors(along->columns, kFreeBeside);
+      tell_redundant(best->columns, kFreeBeside, null);
+      if (!best->holds) follow_where_all_hold(suspects);
       tell_singular(columns);
       result_.moves_on = along && beside_->leads_on(start, *along, result_.aside);
       if (along) result_.time_beside = along->t;
@@ -135,6 +141,33 @@ class Examination {
     if (!std::exchange(result_.conflicts, {}).empty()) return false;
     const std::optional<PlaceBeside> place = beside_->anywhere(trial);
     return place && place->dependent == here_.columns.size() && place->holds;
+  }
+
+  // Off the places where all rows hold, rows may look independent that follow there: of planar loops, those that keep
+  // them in their plane. Along the velocities they hold; all is tried there that moves.
+  bool follows_along(const PlaceBeside& start, const std::optional<PlaceBeside>& along, std::size_t less) {
+    if (!along || !along->holds || along->dependent <= less || along->dependent >= here_.columns.size()) return false;
+    const NullSpace null = few_null_vectors(along->columns, kFreeBeside);
+    return !many(null) && beside_->has_moved(start, *along, null);
+  }
+  // Where it does not move, positions that can be closed beside say what follows.
+  void follow_where_all_hold(std::size_t suspects) {
+    ClosedBeside closed(*model_, states_);
+    if (is_beside_ || result_.aside.empty() || !closed.can_be_found()) return;
+    std::optional<RankAnalysis> least;
+    for (int k = 0; k < kClosings; ++k) {
+      const std::optional<std::vector<BodyState>> at = closed.next();
+      if (!at) continue;
+      Examination examination(model_, *at, names_);
+      examination.is_beside_ = true;
+      RankAnalysis found = examination.run();
+      if (found.singular_position() || !found.conflicts.empty()) continue;
+      if (!least || found.aside.size() < least->aside.size()) least = std::move(found);
+      if (least->aside.size() <= result_.aside.size()) return;
+    }
+    if (!least || least->aside.size() >= suspects) return;
+    least->loops = std::move(result_.loops);
+    result_ = std::move(*least);
   }
 
   // Of the rows left out, where the others hold.
@@ -251,6 +284,7 @@ class Examination {
   std::shared_ptr<const Model> model_;
   std::vector<BodyState> states_;
   RankNames names_;
+  bool is_beside_ = false;  // of a place where another one stands
   std::optional<RowSpace> space_;
   std::optional<Beside> beside_;
   NullSpace here_;    // of the rows at the given position, at kIndependent but for the length of the mechanism

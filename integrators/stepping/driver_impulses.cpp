@@ -14,11 +14,11 @@ namespace {
 
 // What ḟ changes by; 0 where that may be rounding, of rates of the size that f̈ makes in a run.
 double jump_of_rate(const Row& row, double before, double beyond, double end) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kNoJump = 1e-9;
   if (row.type == RowType::pfaffian || row.f.is_constant()) return 0;
   const Jet2<double> from = row.f.at(before), to = row.f.at(beyond);
   const double size = std::max({std::abs(from.fd), std::abs(to.fd), end * std::abs(from.fdd), end * std::abs(to.fdd)});
-  return std::abs(to.fd - from.fd) > kRounding * size ? to.fd - from.fd : 0;
+  return std::abs(to.fd - from.fd) > kNoJump * size ? to.fd - from.fd : 0;
 }
 
 }  // namespace
