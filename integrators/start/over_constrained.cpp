@@ -34,7 +34,8 @@ OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::share
       now_(states.begin(), states.end()) {
   choice_->rows.look(0, states);
   // Where very many rows are redundant the analysis of rank leaves the others independent, but not as much as can be.
-  if (choice_->rows.worn() && choice_->rows.renew(0, states, HUGE_VAL, 0))
+  // In a singular position it does so beside it, and here they are not.
+  if (!rank.singular_position() && choice_->rows.worn() && choice_->rows.renew(0, states, HUGE_VAL, 0))
     kept_ = kept_->clone_without(choice_->rows.aside());
   bodies_ = kept_->bodies();
   nq_ = kept_->nq(), nv_ = kept_->nv(), nc_ = kept_->nc();
