@@ -53,15 +53,15 @@ class ControlledPair : public ExplicitStepper {
   // see, as a stop that they were thrown back from, is not in its error either.
   Status complete(double& error, double most = 1) {
     constexpr double kTooLarge = 2;
-    const Status status = ExplicitStepper::complete(error, most);
+    const Status status = examine(error, most);
     failed_ = !status.ok();
-    if (!probes_ || !status.ok() || !(error <= most)) return status;
-    passed_ = beside_singular();
-    if (!passed_) {
-      take_back();
+    if (failed_ || !(error <= most)) return status;
+    passed_ = probes_ && comes_by_singular();
+    if (probes_ && !passed_)
       error = kTooLarge * most;
-    }
-    return status;
+    else
+      keep();
+    return {};
   }
   double retry(double h, int rejections, double usual) {
     singular_ = beside_singular() || at_start_;

@@ -274,7 +274,7 @@ bool ExplicitStepper::ends_agree() {
   return !(h_ * norm_(span(combined_), span(scale_)) * rtol_ > 1);
 }
 
-Status ExplicitStepper::complete(double& error, double most) {
+Status ExplicitStepper::examine(double& error, double most) {
   constexpr double kTooLarge = 2;
   if (!end_is_evaluated()) {
     if (Status status = evaluate(next_, y_, last_); !status.ok()) return status;
@@ -286,12 +286,26 @@ Status ExplicitStepper::complete(double& error, double most) {
   if (Status status = project_end(error, most); !status.ok() || !(error <= most)) return status;
   if (consistent_.leaves_branch(next_) || gap_.goes_over(state_, next_, settled_))
     return {Failure::singular_position, next_.t, {}};
+  return {};
+}
+
+void ExplicitStepper::keep() {
   consistent_.follow(next_);
   gap_.follow(next_, settled_);
   test_stiffness();
   std::swap(state_, next_);
   elsewhere_ = false;
-  return {};
+}
+
+bool ExplicitStepper::comes_by_singular() {
+  consistent_.look(consistent_.steepness(next_.t));
+  return beside_singular();
+}
+
+Status ExplicitStepper::complete(double& error, double most) {
+  const Status status = examine(error, most);
+  if (status.ok() && error <= most) keep();
+  return status;
 }
 
 Status ExplicitStepper::lead(double t) {
@@ -309,6 +323,7 @@ const State& ExplicitStepper::trial_end() {
 
 void ExplicitStepper::take_back() {
   std::swap(state_, next_);
+  consistent_.forget_approach();  // and with it what NarrowGap has of the end that was taken back
   elsewhere_ = true;
 }
 

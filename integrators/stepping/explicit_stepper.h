@@ -55,6 +55,11 @@ class ExplicitStepper {
   // Makes the attempted step the state: f(y_{n+1}), projection. Where that moves it by more than the error, so much is
   // the error. The state is still the old one where the result cannot be projected, or where the error is above `most`.
   Status complete(double& error, double most = 1);
+  // The same in two: whether the attempted step may stand, where there is no failure and the error is not above `most`;
+  // and makes it the state. Between the two whether it, or a stage, comes by a singular position.
+  Status examine(double& error, double most);
+  bool comes_by_singular();
+  void keep();
   // The motion within the completed step at time t, consistent, in interpolated(). The problem stands there. Where the
   // step is so long that the polynomial is too far off the constraints, a shorter step from where that one began.
   Status interpolate(double t);

@@ -183,6 +183,7 @@ const State& RadauStepper::trial_end() {
 
 void RadauStepper::take_back() {
   state_ = before_;
+  consistent_.forget_approach();  // and with it what NarrowGap has of the end that was taken back
   h_before_ = 0;
 }
 
