@@ -46,7 +46,7 @@ Scene stacked(const Stack& of) {
   return scene;
 }
 
-double turned(const Scene& scene, const Snapshot& at, std::size_t body) {
+double crank_angle(const Scene& scene, const Snapshot& at, std::size_t body) {
   const Matrix3 A = at.bodies[body].A * scene.bodies[body].orientation.transpose();
   return std::atan2(A(1, 0), A(0, 0));
 }
@@ -56,11 +56,11 @@ double off_even_turns(const Scene& scene, const Course& course) {
   double off = 0;
   for (const Snapshot& sample : course.samples)
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-      off = std::max(off, std::abs(turned(scene, sample, b) - (b == 0 ? 0 : kSpin * sample.t)));
+      off = std::max(off, std::abs(crank_angle(scene, sample, b) - (b == 0 ? 0 : kSpin * sample.t)));
   return off;
 }
 
-RankAnalysis rank_of(const Scene& scene) {
+RankAnalysis rank_of_flat(const Scene& scene) {
   const auto model = std::make_shared<const Model>(compile(scene));
   return analyze_rank(model, given_state(*model), RankNames::all);
 }
@@ -102,12 +102,12 @@ TEST_P(FlatParallelograms, HaveOneDegreeOfFreedomALevel) {
   for (const int cranks : {3, 4}) {
     for (const int levels : {1, 2, 3}) {
       SCOPED_TRACE(fmt::format("{} cranks, {} levels", cranks, levels));
-      const RankAnalysis rank = rank_of(stacked({levels, cranks, GetParam()}));
+      const RankAnalysis rank = rank_of_flat(stacked({levels, cranks, GetParam()}));
       EXPECT_TRUE(rank.singular_position());
       EXPECT_TRUE(rank.moves_on);
       EXPECT_EQ(rank.degrees_of_freedom(), levels);
     }
-    EXPECT_EQ(rank_of(stacked({1, cranks, GetParam(), 0})).degrees_of_freedom(), 1) << "at rest";
+    EXPECT_EQ(rank_of_flat(stacked({1, cranks, GetParam(), 0})).degrees_of_freedom(), 1) << "at rest";
   }
 }
 
@@ -123,7 +123,7 @@ TEST_P(FlatParallelograms, HaveItBesideOneThatRests) {
     for (int* body : {&other.i, &other.j})
       if (*body != kGround) *body += first;
   }
-  EXPECT_EQ(rank_of(scene).degrees_of_freedom(), 2);
+  EXPECT_EQ(rank_of_flat(scene).degrees_of_freedom(), 2);
 }
 
 TEST_P(FlatParallelograms, KeepTheirCouplersParallelInStacks) {
@@ -138,11 +138,11 @@ TEST_P(FlatParallelograms, KeepTheirCouplersParallelInStacks) {
       ASSERT_TRUE(course.outcome.status.ok()) << course.outcome.status.message;
       for (const Snapshot& sample : course.samples)
         for (std::size_t level = 0; level < static_cast<std::size_t>(levels); ++level) {
-          EXPECT_NEAR(turned(scene, sample, 4 * level), 0, 1e-9);
+          EXPECT_NEAR(crank_angle(scene, sample, 4 * level), 0, 1e-9);
           for (const std::size_t k : {2u, 3u})
-            EXPECT_NEAR(turned(scene, sample, 4 * level + k), turned(scene, sample, 4 * level + 1), 1e-9);
+            EXPECT_NEAR(crank_angle(scene, sample, 4 * level + k), crank_angle(scene, sample, 4 * level + 1), 1e-9);
         }
-      EXPECT_GT(turned(scene, course.samples.back(), 1), 0.3 * kSpin * kUntil);
+      EXPECT_GT(crank_angle(scene, course.samples.back(), 1), 0.3 * kSpin * kUntil);
     }
   }
 }

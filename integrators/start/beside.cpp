@@ -1,6 +1,7 @@
 #include "integrators/start/beside.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -136,8 +137,8 @@ std::optional<PlaceBeside> Beside::anywhere(Trial& trial) {
   return settle(trial, *move);
 }
 
-// Moves, puts the mechanism back onto the problem's rows, and looks at all of them.
-std::optional<PlaceBeside> Beside::settle(Trial& trial, const Move& move) {
+// Moves and puts the mechanism back onto the rows kept.
+std::optional<PlaceBeside> Beside::settled(Trial& trial, const Move& move) {
   const PlaceBeside& start = trial.start;
   PlaceBeside place = start;
   place.t = move.t;
@@ -145,7 +146,46 @@ std::optional<PlaceBeside> Beside::settle(Trial& trial, const Move& move) {
   const double moved = distance(place.q, start.q);
   if (!trial.onto->position(place.t, place.q)) return {};
   if (move.must_stay && distance(place.q, start.q) < kPulledBack * moved) return {};
-  look(trial, place);
+  return place;
+}
+
+std::optional<PlaceBeside> Beside::settle(Trial& trial, const Move& move) {
+  std::optional<PlaceBeside> place = settled(trial, move);
+  if (place) look(trial, *place);
+  return place;
+}
+
+// Rows that the kept ones imply are off by rounding however far it is; what grows otherwise, as where the kept ones
+// have come onto another branch, says nothing.
+std::optional<PlaceBeside> Beside::where_they_part(Trial& trial, int direction) {
+  constexpr std::size_t kWays = 4;
+  constexpr double kLonger = 4, kLeastPower = 1.5, kMostPower = 8;
+  constexpr double kSeen = 1e-14, kMuch = 1000;  // kSeen: of bodies' sizes
+  const std::vector<double>& free = trial.random[index(direction)];
+  if (free.empty()) return {};
+  std::optional<PlaceBeside> place;
+  std::array<double, kWays> off{};
+  double seen = kSeen;
+  for (std::size_t k = 0; k < off_at_start_.size(); ++k)
+    seen = std::max(seen, 3 * off_at_start_[k] / space_.size_of_row(k));
+  Move move{0, free, true};
+  for (double& most : off) {
+    if (&most != &off.front())
+      for (double& x : move.dq) x *= kLonger;
+    if (place = settled(trial, move); !place) return {};
+    space_.stand_at(place->t, place->q);
+    std::vector<double> by(space_.rows().size());
+    space_.distances(by);
+    for (std::size_t k = 0; k < by.size(); ++k)
+      most = std::max(most, std::abs(by[k]) / space_.size_of_row(k));
+  }
+  if (!(off[kWays - 2] > 10 * seen && off[kWays - 1] > kMuch * seen)) return {};
+  for (std::size_t k = 0; k + 1 < kWays; ++k) {
+    const double times = off[k + 1] / std::max(seen, off[k]);
+    const bool known = off[k] > seen;
+    if (times > std::pow(kLonger, kMostPower) || (known && times < std::pow(kLonger, kLeastPower))) return {};
+  }
+  place->columns = space_.columns();
   return place;
 }
 

@@ -23,6 +23,8 @@ namespace poinsot {
 // the mechanism; what follows from others but for the second order of the move, where some row does not hold, has the
 // square of it.
 inline constexpr double kFreeBeside = 3e-5;
+// The same farther off, of rows that follow beside to the first order: of what is left of them when they are first seen.
+inline constexpr double kFreeFarther = 1e-8;
 // Part of a body's size: a row that holds beside is off by no more than the solution of the others, one that does not
 // by some 1e-6, the square of the move.
 inline constexpr double kHolds = 1e-9;
@@ -62,6 +64,8 @@ class Beside {
   // Nothing where it does not move, or the projection pulls it back.
   std::optional<PlaceBeside> along_velocities(Trial& trial);
   std::optional<PlaceBeside> at_random(Trial& trial, int direction);
+  // Where rows that follow beside do not farther off, as a power of the way: they do to the first order only.
+  std::optional<PlaceBeside> where_they_part(Trial& trial, int direction);
   // Both at once, as far as there are both.
   std::optional<PlaceBeside> anywhere(Trial& trial);
   // Whether the mechanism, moved on along its velocities, comes to a position where all rows hold and are independent
@@ -85,6 +89,7 @@ class Beside {
   };
   std::optional<Move> along(const PlaceBeside& start) const;
   std::optional<PlaceBeside> settle(Trial& trial, const Move& move);
+  std::optional<PlaceBeside> settled(Trial& trial, const Move& move);
   void look(Trial& trial, PlaceBeside& place);
   void look_at_rates(Trial& trial, PlaceBeside& place);
   double distance(std::span<const double> q, std::span<const double> from) const;

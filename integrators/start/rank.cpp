@@ -80,56 +80,86 @@ class Examination {
 
   bool many_rows() const { return static_cast<int>(space_->rows().size()) > kManyRows; }
 
+  struct LookedAt {
+    PlaceBeside start;
+    std::optional<PlaceBeside> best;  // where the fewest rows are dependent
+    std::optional<PlaceBeside> along;
+    double free = kFreeBeside;  // in `best`
+  };
+
   void look_beside(std::shared_ptr<FrontQr> decomposition) {
     const Sparse columns = space_->columns();
-    const std::size_t suspects = here_.columns.size();  // how many rows may be dependent
-    const std::vector<int>& surely = surely_.columns;
-    beside_.emplace(model_, states_, *space_, suspects);
-    // Conflicts are told as a reader of the scene meets them: what contradicts rows before it.
-    const auto by_order = [&] { return of_model(null_space(columns, kIndependent, space_->rows().size()).columns); };
-    PlaceBeside start;
-    std::optional<PlaceBeside> best, along;
-    if (!many_rows() || !all_follow_beside(std::move(decomposition))) {
-      Trial trial = beside_->begin(without_, kDirections);
-      if (trial.regular) find_conflicts(trial);
-      if (surely.empty()) result_.conflicts.clear();  // rows that are independent, if only just, contradict nothing
-      if (!result_.conflicts.empty()) {
-        std::vector<Conflict> as_chosen = std::exchange(result_.conflicts, {});
-        Trial other = beside_->begin(by_order());
-        if (other.regular) find_conflicts(other);
-        if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
-      }
-      if (trial.regular && result_.conflicts.empty()) {
-        along = beside_->along_velocities(trial);
-        best = along;
-        for (int k = 0; k < kDirections && (!best || best->dependent > 0); ++k) {
-          std::optional<PlaceBeside> place = beside_->at_random(trial, k);
-          if (place && (!best || place->dependent < best->dependent)) best = std::move(place);
-        }
-      }
-      start = std::move(trial.start);
+    beside_.emplace(model_, states_, *space_, suspects());
+    const bool all_follow = many_rows() && all_follow_beside(std::move(decomposition));
+    LookedAt at = all_follow ? LookedAt{} : look_each_way(columns);
+    if (at.best && at.best->dependent < suspects())
+      tell_what_is_singular(columns, at);
+    else
+      tell_what_follows(columns, at);
+  }
+
+  std::size_t suspects() const { return here_.columns.size(); }  // how many rows may be dependent
+  // Conflicts are told as a reader of the scene meets them: what contradicts rows before it.
+  std::vector<int> by_order(const Sparse& columns) const {
+    return of_model(null_space(columns, kIndependent, space_->rows().size()).columns);
+  }
+
+  LookedAt look_each_way(const Sparse& columns) {
+    LookedAt at;
+    Trial trial = beside_->begin(without_, kDirections);
+    if (trial.regular) find_conflicts(trial);
+    if (surely_.columns.empty()) result_.conflicts.clear();  // rows independent, if only just, contradict nothing
+    if (!result_.conflicts.empty()) {
+      std::vector<Conflict> as_chosen = std::exchange(result_.conflicts, {});
+      Trial other = beside_->begin(by_order(columns));
+      if (other.regular) find_conflicts(other);
+      if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
     }
-    if (best && best->dependent < suspects) {
-      NullSpace null = few_null_vectors(best->columns, kFreeBeside);
-      const bool tried = !best->holds && follows_along(start, along, best->dependent);
-      if (tried) best = along, null = few_null_vectors(along->columns, kFreeBeside);
-      tell_redundant(best->columns, kFreeBeside, null);
-      if (!best->holds) follow_where_all_hold(suspects);
-      tell_singular(columns);
-      result_.moves_on = along && beside_->leads_on(start, *along, result_.aside);
-      if (along) result_.time_beside = along->t;
-    } else {
-      if (surely.size() < suspects) tell_doubt(columns, surely, kIndependent, kDependent);
-      tell_redundant(columns, kDependent, surely_);
-      if (along && !along->holds && surely.size() == suspects) {
-        Trial other = beside_->begin(by_order());
-        std::optional<PlaceBeside> place;
-        if (other.regular) place = beside_->along_velocities(other);
-        if (!place || place->holds) place = along;
-        const auto level = place->by_rate ? Conflict::Level::later_velocity : Conflict::Level::later;
-        result_.conflicts.push_back({place->worst, level, place->off, place->t});
+    if (trial.regular && result_.conflicts.empty()) {
+      at.best = at.along = beside_->along_velocities(trial);
+      for (int k = 0; k < kDirections && (!at.best || at.best->dependent > 0); ++k) {
+        std::optional<PlaceBeside> place = beside_->at_random(trial, k);
+        if (place && (!at.best || place->dependent < at.best->dependent)) at.best = std::move(place);
       }
+      if (!at.best || at.best->dependent == suspects()) look_farther(trial, at);
     }
+    at.start = std::move(trial.start);
+    return at;
+  }
+
+  void look_farther(Trial& trial, LookedAt& at) {
+    for (int k = 0; k < kDirections; ++k) {
+      std::optional<PlaceBeside> place = beside_->where_they_part(trial, k);
+      if (!place) continue;
+      place->dependent = dependent_columns(place->columns, kFreeFarther, suspects()).size();
+      at.best = std::move(place);
+      at.free = kFreeFarther;
+      return;
+    }
+  }
+
+  void tell_what_is_singular(const Sparse& columns, LookedAt& at) {
+    NullSpace null = few_null_vectors(at.best->columns, at.free);
+    const bool tried = !at.best->holds && follows_along(at);
+    if (tried) at.best = at.along, null = few_null_vectors(at.along->columns, kFreeBeside);
+    tell_redundant(at.best->columns, at.free, null);
+    if (!at.best->holds) follow_where_all_hold();
+    tell_singular(columns);
+    result_.to_first_order = at.free < kFreeBeside;
+    result_.moves_on = at.along && beside_->leads_on(at.start, *at.along, result_.aside);
+    if (at.along) result_.time_beside = at.along->t;
+  }
+
+  void tell_what_follows(const Sparse& columns, const LookedAt& at) {
+    if (surely_.columns.size() < suspects()) tell_doubt(columns, surely_.columns, kIndependent, kDependent);
+    tell_redundant(columns, kDependent, surely_);
+    if (!at.along || at.along->holds || surely_.columns.size() < suspects()) return;
+    Trial other = beside_->begin(by_order(columns));
+    std::optional<PlaceBeside> place;
+    if (other.regular) place = beside_->along_velocities(other);
+    if (!place || place->holds) place = at.along;
+    const auto level = place->by_rate ? Conflict::Level::later_velocity : Conflict::Level::later;
+    result_.conflicts.push_back({place->worst, level, place->off, place->t});
   }
 
   // Whether as many rows follow and hold in one place that is beside in every way at once. Where that cannot be said,
@@ -145,13 +175,14 @@ class Examination {
 
   // Off the places where all rows hold, rows may look independent that follow there: of planar loops, those that keep
   // them in their plane. Along the velocities they hold; all is tried there that moves.
-  bool follows_along(const PlaceBeside& start, const std::optional<PlaceBeside>& along, std::size_t less) {
-    if (!along || !along->holds || along->dependent <= less || along->dependent >= here_.columns.size()) return false;
-    const NullSpace null = few_null_vectors(along->columns, kFreeBeside);
-    return !many(null) && beside_->has_moved(start, *along, null);
+  bool follows_along(const LookedAt& at) {
+    if (!at.along || !at.along->holds || at.along->dependent <= at.best->dependent) return false;
+    if (at.along->dependent >= suspects()) return false;
+    const NullSpace null = few_null_vectors(at.along->columns, kFreeBeside);
+    return !many(null) && beside_->has_moved(at.start, *at.along, null);
   }
   // Where it does not move, positions that can be closed beside say what follows.
-  void follow_where_all_hold(std::size_t suspects) {
+  void follow_where_all_hold() {
     ClosedBeside closed(*model_, states_);
     if (is_beside_ || result_.aside.empty() || !closed.can_be_found()) return;
     std::optional<RankAnalysis> least;
@@ -165,7 +196,7 @@ class Examination {
       if (!least || found.aside.size() < least->aside.size()) least = std::move(found);
       if (least->aside.size() <= result_.aside.size()) return;
     }
-    if (!least || least->aside.size() >= suspects) return;
+    if (!least || least->aside.size() >= suspects()) return;
     least->loops = std::move(result_.loops);
     result_ = std::move(*least);
   }

@@ -55,6 +55,8 @@ struct RankAnalysis {
   // By group. Where there are very many redundant rows, all groups with some nearby.
   std::vector<Undetermined> undetermined;
   std::vector<Conflict> conflicts;  // by row
+  // Singular rows follow from others to the first order of a move: next to the position they are hardly independent.
+  bool to_first_order = false;
   bool named = true;                // false: too many to say what each depends on; `others` are empty
   bool moves_on = true;             // singular: whether the velocities lead away from the singular position
   double time_beside = 0;           // s: after which they have, by a thousandth of the bodies' sizes

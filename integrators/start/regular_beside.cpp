@@ -16,7 +16,7 @@ namespace {
 constexpr int kTries = 6;
 // What is left of a row beside the others where it is singular: constraints that touch are closed to the root of
 // rounding only.
-constexpr double kSingularShare = 1e-4;
+constexpr double kSingularShare = 1e-5;
 
 bool is_regular(const std::shared_ptr<const Model>& model, std::span<const BodyState> states) {
   const RankAnalysis rank = analyze_rank(model, states, RankNames::none);
