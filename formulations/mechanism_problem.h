@@ -227,6 +227,11 @@ class MechanismProblem final : public Problem {
     const std::size_t k = static_cast<std::size_t>(of);
     return Torsion<F, double>::angle(c, c.elements->followed[k], c.followed[k]);
   }
+  void count_turns_from(const Problem& other) override {
+    const auto& from = static_cast<const MechanismProblem&>(other).mechanism_.c;
+    mechanism_.c.twist = from.twist;
+    mechanism_.c.followed = from.followed;
+  }
 
   double turn(int body) const override { return mechanism_.c.rate[index(body)].w.norm(); }
   double fastest_turn() const override {

@@ -151,6 +151,8 @@ class Problem {
   // Angle of a torsion spring of the model, and of an angle that is followed: rad, with full turns.
   virtual double twist(int torsion) const = 0;
   virtual double followed_angle(int of) const = 0;
+  // Counts their turns on from those of a problem of the same kind, of the same model.
+  virtual void count_turns_from(const Problem& other) = 0;
   // |ω| of a body, rad/s, and the largest of one. Need the velocity.
   virtual double turn(int body) const = 0;
   virtual double fastest_turn() const = 0;

@@ -45,6 +45,7 @@ class HalfImplicit final : public FixedSteps {
 
   Status step(double t) override {
     extrapolation_.lead(x_.z);
+    ends_.set_out();
     StepEnds::End &begin = ends_.begin(), &end = ends_.end();
     const auto advance = [&] {
       x_.v.noalias() = v_n_ + h_ * x_.z.head(nv_);

@@ -15,6 +15,7 @@
 #include "integrators/stepping/controlled_run.h"
 #include "integrators/stepping/narrow_gap.h"
 #include "integrators/stepping/rest_watch.h"
+#include "integrators/stepping/turning.h"
 
 namespace poinsot {
 namespace {
@@ -90,7 +91,13 @@ class Session {
         return status;
       }
       if (Status status = remember(t, course_.turned(h)); !status.ok()) return status;
-      ida_.turn_at_most(problem_.counted_turn().rate);
+      const double rate = problem_.counted_turn().rate;
+      ida_.turn_at_most(rate);
+      if (h * std::max(rate, std::exchange(counted_, rate)) >=
+          kMostCounted) {  // its limit holds for longer steps alone
+        if (Status status = pass(); !status.ok()) return status;
+        continue;
+      }
       Status status;
       for (; !course_.every_step && times.next() < t; times.pass()) {
         if (status = stand_at(times.next()); !status.ok()) break;
@@ -222,10 +229,19 @@ class Session {
     return lost ? pass() : why;
   }
 
+  // A longer step would go over a place where the angle of a torsion spring jumps by half a turn.
+  bool has_lost_an_angle() {
+    constexpr double kNothing = 1e-3;  // of its direction, across its axis
+    consistent_.stand(at_);
+    const CountedTurn turn = problem_.counted_turn();
+    return turn.rate > 0 && turn.across < kNothing;
+  }
+
   // By steps of an explicit pair from at_ until well beyond singular positions.
   Status pass() {
     constexpr int kSteps = 30;  // in which one is seen
     constexpr double kFar = 0.1;
+    if (has_lost_an_angle()) return step_too_small(at_.t, ida_.last_step(), {Failure::rotation_too_large, at_.t, {}});
     if (!passing_) {
       passing_.emplace(dop853_pair(), problem_, run_.systems, settings_.rtol, settings_.absolute_tolerance(),
                        statistics_, clock_);
@@ -279,6 +295,7 @@ class Session {
   void begin_again() {
     ida_.count(statistics_);
     ida_.begin_again(at_);
+    counted_ = 0;
     at_t_ = at_.t;
     for (Mark* mark : {&before_, &last_}) mark->known = mark->known && mark->t <= at_.t;
   }
@@ -293,8 +310,9 @@ class Session {
   Consistent consistent_;
   Passage passage_;
   NarrowGap gap_;
-  State at_, next_;  // the last point given out, and the next one while it is made
-  double at_t_ = 0;  // IDA's time
+  State at_, next_;     // the last point given out, and the next one while it is made
+  double at_t_ = 0;     // IDA's time
+  double counted_ = 0;  // rad/s, of the fastest counted angle where IDA's last step ended
   Course course_;
   std::optional<ControlledPair> passing_;
   double failed_at_ = -HUGE_VAL;

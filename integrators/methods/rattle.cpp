@@ -58,6 +58,7 @@ class Rattle final : public FixedSteps {
   void resize(double before) override { extrapolation_.resize(z_, h_ / before); }
   Status step(double t) override {
     extrapolation_.lead(z_);
+    ends_.set_out();
     if (Status status = first_half(t); !status.ok()) return status;
     if (Status status = second_half(t); !status.ok()) return status;
     ends_.take_turns();

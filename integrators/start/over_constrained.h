@@ -78,6 +78,9 @@ class OverConstrained final : public Problem {
   std::string fault() const override { return kept_->fault(); }
   double twist(int torsion) const override { return kept_->twist(torsion); }
   double followed_angle(int of) const override { return kept_->followed_angle(of); }
+  void count_turns_from(const Problem& other) override {
+    kept_->count_turns_from(*static_cast<const OverConstrained&>(other).kept_);
+  }
   double turn(int body) const override { return kept_->turn(body); }
   double fastest_turn() const override { return kept_->fastest_turn(); }
   CountedTurn counted_turn() const override { return kept_->counted_turn(); }

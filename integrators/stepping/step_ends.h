@@ -28,6 +28,8 @@ class StepEnds {
   Status prepare() { return ends_[0].system.prepare(); }
   End& begin() { return *begin_; }
   End& end() { return *end_; }
+  // Before a step: where it begins, turns of bodies have been counted.
+  void set_out() { end_->problem.count_turns_from(begin_->problem); }
   void take_turns() { std::swap(begin_, end_); }
 
  private:
