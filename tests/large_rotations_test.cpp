@@ -154,6 +154,44 @@ TEST(TorsionSprings, that_turn_too_far_in_a_fixed_step_stop_the_run) {
     }
 }
 
+TEST(TorsionSprings, are_counted_right_in_fixed_steps_below_that) {
+  const double rate = 100;
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.controls_error || integrator.analysis != Analysis::dynamics) continue;
+    for (const char* formulation : {"rA", "reps"})
+      for (const double step : {0.0125, 0.02, 0.025}) {
+        const Recorded r = run(torsional(rate), with(integrator.name, formulation, step, 1));
+        ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+        EXPECT_NEAR(r.samples.back().bodies[0].w.z(), rate * std::cos(1), integrator.order == 1 ? rate * step : 0.01)
+            << integrator.name << ' ' << formulation << " step " << step;
+      }
+  }
+}
+
+// The spring's direction on body c comes to lie along its axis as the shaft tilts it by a quarter turn.
+TEST(TorsionSprings, that_lose_their_angle_stop_the_run) {
+  const Scene tilting = parse_scene(R"({"scene": 1, "gravity": [0, 0, -9.81], "bodies": [
+      {"name": "a", "mass": 1, "inertia": [0.1, 0.1, 0.1], "position": [0, 0, 0]},
+      {"name": "c", "mass": 1, "inertia": [0.1, 0.1, 0.1], "position": [0, 0, 1]}],
+      "joints": [
+      {"type": "revolute", "bodies": ["ground", "a"], "point": [0, 0, 0], "axis": [0, 0, 1]},
+      {"type": "universal", "bodies": ["a", "c"], "point": [0, 0, 0.5], "axis_i": [1, 0, 0], "axis_j": [0, 1, 0]}],
+      "drivers": [{"type": "angle", "bodies": ["a", "c"], "axis": [1, 0, 0], "angle": "2*t"}],
+      "forces": [{"type": "torsion_spring", "name": "soft", "bodies": ["ground", "c"], "axis": [0, 0, 1],
+      "stiffness": 1, "damping": 0.1}]})",
+                                    "tilting");
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (!integrator.controls_error || integrator.analysis != Analysis::dynamics) continue;
+    for (const char* formulation : kAllFormulations)
+      for (const double rtol : {1e-6, 1e-8}) {
+        if (refusal_of(integrator, formulation)) continue;
+        const Recorded r = run(tilting, controlled(integrator.name, formulation, rtol, 1, 0.25));
+        EXPECT_FALSE(r.outcome.status.ok()) << integrator.name << ' ' << formulation << ' ' << rtol;
+        EXPECT_THAT(r.outcome.status.message, testing::HasSubstr("torsion spring 'soft' has no angle"));
+      }
+  }
+}
+
 // A rod on a hinge, let go level, in steps as long as its swing.
 TEST(LargeRotations, a_step_onto_another_branch_stops_the_run) {
   Scene scene;
