@@ -93,24 +93,32 @@ std::vector<Candidate> candidates(const Settings& given, const Status& status, b
 
 struct TooLong {};
 
-// To where a run that stopped is tried again.
-double tried_end(const Settings& settings, const Status& stopped) {
+// Where a run that stopped has to get beyond with other settings.
+double well_beyond(const Settings& settings, const Status& stopped) {
   constexpr double kBeyond = 0.1, kOfRun = 0.01, kSteps = 20;
   double beyond = std::max(kBeyond * stopped.time, kOfRun * settings.end);
   if (!chooses_steps(settings)) beyond = std::max(beyond, kSteps * settings.step);
   return std::min(settings.end, stopped.time + beyond);
 }
 
-// Steps of a fixed length go over much that error control stops at, as where a force grows without bound: where they
-// have more to tell than the run that stopped had, nobody knows where they lead.
-enum class Trial { leads_on, stops, given_up };
-Trial tried(const Scene& scene, Settings settings, double end, double most_steps,
-            const std::vector<std::string>* told) {
+struct Trial {
+  enum class Result { leads_on, stops, given_up } result;
+  double until = 0;  // s, of one that leads on
+  double steps = 0;
+  bool stops_there = false;  // beyond where the run stopped
+};
+
+// Steps of a fixed length go over much that error control stops at, as where a force grows without bound, and so does
+// an iteration without end: where they have more to tell than the run that stopped had (`told`, where it is given),
+// nobody knows where they lead.
+Trial try_until(const Scene& scene, Settings settings, double end, double most_steps,
+                const std::vector<std::string>* told) {
+  using enum Trial::Result;
   settings.end = end;
   const bool fixed = !chooses_steps(settings);
   if (fixed) {
     const double steps = std::ceil(end / settings.step);
-    if (steps > most_steps) return Trial::given_up;
+    if (steps > most_steps) return {given_up};
     settings.end = steps * settings.step;
   }
   settings.every = fixed ? settings.end : 0;
@@ -119,15 +127,60 @@ Trial tried(const Scene& scene, Settings settings, double end, double most_steps
     const Outcome outcome = simulate(scene, settings, [&](const Sample&) {
       if (++taken > most_steps) throw TooLong();
     });
-    if (outcome.status.failure == Failure::interrupted) return Trial::given_up;
+    if (outcome.status.failure == Failure::interrupted) return {given_up};
     const auto was_told = [&](const std::string& notice) { return std::ranges::find(*told, notice) != told->end(); };
-    if (fixed && told && !std::ranges::all_of(outcome.notices, was_told)) return Trial::stops;
-    return outcome.status.ok() ? Trial::leads_on : Trial::stops;
+    if (fixed && told && !std::ranges::all_of(outcome.notices, was_told)) return {stops};
+    return {outcome.status.ok() ? leads_on : stops, end, taken};
   } catch (const InputError&) {  // as a method refuses a formulation
-    return Trial::stops;
+    return {stops};
   } catch (const TooLong&) {
-    return Trial::given_up;
+    return {given_up};
   }
+}
+
+// First until well beyond where the run stopped. Then as it was asked for: beside a singular position it matters where
+// output times are, and further ones may follow.
+Trial try_candidate(const Scene& scene, const Settings& settings, double beyond, double most_steps,
+                    const std::vector<std::string>* told) {
+  using enum Trial::Result;
+  Trial trial = try_until(scene, settings, beyond, most_steps, told);
+  if (trial.result != leads_on || !chooses_steps(settings)) return trial;
+  Settings asked = settings;
+  if (trial.steps * settings.end > most_steps * beyond) asked.end = beyond;
+  const Outcome outcome = simulate(scene, asked, [](const Sample&) {});
+  if (outcome.status.failure == Failure::interrupted) return {given_up};
+  trial.stops_there = !outcome.status.ok();
+  trial.until = trial.stops_there ? outcome.status.time : asked.end;
+  trial.result = trial.until < beyond ? stops : leads_on;
+  return trial;
+}
+
+// The first with which the run does not stop, or the one that leads farthest.
+struct Trials {
+  std::string best;  // empty where none leads on
+  Trial of_best{};
+  std::vector<std::string> stopped;
+  bool all = true;
+};
+Trials try_candidates(const Scene& scene, const Settings& settings, const Outcome& outcome) {
+  using enum Trial::Result;
+  const double beyond = well_beyond(settings, outcome.status);
+  const double most_steps = kMostWork / static_cast<double>(std::max<std::size_t>(1, scene.bodies.size()));
+  Trials trials;
+  for (Candidate& candidate : candidates(settings, outcome.status, !scene.drivers.empty())) {
+    const Settings& other = candidate.settings;
+    const bool same_steps = other.step == settings.step && other.integrator == settings.integrator;
+    const bool no_more = chooses_steps(settings) || same_steps;
+    const Trial trial = try_candidate(scene, other, beyond, most_steps, no_more ? &outcome.notices : nullptr);
+    if (trial.result == given_up) trials.all = false;
+    if (trial.result == leads_on && trial.until > trials.of_best.until) {
+      trials.best = candidate.named;
+      trials.of_best = trial;
+      if (!trial.stops_there) break;
+    }
+    if (trial.result == stops) trials.stopped.push_back(std::move(candidate.named));
+  }
+  return trials;
 }
 
 }  // namespace
@@ -135,8 +188,6 @@ Trial tried(const Scene& scene, Settings settings, double end, double most_steps
 void try_settings(const Scene& scene, const Settings& settings, Outcome& outcome) {
   Status& status = outcome.status;
   if (status.ok() || status.settings == 0) return;
-  const double end = tried_end(settings, status);
-  const double most_steps = kMostWork / static_cast<double>(std::max<std::size_t>(1, scene.bodies.size()));
   const bool alone = status.settings == status.remedy;
   const auto put = [&](const std::string& text) {
     status.message.resize(std::exchange(status.settings, 0));
@@ -145,24 +196,16 @@ void try_settings(const Scene& scene, const Settings& settings, Outcome& outcome
     if (alone) status.remedy = status.message.size();
     status.message += text;
   };
-  std::vector<std::string> stopped;
-  bool all = true;
-  const std::vector<std::string>* told = chooses_steps(settings) ? &outcome.notices : nullptr;
-  for (const Candidate& candidate : candidates(settings, status, !scene.drivers.empty())) {
-    switch (tried(scene, candidate.settings, end, most_steps, told)) {
-      case Trial::leads_on:
-        put(fmt::format("{} with {} it goes on, as was tried up to t = {:.4g} s", alone ? ";" : ", or", candidate.named,
-                        end));
-        return;
-      case Trial::stops:
-        stopped.push_back(candidate.named);
-        break;
-      case Trial::given_up:
-        all = false;
-        break;
-    }
+  const Trials trials = try_candidates(scene, settings, outcome);
+  const auto& stopped = trials.stopped;
+  if (!trials.best.empty()) {
+    const Trial& best = trials.of_best;
+    put(fmt::format("{} with {} it goes on{}up to t = {:.4g} s{}", alone ? ";" : ", or", trials.best,
+                    best.stops_there ? " " : ", as was tried ", best.until,
+                    best.stops_there ? ", and stops there" : ""));
+    return;
   }
-  if (!all) {
+  if (!trials.all) {
     status.message += stopped.empty() ? std::string(" (not tried)")
                                       : fmt::format(" (not all tried; without success: {})", fmt::join(stopped, ", "));
     return;
