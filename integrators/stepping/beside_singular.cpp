@@ -37,10 +37,10 @@ void Consistent::look(double steepness) {
   beside_singular_ = beside_singular_ || amplification_ > 1;
 }
 
-double Consistent::error_in(const State& at, std::span<const double> moved_by, double shift) const {
+double Consistent::error_in(const State& at, std::span<const double> moved_by, double shift, bool settled) const {
   constexpr double kRounding = 2e-15, kMore = 8, kLucky = 0.1;
   const double q = largest(moved_by.first(nv_)), v = largest(moved_by.subspan(nv_));
-  const double most = steepness_ * kRounding * std::max(1.0, largest(span(at.q)));
+  const double most = steepness_ * (settled ? kMore : 1) * kRounding * std::max(1.0, largest(span(at.q)));
   const bool rounding = q <= most && v <= kMore * steepness_ * problem_.fastest_turn() * std::max(q, kLucky * most);
   return rounding ? 0 : shift / amplification_;
 }

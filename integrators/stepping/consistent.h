@@ -79,8 +79,9 @@ class Consistent {
   std::span<const double> signs() const { return span(off_by_one_).subspan(nv_); }  // that steepness() is found with
   double amplification(std::size_t part) const { return branches_[part].amplification; }
   // What of `shift`, the norm of a state's move onto the constraints by δq and then δv, is an error of its own: next to
-  // a singular position a part of it, and none of what rounding moves at the steepness looked at, ε/σ and ω ε/σ².
-  double error_in(const State& at, std::span<const double> moved_by, double shift) const;
+  // a singular position a part of it, and none of what rounding moves at the steepness looked at, ε/σ and ω ε/σ²;
+  // some times as much in a limit, which takes out what the steps towards it have gathered.
+  double error_in(const State& at, std::span<const double> moved_by, double shift, bool settled = false) const;
   bool beside_singular() { return std::exchange(beside_singular_, false); }
   void tell_singular() { beside_singular_ = true; }  // seen otherwise
   // Whether accelerations where the problem stands are far larger than they were, and than forces and γ account for, so

@@ -263,7 +263,7 @@ Status ExplicitStepper::project_end(double& error, double most) {
       if (status = consistent_.project(next_, moved); !status.ok()) return status;
     }
   }
-  return count(consistent_.error_in(next_, passage_.moved_by(), shift(passage_.moved_by())));
+  return count(consistent_.error_in(next_, passage_.moved_by(), shift(passage_.moved_by()), settled_));
 }
 
 // Whether f at the end is what the stage at the same time has, but for less than the velocities. An error estimate

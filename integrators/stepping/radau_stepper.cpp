@@ -157,7 +157,7 @@ Status RadauStepper::complete(double& error, double most) {
   if (Status status = passage_.complete(next_); !status.ok()) return status;
   const double shift = norm_(passage_.moved_by(), span(scale_));
   if (shift > std::max(error, kOfAccount)) consistent_.look(consistent_.steepness(next_.t));
-  error = std::max(error, consistent_.error_in(next_, passage_.moved_by(), shift));
+  error = std::max(error, consistent_.error_in(next_, passage_.moved_by(), shift, passage_.settled()));
   if (!(error <= most)) return {};
   if (consistent_.leaves_branch(next_) || gap_.goes_over(state_, next_, passage_.settled()))
     return {Failure::singular_position, next_.t, {}};
