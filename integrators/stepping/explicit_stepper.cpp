@@ -239,7 +239,7 @@ void ExplicitStepper::stand_at_end() {
 }
 
 // Beside a singular position, where the projection moves the end by too much, it is the limit of states beside or does
-// not count what rounding moves.
+// not count what rounding moves; and where the limit moves it by too much, it is projected.
 Status ExplicitStepper::project_end(double& error, double most) {
   const auto count = [&](double shift) {
     error = std::max(error, shift);
@@ -247,21 +247,26 @@ Status ExplicitStepper::project_end(double& error, double most) {
     return consistent_.amplification() > 1 ? consistent_.accelerations(next_) : consistent_.refine(next_);
   };
   const auto shift = [&](std::span<const double> by) { return norm_(by, span(scale_)); };
-  if (!settled_) {
-    bool moved = false;
-    Status status = consistent_.project(next_, moved);
-    if (status.ok() && !moved) return {};
-    if (status.ok()) {
-      const double by = shift(consistent_.moved_by());
-      if (by > std::max(error, kOfAccount)) consistent_.look(consistent_.steepness(next_.t));
-      if (const double part = consistent_.error_in(next_, consistent_.moved_by(), by); part <= most) return count(part);
-    }
+  bool moved = false;
+  if (settled_) {
+    const double part = consistent_.error_in(next_, passage_.moved_by(), shift(passage_.moved_by()), true);
+    if (part <= most) return count(part);
+    settled_ = false;
     stand_at_end();
-    if (status = consistent_.accelerations(next_); !status.ok()) return status;
-    if (status = passage_.settle(next_, settled_); !status.ok()) return status;
-    if (!settled_) {
-      if (status = consistent_.project(next_, moved); !status.ok()) return status;
-    }
+    if (Status status = consistent_.accelerations(next_); !status.ok()) return status;
+  }
+  Status status = consistent_.project(next_, moved);
+  if (status.ok() && !moved) return {};
+  if (status.ok()) {
+    const double by = shift(consistent_.moved_by());
+    if (by > std::max(error, kOfAccount)) consistent_.look(consistent_.steepness(next_.t));
+    if (const double part = consistent_.error_in(next_, consistent_.moved_by(), by); part <= most) return count(part);
+  }
+  stand_at_end();
+  if (status = consistent_.accelerations(next_); !status.ok()) return status;
+  if (status = passage_.settle(next_, settled_); !status.ok()) return status;
+  if (!settled_) {
+    if (status = consistent_.project(next_, moved); !status.ok()) return status;
   }
   return count(consistent_.error_in(next_, passage_.moved_by(), shift(passage_.moved_by()), settled_));
 }
