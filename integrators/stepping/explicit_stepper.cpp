@@ -239,8 +239,9 @@ void ExplicitStepper::stand_at_end() {
 }
 
 // Beside a singular position, where the projection moves the end by too much, it is the limit of states beside or does
-// not count what rounding moves; and where the limit moves it by too much, it is projected.
+// not count what rounding moves; and where the limit moves it by too much though it is not that near, it is projected.
 Status ExplicitStepper::project_end(double& error, double most) {
+  constexpr double kCreeps = 1e-5;  // rad
   const auto count = [&](double shift) {
     error = std::max(error, shift);
     if (settled_ || !(error <= most)) return Status{};
@@ -250,7 +251,8 @@ Status ExplicitStepper::project_end(double& error, double most) {
   bool moved = false;
   if (settled_) {
     const double part = consistent_.error_in(next_, passage_.moved_by(), shift(passage_.moved_by()), true);
-    if (part <= most) return count(part);
+    const bool creeps = h_ * problem_.fastest_turn() < kCreeps;
+    if (part <= most || creeps || consistent_.amplification() > 1) return count(part);
     settled_ = false;
     stand_at_end();
     if (Status status = consistent_.accelerations(next_); !status.ok()) return status;
