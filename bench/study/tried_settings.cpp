@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -15,7 +16,8 @@
 namespace poinsot::study {
 namespace {
 
-constexpr double kMostWork = 3e5;  // steps of a body in one trial, a second or some
+constexpr double kMostWork = 3e5;   // steps of a body in one trial, a second or some
+constexpr double kMostSeconds = 4;  // beside a singular position a step can take as long as hundreds
 
 struct Candidate {
   std::string named;  // as on the command line
@@ -101,6 +103,10 @@ double well_beyond(const Settings& settings, const Status& stopped) {
   return std::min(settings.end, stopped.time + beyond);
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 struct Trial {
   enum class Result { leads_on, stops, given_up } result;
   double until = 0;  // s, of one that leads on
@@ -123,9 +129,10 @@ Trial try_until(const Scene& scene, Settings settings, double end, double most_s
   }
   settings.every = fixed ? settings.end : 0;
   double taken = 0;
+  const auto start = std::chrono::steady_clock::now();
   try {
     const Outcome outcome = simulate(scene, settings, [&](const Sample&) {
-      if (++taken > most_steps) throw TooLong();
+      if (++taken > most_steps || seconds_since(start) > kMostSeconds) throw TooLong();
     });
     if (outcome.status.failure == Failure::interrupted) return {given_up};
     const auto was_told = [&](const std::string& notice) { return std::ranges::find(*told, notice) != told->end(); };
@@ -143,10 +150,13 @@ Trial try_until(const Scene& scene, Settings settings, double end, double most_s
 Trial try_candidate(const Scene& scene, const Settings& settings, double beyond, double most_steps,
                     const std::vector<std::string>* told) {
   using enum Trial::Result;
+  const auto start = std::chrono::steady_clock::now();
   Trial trial = try_until(scene, settings, beyond, most_steps, told);
+  const double seconds = seconds_since(start);
   if (trial.result != leads_on || !chooses_steps(settings)) return trial;
   Settings asked = settings;
-  if (trial.steps * settings.end > most_steps * beyond) asked.end = beyond;
+  const double longer = settings.end / beyond;
+  if (trial.steps * longer > most_steps || seconds * longer > kMostSeconds) asked.end = beyond;
   const Outcome outcome = simulate(scene, asked, [](const Sample&) {});
   if (outcome.status.failure == Failure::interrupted) return {given_up};
   trial.stops_there = !outcome.status.ok();

@@ -1,7 +1,7 @@
 // Other settings for a run that stopped, tried on its scene: what does not help is not offered.
 //
-// One after the other, until the run gets on with one, from its start to a tenth beyond where it stopped and, with error
-// control, as it was asked for to the end; of those that stop later on the one that leads farthest:
+// One after the other, until the run gets on with one: from its start to a tenth beyond where it stopped and, with
+// error control, as it was asked for to the end. Of those that stop later on, the one that leads farthest.
 //   fixed steps    the exact Jacobian; the step that is known to serve, or a quarter of the step; of a method that did
 //                  not converge five times the iterations; of a row that was lost a thousandth of the tolerance;
 //                  integrator auto; formulation rA
