@@ -176,8 +176,7 @@ std::optional<PlaceBeside> Beside::where_they_part(Trial& trial, int direction) 
     space_.stand_at(place->t, place->q);
     std::vector<double> by(space_.rows().size());
     space_.distances(by);
-    for (std::size_t k = 0; k < by.size(); ++k)
-      most = std::max(most, std::abs(by[k]) / space_.size_of_row(k));
+    for (std::size_t k = 0; k < by.size(); ++k) most = std::max(most, std::abs(by[k]) / space_.size_of_row(k));
   }
   if (!(off[kWays - 2] > 10 * seen && off[kWays - 1] > kMuch * seen)) return {};
   for (std::size_t k = 0; k + 1 < kWays; ++k) {

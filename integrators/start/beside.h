@@ -23,7 +23,8 @@ namespace poinsot {
 // the mechanism; what follows from others but for the second order of the move, where some row does not hold, has the
 // square of it.
 inline constexpr double kFreeBeside = 3e-5;
-// The same farther off, of rows that follow beside to the first order: of what is left of them when they are first seen.
+// The same farther off, of rows that follow beside to the first order: of what is left of them when they are first
+// seen.
 inline constexpr double kFreeFarther = 1e-8;
 // Part of a body's size: a row that holds beside is off by no more than the solution of the others, one that does not
 // by some 1e-6, the square of the move.

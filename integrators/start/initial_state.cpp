@@ -243,10 +243,11 @@ class Assembler {
     if (rank.to_first_order)
       return with_remedy(
           Failure::singular_position, 0,
-          fmt::format("the initial pose is a singular position of the mechanism, or near one: singular here: {}; to the "
-                      "first order of a motion it follows from the others, and to a higher one it does not, so that no "
-                      "velocities say how the motion goes on",
-                      names(rank.singular)),
+          fmt::format(
+              "the initial pose is a singular position of the mechanism, or near one: singular here: {}; to the "
+              "first order of a motion it follows from the others, and to a higher one it does not, so that no "
+              "velocities say how the motion goes on",
+              names(rank.singular)),
           fmt::format("start beside it, by {:.0e} rad or of the bodies' sizes, or more", 1e-2));
     if (!has_regular_positions_beside(model_, given_))
       return with_remedy(

@@ -57,9 +57,9 @@ struct RankAnalysis {
   std::vector<Conflict> conflicts;  // by row
   // Singular rows follow from others to the first order of a move: next to the position they are hardly independent.
   bool to_first_order = false;
-  bool named = true;                // false: too many to say what each depends on; `others` are empty
-  bool moves_on = true;             // singular: whether the velocities lead away from the singular position
-  double time_beside = 0;           // s: after which they have, by a thousandth of the bodies' sizes
+  bool named = true;       // false: too many to say what each depends on; `others` are empty
+  bool moves_on = true;    // singular: whether the velocities lead away from the singular position
+  double time_beside = 0;  // s: after which they have, by a thousandth of the bodies' sizes
   // The power of ten below which a part is left of a row beside the others, kIndependent at most but for `few_digits`,
   // or of a gradient that vanishes the part itself; 0: there is none so small.
   double doubt = 0;
