@@ -7,6 +7,7 @@
 #include "tests/support/course.h"
 #include "tests/support/every_way.h"
 #include "tests/support/paradoxic.h"
+#include "tests/support/scene_transform.h"
 
 namespace poinsot::test {
 namespace {
@@ -82,6 +83,21 @@ TEST_P(FlatParallelograms, AreLeftAlongTheVelocities) {
       EXPECT_LT(off_even_turns(scene, course), integrators().require(settings.integrator).order == 1 ? 5e-3 : 2e-5);
     });
     EXPECT_GE(ways, 25);
+  }
+}
+
+// Whichever way it lies and its bodies' frames do: rows that are clearest beside the position need not be so in it.
+TEST(FlatParallelogram, IsLeftHoweverItLies) {
+  const Scene scene = stacked({});
+  for (int seed = 1; seed <= 40; ++seed) {
+    Transform lie;
+    lie.R = frame(Frames::random, 100 + seed);
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+      lie.F.push_back(frame(Frames::random, 10 * seed + static_cast<int>(b)));
+    Settings settings = dynamics("rA", 2.5e-3, 0.1);
+    settings.integrator = "dop853";
+    const Course course = move(lie.apply(scene), settings);
+    EXPECT_TRUE(course.outcome.status.ok()) << seed << ": " << course.outcome.status.message;
   }
 }
 

@@ -93,8 +93,9 @@ class Session {
       if (Status status = remember(t, course_.turned(h)); !status.ok()) return status;
       const double rate = problem_.counted_turn().rate;
       ida_.turn_at_most(rate);
-      if (h * std::max(rate, std::exchange(counted_, rate)) >=
-          kMostCounted) {  // its limit holds for longer steps alone
+      // That limit holds for steps that grow alone.
+      const bool may_jump = h * std::max(rate, std::exchange(counted_, rate)) >= kMostCounted;
+      if (may_jump) {
         if (Status status = pass(); !status.ok()) return status;
         continue;
       }
