@@ -78,6 +78,21 @@ TEST(TriedSettings, ThatDoNotHelpAreSaidNotTo) {
             "at t = 0.58 s it stops; try a smaller step (not all tried; without success: --max-iterations 100)");
 }
 
+// The rod's end is to be further away than it is long at 0.58 s, with whatever tolerance.
+TEST(TriedSettings, ThatLeadFartherAreOfferedWithWhereTheyStop) {
+  Scene scene = hinged_rod();
+  Driver& ram = scene.drivers.emplace_back();
+  ram.name = "ram", ram.type = DriverType::distance, ram.i = kGround, ram.j = 0;
+  ram.s_i = {0, 0, 1}, ram.value = Expression::parse("sqrt(2) + t");
+  Settings settings = dynamics("rA", 0.01, 1);
+  settings.integrator = "dop853";
+  Outcome outcome;
+  outcome.status = with_settings({Failure::step_size_too_small, 0.1, "at t = 0.1 s it stops"}, "try another method");
+  study::try_settings(scene, settings, outcome);
+  EXPECT_THAT(outcome.status.message,
+              ::testing::ContainsRegex("it stops; with .* it goes on up to t = 0.58[0-9]* s, and stops there$"));
+}
+
 // Steps of a millisecond go over where two bodies that attract each other meet, to nowhere, as they say themselves.
 TEST(TriedSettings, AreNotStepsThatGoOverWhereAForceGrowsWithoutBound) {
   Scene scene;
