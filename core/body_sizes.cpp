@@ -1,14 +1,16 @@
 #include "core/body_sizes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/index.h"
 
 namespace poinsot {
 
-std::vector<double> body_sizes(const Model& model) {
-  // Of what lies beside it: less is what a few digits leave of a point that was meant to be the centre, or the other.
-  constexpr double kPoint = 1e-5, kSamePoint = 1e-4;
+namespace {
+
+std::vector<double> longest_arms(const Model& model) {
+  constexpr double kSamePoint = 1e-4;  // of an arm
   std::vector<double> arms(model.bodies.size(), 0.0);
   const auto widen = [&](int body, double arm) {
     if (body != kGround) arms[index(body)] = std::max(arms[index(body)], arm);
@@ -22,6 +24,15 @@ std::vector<double> body_sizes(const Model& model) {
                          : 0;
     if (d > kSamePoint * std::max(row.s_i.norm(), row.s_j.norm())) widen(row.i, d);
   }
+  return arms;
+}
+
+}  // namespace
+
+std::vector<double> body_sizes(const Model& model) {
+  // Of what lies beside it: less is what a few digits leave of a point that was meant to be the centre.
+  constexpr double kPoint = 1e-5;
+  const std::vector<double> arms = longest_arms(model);
   std::vector<double> sizes = arms;
   for (const Row& row : model.rows) {  // a body that turns about its centre
     if (row.i == kGround || row.j == kGround) continue;
@@ -34,6 +45,18 @@ std::vector<double> body_sizes(const Model& model) {
   const double largest = sizes.empty() ? 0 : *std::ranges::max_element(sizes);
   for (double& size : sizes)
     if (size == 0) size = largest > 0 ? largest : 1;
+  return sizes;
+}
+
+std::vector<double> own_sizes(const Model& model) {
+  constexpr double kSpread = 10;
+  const std::vector<double> arms = longest_arms(model);
+  std::vector<double> sizes = body_sizes(model);
+  for (std::size_t b = 0; b < sizes.size(); ++b) {
+    const Body& body = model.bodies[b];
+    const double squared = body.mass > 0 ? body.inertia.trace() / body.mass : 0;
+    if (squared > 0) sizes[b] = std::min(sizes[b], kSpread * std::max(arms[b], std::sqrt(squared)));
+  }
   return sizes;
 }
 

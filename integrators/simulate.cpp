@@ -129,6 +129,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   if (!outcome.status.ok()) return outcome;
 
   std::unique_ptr<Problem> problem = formulation.make(model, start.rank.aside);
+  const OverConstrained* redundant = nullptr;
   if (!start.rank.aside.empty()) {
     auto kept =
         std::make_unique<OverConstrained>(std::move(problem), model, start.rank, start.bodies, steps_of(settings));
@@ -138,6 +139,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
                       "the reactions that they leave open: given there are those of the rows that are kept, in balance "
                       "but not the least ones",
                       BlockChoice::kMostNull));
+    redundant = kept.get();
     problem = std::move(kept);
   }
   if (settings.analysis == Analysis::kinematics) refuse_free_motion(*problem);
@@ -176,6 +178,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     const FlushSubnormals flush;
     outcome.status = integrator.make()->run(run);
   }
+  check(!outcome.status.ok() || state.t == settings.end, "a run that is done has come to its end");
   const bool explained = explain_by_functions(outcome.status, *problem, settings);
   if (keeps_energy && !outcome.status.ok() && state.t > 0 && model->torsions.empty()) {  // their turns are the method's
     problem->set_position(state.t, span(state.q));
@@ -183,6 +186,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     energy.end({state.t, state.t, *problem, span(state.q), span(state.v), state.a(), state.lambda()});
   }
   if (keeps_energy) energy.conclude(run, integrator);
+  if (redundant && !redundant->apart().empty()) notice(redundant->apart());
   const double largest = outcome.statistics.largest_rotation;
   if (outcome.status.ok() && largest > rotation.wrong) {
     notice(fmt::format(

@@ -57,6 +57,8 @@ void explain_by_position(Status& status, Problem& problem, const Settings& setti
                            failure == Failure::singular_matrix ||
                            (failure == Failure::rotation_too_large && status.time > 0);
   if (!unexplained && failure != Failure::singular_position) return;
+  // An output time within the last step: who finds nothing there to give out names the row, and stands elsewhere now.
+  if (failure == Failure::singular_position && state.t > status.time) return;
   const double instant = chooses_steps(settings) ? instant_of(settings.end) : settings.step;
   problem.set_position(state.t, span(state.q));
   problem.set_velocity(span(state.v));

@@ -2,12 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/input_error.h"
 #include "core/scene_reader.h"
 #include "integrators/start/rank.h"
 #include "tests/support/remedies.h"
+#include "tests/support/twice_driven.h"
 
 namespace poinsot::test {
 namespace {
@@ -132,6 +135,80 @@ TEST_P(Contradictions, OfVelocitiesLaterEndTheRun) {
     EXPECT_THAT(r.outcome.status.message, HasSubstr("m/s: it followed from the other constraints"));
     EXPECT_EQ(remedy_of(r), "; one of them has to go");
     EXPECT_TRUE(simulate(contradicting(kClamp), settings, {}).status.ok()) << settings.integrator;
+  }
+}
+
+// Two drivers of one hinge that stay within 1e-5 rad of one another and ask for velocities that do not.
+TEST_P(Contradictions, OfRatesEndTheRun) {
+  const Scene scene = twice_driven("sin(t)", "sin(t) + 9e-6*sin(1000*max(0, t - 0.1))^4");
+  for (Settings settings : every_way(GetParam(), 0.5)) {
+    if (settings.analysis == Analysis::kinematics) continue;
+    const Recorded r = run(scene, settings);
+    const bool told = std::ranges::any_of(r.outcome.notices, [](const std::string& notice) {
+      return notice.find("set aside, as it follows from other constraints, and is off") != std::string::npos;
+    });
+    if (r.outcome.status.ok()) {  // velocities of these methods are differences of positions
+      EXPECT_THAT(settings.integrator, ::testing::AnyOf("implicit_euler", "half_implicit", "generalized_alpha"));
+      EXPECT_TRUE(told) << settings.integrator;
+      continue;
+    }
+    EXPECT_EQ(r.outcome.status.failure, Failure::constraint_lost) << settings.integrator;
+    EXPECT_THAT(r.outcome.status.message, HasSubstr("the rate of driver 'sin(t)")) << settings.integrator;
+  }
+}
+
+// By less it is told; and not of what differs by rounding, or for an instant by where a kink is.
+TEST_P(Contradictions, ThatAreSmallAreTold) {
+  const char* const apart = "was set aside, as it follows from other constraints, and is off those by up to";
+  for (const Settings& settings : every_way(GetParam(), 0.5)) {
+    const Recorded r = run(twice_driven("sin(t)", "sin(t) + 9e-6*sin(3*t)^4"), settings);
+    ASSERT_TRUE(r.outcome.status.ok()) << settings.integrator << ' ' << r.outcome.status.message;
+    EXPECT_THAT(r.outcome.notices, ::testing::Contains(HasSubstr(apart))) << settings.integrator;
+    for (const auto& [first, second] :
+         {std::pair("2*t + sin(t)", "sin(t) + 0.5*t*4"),
+          std::pair("abs(t - 0.25) - 0.25", "abs(t - 0.25000000001) - 0.25000000001")}) {
+      const Recorded same = run(twice_driven(first, second), settings);
+      EXPECT_TRUE(same.outcome.status.ok()) << settings.integrator << ' ' << same.outcome.status.message;
+      EXPECT_THAT(same.outcome.notices, ::testing::Not(::testing::Contains(HasSubstr(apart)))) << settings.integrator;
+    }
+  }
+}
+
+// Bodies of a size on an arm of a metre, the second of two rows between which says `later` of it.
+Scene small_on_arm(double size, const char* type, const char* later) {
+  const auto row = [&](const char* name, const char* part) {
+    const std::string value = fmt::format("{:.17g}*({})", size, part);
+    return fmt::format(R"j({{"type": "{}", "name": "{}", "bodies": ["p", "q"], {} "s_i": [0, 0, 0], "s_j": [0, 0, 0],
+        "f": "{}"}})j",
+                       type, name, type == std::string("D") ? "" : R"j("a_i": [1, 0, 0],)j",
+                       type == std::string("D") ? "(" + value + ")^2" : value);
+  };
+  return parse_scene(fmt::format(R"j({{"scene": 1, "name": "small", "gravity": [0, 0, 0], "bodies": [
+      {{"name": "arm", "mass": 1000, "inertia": [83, 83, 83], "position": [-0.5, 0, 0], "velocity": [0, 0.05, 0],
+        "angular_velocity": [0, 0, 0.1]}},
+      {{"name": "p", "mass": 1e-9, "inertia": [{1:.17g}, {1:.17g}, {1:.17g}], "position": [0, 0, 0],
+        "velocity": [0, 0.1, 0], "angular_velocity": [0, 0, 0.1]}},
+      {{"name": "q", "mass": 1e-9, "inertia": [{1:.17g}, {1:.17g}, {1:.17g}], "position": [{0:.17g}, 0, 0],
+        "velocity": [0, {2:.17g}, 0], "angular_velocity": [0, 0, 0.1]}}], "joints": [
+      {{"type": "revolute", "bodies": ["ground", "arm"], "point": [-1, 0, 0], "axis": [0, 0, 1]}},
+      {{"type": "fixed", "bodies": ["arm", "p"], "point": [0, 0, 0]}},
+      {{"type": "translational", "bodies": ["p", "q"], "point": [0, 0, 0], "axis": [1, 0, 0]}}],
+      "constraints": [{3}, {4}]}})j",
+                                 size, 1e-10 * size * size, 0.1 + 0.1 * size, row("first", "1"), row("second", later)),
+                     "small");
+}
+
+// What is small beside a body is not by what that hangs on.
+TEST_P(Contradictions, AreSeenInSmallPartsOfLargeMechanisms) {
+  Settings settings = controlled("dop853", GetParam(), 1e-8, 1, 1);
+  for (const char* type : {"DP2", "D"}) {
+    for (const double size : {1e-1, 1e-3, 1e-5, 1e-6, 1e-7}) {
+      SCOPED_TRACE(fmt::format("{} {}", type, size));
+      EXPECT_TRUE(run(small_on_arm(size, type, "1"), settings).outcome.status.ok());
+      EXPECT_THROW((void)run(small_on_arm(size, type, "1.5"), settings), InputError);
+      const Recorded r = run(small_on_arm(size, type, "1 + 4*max(0, t - 0.5)^2"), settings);
+      EXPECT_EQ(r.outcome.status.failure, Failure::constraint_lost) << r.outcome.status.message;
+    }
   }
 }
 

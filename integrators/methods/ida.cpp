@@ -110,7 +110,7 @@ class Session {
         continue;
       }
       creeping.completed(h);
-      const bool crosses = t == turn.before;  // given out beyond the switch
+      const bool crosses = t == turn.before && t < settings_.end;  // given out beyond the switch
       const bool given = !crosses && (course_.every_step || times.next() == t);
       if (status.ok() && (crosses || given || since_stood_ > kStands)) status = stand_at(t);
       if (status.ok() && given) {

@@ -206,9 +206,11 @@ void Beside::look(Trial& trial, PlaceBeside& place) {
   }
   std::vector<double> off(space_.rows().size());
   space_.distances(off);
+  const std::vector<BodyState> states = bodies_at(place);
   place.holds = true;
   for (std::size_t k = 0; k < off.size(); ++k) {
-    const double allowed = kHolds * space_.size_of_row(k) + 3 * off_at_start_[k];
+    const double allowed =
+        kHolds * space_.own_size_of_row(k) + rounding_of(space_.rows()[k], states) + 3 * off_at_start_[k];
     if (std::abs(off[k]) <= allowed) continue;
     place.holds = false;
     if (std::abs(off[k]) <= place.off) continue;
@@ -216,6 +218,16 @@ void Beside::look(Trial& trial, PlaceBeside& place) {
     place.worst = space_.rows()[k];
   }
   if (place.holds && place.t > 0) look_at_rates(trial, place);
+}
+
+// Of places that far from the origin, m.
+double Beside::rounding_of(int row, std::span<const BodyState> states) const {
+  constexpr double kRounding = 2e-15;
+  const Row& of = model_->rows[index(row)];
+  double far = 0;
+  for (const int body : {of.i, of.j})
+    if (body != kGround) far = std::max(far, states[index(body)].r.norm());
+  return kRounding * far;
 }
 
 // Velocity rows have no place to be off: later on they hold where the velocities that the rows kept lead to satisfy

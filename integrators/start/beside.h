@@ -95,6 +95,7 @@ class Beside {
   void look_at_rates(Trial& trial, PlaceBeside& place);
   double distance(std::span<const double> q, std::span<const double> from) const;
   std::vector<BodyState> bodies_at(const PlaceBeside& place);
+  double rounding_of(int row, std::span<const BodyState> states) const;
 
   std::shared_ptr<const Model> model_;
   RowSpace& space_;

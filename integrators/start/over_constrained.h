@@ -34,6 +34,8 @@ class OverConstrained final : public Problem {
     return kept_->clone_without(dropped);
   }
   int revision() const override { return choice_->revision; }
+  // A sentence about a row set aside that held, but not to rounding, at the ends of steps; else empty.
+  const std::string& apart() const { return choice_->says; }
   // Whether of its reactions the least can be told (reactions.h).
   bool has_least_reactions() const { return choice_->rows.has_null_vectors(); }
 
@@ -101,6 +103,8 @@ class OverConstrained final : public Problem {
     RowChoice rows;
     int revision = 0;
     std::vector<BodyState> at;  // where it was last looked at
+    double apart;               // by how much rows set aside did not hold at the most, of what is allowed
+    std::string says;           // of that one
   };
 
   // What becomes of the way since the last look with a step.
@@ -120,6 +124,8 @@ class OverConstrained final : public Problem {
   bool hold(double t);
   Status measure(double t, std::span<const double> a);
   double kept_off();
+  std::string describe_apart(int row, double off) const;
+  double speed_at(const Row& row) const;
   Status measure_rates(double t, std::span<const double> a);
   double turned() const;
   void exchange(double t, std::span<const double> q, std::span<const double> v, std::span<double> lambda);
@@ -132,7 +138,8 @@ class OverConstrained final : public Problem {
   mutable std::optional<RowsAside> aside_;  // those that are measured, if any
   mutable double most_aside_ = -1;          // |Φ| of these where the problem stands; below 0: not known
   std::vector<double> by_allowed_;          // 1 over what is allowed of |Φ|, by row set aside
-  bool rates_aside_ = false;                // velocity rows are among them
+  bool rates_aside_ = false;                // their rates are measured, too
+  int lost_rates_ = 0;                      // times, one after the other
   std::vector<double> kept_rates_, kept_positions_;
   double t_ = 0;                // where the problem stands
   double accepted_at_ = 0;      // the last step's end

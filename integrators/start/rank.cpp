@@ -210,7 +210,7 @@ class Examination {
     const double speed = beside_->extent(start.v);
     for (const int row : trial.onto->without()) {
       const std::size_t k = index(std::ranges::lower_bound(space_->rows(), row) - space_->rows().begin());
-      const double size = space_->size_of_row(k), length = space_->norm_of_row(k);
+      const double size = space_->own_size_of_row(k), length = space_->norm_of_row(k);
       const double rate_off = std::abs(rate[k]) / length;
       if (off[k] > kContradicts * size)
         result_.conflicts.push_back({row, Conflict::Level::position, off[k], 0});

@@ -57,10 +57,14 @@ void RowChoice::carry_over(std::span<double> lambda) {
     if (renewed_[b]) blocks_[b].carry_over(space_, lambda);
 }
 
+std::size_t RowChoice::place_of(int row) const {
+  return index(std::ranges::lower_bound(space_.rows(), row) - space_.rows().begin());
+}
+
 double RowChoice::size_of(int row) const {
   constexpr double kFull = 1e-2;  // where a gradient all but vanishes Φ goes with the square of the distance
-  const std::size_t k = index(std::ranges::lower_bound(space_.rows(), row) - space_.rows().begin());
-  return space_.size_of_row(k) * std::max(space_.norm_of_row(k), kFull * space_.full_norm(k));
+  const std::size_t k = place_of(row);
+  return space_.own_size_of_row(k) * std::max(space_.norm_of_row(k), kFull * space_.full_norm(k));
 }
 
 bool RowChoice::has_null_vectors() const {

@@ -33,6 +33,8 @@ class RowChoice {
   void carry_over(std::span<double> lambda);
   // What Φ of a row is where the bodies are off it by their own size, at the position last looked at.
   double size_of(int row) const;
+  double own_size_of(int row) const { return space_.own_size_of_row(place_of(row)); }  // m
+  double size_of_body(int body) const { return space_.size_of_body(body); }            // m
   // Whether there are null vectors for all rows set aside: no loops hang together that have more than
   // BlockChoice::kMostNull of them.
   bool has_null_vectors() const;
@@ -42,6 +44,7 @@ class RowChoice {
 
  private:
   void take_good_for();
+  std::size_t place_of(int row) const;  // in the space
 
   RowSpace space_;
   std::vector<int> aside_;

@@ -27,6 +27,7 @@ RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows, Us
       problem_(intrinsic_formulation().make(model_, all_but(model_->rows.size(), rows_))),
       place_(rows_.size()),
       sizes_(body_sizes(*model_)),
+      own_sizes_(poinsot::own_sizes(*model_)),
       q_(index(problem_->nq())),
       v_(index(problem_->nv())),
       lengths_(rows_.size()),
@@ -161,7 +162,7 @@ double RowSpace::left_of(std::size_t k) const {
 
 double RowSpace::full_norm(std::size_t k) const {
   const Row& row = model_->rows[index(rows_[k])];
-  return row.type == RowType::DP1 ? direction_terms(row) : row.type == RowType::D ? size_of_row(k) : 0;
+  return row.type == RowType::DP1 ? direction_terms(row) : row.type == RowType::D ? own_size_of_row(k) : 0;
 }
 
 // What the problem has of its rows, of those that are kept.
@@ -184,11 +185,11 @@ void RowSpace::rates(std::span<const double> v, std::span<double> residual, std:
   take_places(nu);
 }
 
-double RowSpace::size_of_row(std::size_t k) const {
+double RowSpace::largest_of_row(std::size_t k, const std::vector<double>& sizes) const {
   const Row& row = model_->rows[index(rows_[k])];
   double size = 0;
   for (const int body : {row.i, row.j})
-    if (body != kGround) size = std::max(size, sizes_[index(body)]);
+    if (body != kGround) size = std::max(size, sizes[index(body)]);
   return size;
 }
 

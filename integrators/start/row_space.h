@@ -68,11 +68,13 @@ class RowSpace {
   void rates(std::span<const double> v, std::span<double> residual, std::span<double> nu);
   double norm_of_row(std::size_t k) const { return lengths_[k] / (weights_[k] * vanishing_[k]); }
   double size_of_body(int body) const { return sizes_[index(body)]; }  // m
-  // m: of the larger of its bodies.
-  double size_of_row(std::size_t k) const;
+  // m: of the larger of its bodies; and what a gap is small beside.
+  double size_of_row(std::size_t k) const { return largest_of_row(k, sizes_); }
+  double own_size_of_row(std::size_t k) const { return largest_of_row(k, own_sizes_); }
 
  private:
   double direction_terms(const Row& row) const;
+  double largest_of_row(std::size_t k, const std::vector<double>& sizes) const;
   void take_places(std::span<double> out) const;
   double rounding_of(std::size_t k) const;
   double weight_of(std::size_t k, std::span<const BodyState> states) const;
@@ -82,7 +84,7 @@ class RowSpace {
   Use use_;
   std::unique_ptr<Problem> problem_;
   std::vector<int> place_;  // by row: among those of the problem
-  std::vector<double> sizes_;
+  std::vector<double> sizes_, own_sizes_;
   std::vector<double> q_, v_, values_, lengths_, weights_;
   std::vector<double> vanishing_;  // by row: more than 1 where its gradient is about to vanish
   mutable std::vector<double> of_problem_;
