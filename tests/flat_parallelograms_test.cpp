@@ -18,6 +18,7 @@ struct Stack {
   int levels = 1, cranks = 3;
   Frames frames = Frames::drawn;
   double spin = kSpin;  // rad/s, of all cranks
+  double angle = 0;     // rad, of all cranks at the start
 };
 
 // Couplers on cranks on couplers, all along the x axis.
@@ -25,7 +26,8 @@ Scene stacked(const Stack& of) {
   Paradoxic made("stack", {of.frames});
   Scene& scene = made.scene();
   scene.gravity.setZero();
-  const Vector3 z = Vector3::UnitZ(), crank(kCrank, 0, 0), velocity = of.spin * z.cross(crank);
+  const Vector3 z = Vector3::UnitZ(), crank(kCrank * std::cos(of.angle), kCrank * std::sin(of.angle), 0),
+                velocity = of.spin * z.cross(crank);
   int below = made.base();
   Vector3 foot = Vector3::Zero(), carried = Vector3::Zero();
   for (int level = 0; level < of.levels; ++level) {
@@ -159,6 +161,41 @@ TEST_P(FlatParallelograms, KeepTheirCouplersParallelInStacks) {
             EXPECT_NEAR(crank_angle(scene, sample, 4 * level + k), crank_angle(scene, sample, 4 * level + 1), 1e-9);
         }
       EXPECT_GT(crank_angle(scene, course.samples.back(), 1), 0.3 * kSpin * kUntil);
+    }
+  }
+}
+
+// Where an output time, or the end, is the very time at which they are flat, there is no matrix to be factored.
+TEST_P(FlatParallelograms, AreGivenOutWhereTheyAreFlat) {
+  constexpr double kTurns = M_PI;  // rad/s
+  for (const int cranks : {2, 3}) {
+    Scene scene = stacked({1, cranks, GetParam(), kTurns, M_PI / 2});
+    for (const bool driven : {false, true}) {
+      if (driven) {
+        Driver& driver = scene.drivers.emplace_back();
+        driver.name = "motor", driver.i = scene.joints[0].i, driver.j = scene.joints[0].j;
+        driver.axis = Vector3::UnitZ();
+        driver.value = Expression::parse("pi*t");
+      }
+      for (const double end : {0.5, 1.0}) {
+        in_every_way(2e-3, end, [&](Settings settings) {
+          if (!integrators().require(settings.integrator).controls_error) return;
+          for (const double rtol : {1e-6, 1e-8, 1e-10}) {
+            SCOPED_TRACE(fmt::format("{} cranks, driven {}, end {}, rtol {}", cranks, driven, end, rtol));
+            settings.rtol = rtol, settings.every = 0.25;
+            const Recorded r = run(scene, settings);
+            ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
+            ASSERT_EQ(r.samples.size(), 1 + static_cast<std::size_t>(std::lround(end / 0.25)));
+            for (const Snapshot& sample : r.samples) {
+              EXPECT_NEAR(std::remainder(crank_angle(scene, sample, 1) - kTurns * sample.t, 2 * M_PI), 0,
+                          1e-7 + 5 * rtol);
+              EXPECT_NEAR(crank_angle(scene, sample, 0), 0, 1e-7 + 5 * rtol);
+              EXPECT_NEAR(sample.bodies[1].w.norm(), kTurns, 1e-5);
+              EXPECT_LT(sample.bodies[1].wd.norm(), 1e-3);
+            }
+          }
+        });
+      }
     }
   }
 }

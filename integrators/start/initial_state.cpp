@@ -354,7 +354,7 @@ class Assembler {
     if ((by.way <= kSmall * of.way && by.turn <= kSmall * of.turn) || !std::isfinite(by.turn)) return;
     RowSpace space(model_, {row});
     space.stand(0, scene_);
-    const double metres = std::max(by.way, by.turn * space.size_of_row(0));
+    const double metres = std::max(by.way, by.turn * space.own_size_of_row(0));
     if (metres * kIndependent <= off / space.norm_of_row(0)) return;
     const char* const rate = order == 1 ? "/s" : "";
     throw InputError(fmt::format(

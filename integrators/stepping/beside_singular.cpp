@@ -137,6 +137,7 @@ bool Consistent::jumps(const State& at, std::size_t part) const {
 
 void Consistent::expect(double t, std::span<const double> a, double turned, const Consistent& other) {
   usual_steepness_ = other.usual_steepness_;
+  least_steepness_ = other.least_steepness_;
   not_looked_ = kSeldom - 1;
   for (std::size_t part = 0; part < parts_.count(); ++part) {
     branches_[part].usual_steepness = other.branches_[part].usual_steepness;
@@ -174,6 +175,7 @@ void Consistent::follow(const State& at) {
       usual += std::min(kSlow, turned_) * (to - usual);
     };
     get_used(usual_steepness_, now);
+    least_steepness_ = std::min(least_steepness_, now);
     for (Branch& of : branches_) get_used(of.usual_steepness, of.steepness);
     look(now);
     not_looked_ = 0;

@@ -76,6 +76,7 @@ class Consistent {
   std::uint64_t orientation() { return system_.jacobian_orientation(); }
   // How many times as steep as usual, of the mechanism that is most so, as last looked at.
   double steeper() const { return steeper_; }
+  double least_steepness() const { return least_steepness_; }  // at the ends of steps; infinite before
   std::span<const double> signs() const { return span(off_by_one_).subspan(nv_); }  // that steepness() is found with
   double amplification(std::size_t part) const { return branches_[part].amplification; }
   // What of `shift`, the norm of a state's move onto the constraints by δq and then δv, is an error of its own: next to
@@ -150,6 +151,7 @@ class Consistent {
   static constexpr int kSeldom = 4;     // steps, of which one is looked at where no singular position is near
   static constexpr double kSteep = 30;  // times the usual steepness: a singular position is near
   double steepness_ = 0, usual_steepness_ = 0, amplification_ = 1, steeper_ = 1;
+  double least_steepness_ = HUGE_VAL;
   bool beside_singular_ = false;
   int not_looked_ = 0;  // steps
   int forgotten_ = 0;

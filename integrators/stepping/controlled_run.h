@@ -2,7 +2,7 @@
 // jumps of the data stepped onto, pulses and what laws do on the way not stepped over, an exact end.
 //
 // A Method is a stepper with: Status attempt(to, rejections, error), trial_end(), Status complete(error),
-// Status interpolate(t), Status lead(t), interpolated(), take_back(), settle(), bool choose_rows(), cross(t),
+// Status interpolate(t), Status lead(t), interpolated(), take_back(), give(), settle(), bool choose_rows(), cross(t),
 // bool cross_singular(from, t, singular_for), near_singular(), state();
 // double first_step(end, singular_for), Run's; double retry(h, rejections, usual), the step to try after so many
 // rejections in a row; double adopt(h, wanted), the step after a completed one of length h.
@@ -168,6 +168,7 @@ class ControlledSteps {
     if (course_.every_step) {
       if (aim.to > aim.from) course_.give_out(method_.state());
     } else if (course_.times.next() <= t()) {
+      if (!aim.crosses && !method_.give().ok()) return course_.singular_sample(method_.state());
       course_.give_out(method_.state(), course_.times.next());
       course_.times.pass();
     }

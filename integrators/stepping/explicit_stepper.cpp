@@ -135,11 +135,12 @@ Status ExplicitStepper::evaluate(State& at, const Vector& y, Eigen::Index k) {
   const Eigen::Index nv = problem_.nv();
   at.v = y.tail(nv);
   problem_.retract(span(q_n_), span(y).first(nv_), span(at.q));
-  if (Status status = consistent_.accelerations(at); !status.ok()) return status;
+  const Status accelerated = consistent_.accelerations(at);
+  if (!accelerated.ok() && !project_stages_) return accelerated;
   if (turns_too_far(problem_, h_)) return {Failure::rotation_too_large, at.t, {}};
   settled_ = at.multipliers_open = false;
   if (project_stages_) {
-    if (Status status = passage_.settle(at, settled_); !status.ok()) return status;
+    if (Status status = passage_.settle(at, accelerated.ok(), settled_); !status.ok()) return status;
     if (!settled_) {
       bool moved = false;
       if (Status status = consistent_.project(at, moved); !status.ok()) return status;
@@ -265,8 +266,7 @@ Status ExplicitStepper::project_end(double& error, double most) {
     if (const double part = consistent_.error_in(next_, consistent_.moved_by(), by); part <= most) return count(part);
   }
   stand_at_end();
-  if (status = consistent_.accelerations(next_); !status.ok()) return status;
-  if (status = passage_.settle(next_, settled_); !status.ok()) return status;
+  if (status = passage_.settle(next_, consistent_.accelerations(next_).ok(), settled_); !status.ok()) return status;
   if (!settled_) {
     if (status = consistent_.project(next_, moved); !status.ok()) return status;
   }

@@ -12,6 +12,7 @@ namespace {
 constexpr double kGapNear = 4;     // times as steep as usual: from there on w is looked at
 constexpr double kReversed = 0.1;  // of the product of sizes, at least, below 0
 constexpr int kBisections = 40;
+constexpr double kOffMiddle = 0.47;        // not half: in the middle of a limit there may be no matrix to be factored
 constexpr double kBeside = 0.03;           // rad, of a limit: where the states are that it is made of
 constexpr double kRoundingOfGaps = 1e-14;  // of Φ, relative to the largest coordinate
 
@@ -74,10 +75,23 @@ bool NarrowGap::goes_over(const State& from, const State& to, bool settled) {
       if (looks = reversed(part, way_, way_next_); looks) part_ = part;
   }
   if (!looks) return false;
-  const bool gap = settled ? is_gap({to, nullptr, kBeside / problem_.fastest_turn()}) : is_gap({from, &to, 0});
+  const double beside = settled ? kBeside / problem_.fastest_turn() : 0;
+  const bool gap = settled ? is_gap({to, nullptr, beside}) : is_gap({from, &to, 0});
   consistent_.stand(to);
-  known_ = consistent_.factor(to.t).ok() && known_;
-  return gap;
+  if (consistent_.factor(to.t).ok()) return gap;
+  known_ = false;
+  return gap || !factor_beside(to, beside);
+}
+
+// Where `at`, a limit, has no matrix to be factored.
+bool NarrowGap::factor_beside(const State& at, double beside) {
+  q_.resize(at.q.size());
+  const double t = move_along({at, nullptr, beside}, 1);
+  problem_.retract(span(at.q), span(dq_), span(q_));
+  problem_.set_position(t, span(q_));
+  const bool factored = consistent_.factor(t).ok();
+  consistent_.stand(at);
+  return factored;
 }
 
 // Of the first step, that begins at `from`.
@@ -175,7 +189,7 @@ bool NarrowGap::is_gap(const Path& path) {
   const double length = moved_ * (path.to ? 1 : 2), steep = slope(part_, way_here_);
   double low = 0, high = 1;
   for (int k = 0; k < kBisections; ++k) {
-    const double s = 0.5 * (low + high);
+    const double s = low + kOffMiddle * (high - low);
     if (!stand_between(path, s, false)) return true;
     const double here = slope(part_, way_here_), unknown = here * here * length / steep + rounding;
     if (std::abs(e_) > 4 * unknown) return true;

@@ -36,7 +36,8 @@ class NarrowGap {
   void follow(const State& at, bool settled);
   // The next step begins elsewhere.
   void forget() { forgotten_ = -1; }
-  // Of a step that may stand. The problem stands at `to`, whose factorization is at hand, before and after.
+  // Of a step that may stand. The problem stands at `to`, before and after; at hand is its factorization or, of a limit
+  // without one, that of a state beside.
   bool goes_over(const State& from, const State& to, bool settled);
 
  private:
@@ -54,6 +55,7 @@ class NarrowGap {
     const State* to;
     double beside;
   };
+  bool factor_beside(const State& at, double beside);
   void find_orientation(const State& from, const State& to);
   bool reversed(std::size_t part, const Vector& x, const Vector& y);
   double move_along(const Path& path, double s);

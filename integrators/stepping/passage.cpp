@@ -97,11 +97,11 @@ Status Passage::stand_beside(const State& at, const Eigen::VectorXd& along, doub
   return {};
 }
 
-Status Passage::settle(State& at, bool& settled) {
+Status Passage::settle(State& at, bool factored, bool& settled) {
   settled = settled_ = at.multipliers_open = false;
   const double rate = problem_.fastest_turn();
-  if (!(rate > 0)) return {};
-  const double here = consistent_.steepness(at.t);
+  if (!(rate > 0)) return factored ? Status{} : consistent_.accelerations(at);
+  const double here = factored ? consistent_.steepness(at.t) : HUGE_VAL;
   consistent_.look(here);
   if (!is_steep(here)) return {};
   settled = settled_ = limit(at, at.v, kTurn / rate, here);
@@ -176,13 +176,13 @@ Status Passage::complete(State& at) {
   const Status status = consistent_.complete(at);
   if (status.ok()) {
     const double here = consistent_.steepness(at.t);
-    least_ = std::min(least_, here);
-    if (here < kSteeper * least_ && !consistent_.made_of_rounding(at)) return {};
+    const bool steep = !(here < kSteeper * std::min(here, least_seen()));
+    if (!steep) least_ = std::min(least_, here);
+    if (!steep && !consistent_.made_of_rounding(at)) return {};
   }
   at = given_;
   bool settled = false;
-  if (Status here = consistent_.accelerations(at); !here.ok()) return here;
-  if (Status here = settle(at, settled); !here.ok()) return here;
+  if (Status here = settle(at, consistent_.accelerations(at).ok(), settled); !here.ok()) return here;
   return settled ? Status{} : consistent_.complete(at);
 }
 
@@ -197,12 +197,23 @@ Status Passage::complete_sample(State& at) {
   if (status.ok() && !settled_ && consistent_.made_of_rounding(at)) status = {Failure::singular_position, at.t, {}};
   if (status.ok() || status.failure == Failure::refused) return status;
   at = given_;
-  if (!consistent_.accelerations(at).ok()) return status;
-  const double rate = problem_.fastest_turn(), here = consistent_.steepness(at.t);
+  const double here = consistent_.accelerations(at).ok() ? consistent_.steepness(at.t) : HUGE_VAL;
+  const double rate = problem_.fastest_turn();
   const auto found = [&](double turn) { return limit(at, at.v, turn / rate, here); };
   if (!(rate > 0) || !std::ranges::any_of(kOtherTurns, found)) return status;
   give_multipliers(at);
   return {};
+}
+
+Status Passage::give(State& at, State& spare) {
+  consistent_.stand(at);
+  const double here = consistent_.factor(at.t).ok() ? consistent_.steepness(at.t) : HUGE_VAL;
+  if (least_seen() == HUGE_VAL || here < kSteeper * least_seen()) return {};
+  spare = at;
+  const Status status = complete_sample(spare);
+  if (status.ok()) std::swap(at, spare);
+  consistent_.stand(at);
+  return status.failure == Failure::singular_position ? status : Status{};
 }
 
 void Passage::give_multipliers(State& at) {

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -28,9 +29,9 @@ class Passage {
 
   // Whether `at`, off the constraints by the error of a step, lies nearer to a singular position than those beside:
   // then it is made the limit of theirs: λ, too, or, where it has none and the position leaves it open, that of the
-  // state at τ. The problem stands at `at`, before and after. The factorization at hand is that of `at` before; after,
-  // where it was settled, that of a state beside.
-  Status settle(State& at, bool& settled);
+  // state at τ. The problem stands at `at`, before and after. The factorization at hand is that of `at` before, where
+  // it has one (`factored`: else it is as singular as can be); after, where it was settled, that of a state beside.
+  Status settle(State& at, bool factored, bool& settled);
   // Makes q, v and a of `at` the limit of those at ±τ, ... ±4τ along a velocity of the branch, which are as they are no
   // nearer to a singular position than rows off by one move positions by `steepest`. Says whether there is one: fails
   // nowhere.
@@ -48,6 +49,9 @@ class Passage {
   void stand_on_rows(State& at);
   // The same of a sample, which is refused where it is made of rounding, as singular_position.
   Status complete_sample(State& at);
+  // Of a state in which a step has ended, and that is to be given out: next to a singular position the same. `spare` is
+  // written over.
+  Status give(State& at, State& spare);
   // Whether the last one was made a limit.
   bool settled() const { return settled_; }
   // How far the last one was moved, δq and then δv; by Consistent, where it was not settled.
@@ -58,6 +62,7 @@ class Passage {
   Status stand_beside(const State& at, const Eigen::VectorXd& along, double s, Beside& beside);
   // Whether that is much steeper than somewhere before, or nothing is known yet.
   bool is_steep(double here);
+  double least_seen() const { return std::min(least_, consistent_.least_steepness()); }
   void give_multipliers(State& at);
   Status multipliers(State& at);
 

@@ -60,6 +60,9 @@ class RadauStepper {
   Status interpolate(double t);
   // Makes the state what it was before the completed step.
   void take_back();
+  // Before the state is given out: next to a singular position it becomes the limit of states beside. Fails with
+  // singular_position where there is none.
+  Status give() { return passage_.give(state_, sample_); }
   // Before the next attempt: brings up to date what is discrete. The problem stands at the state.
   Status settle();
   // Of redundant rows keeps others where those kept are not the best here: true where they are others now.
