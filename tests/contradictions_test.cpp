@@ -164,9 +164,8 @@ TEST_P(Contradictions, ThatAreSmallAreTold) {
     const Recorded r = run(twice_driven("sin(t)", "sin(t) + 9e-6*sin(3*t)^4"), settings);
     ASSERT_TRUE(r.outcome.status.ok()) << settings.integrator << ' ' << r.outcome.status.message;
     EXPECT_THAT(r.outcome.notices, ::testing::Contains(HasSubstr(apart))) << settings.integrator;
-    for (const auto& [first, second] :
-         {std::pair("2*t + sin(t)", "sin(t) + 0.5*t*4"),
-          std::pair("abs(t - 0.25) - 0.25", "abs(t - 0.25000000001) - 0.25000000001")}) {
+    for (const auto& [first, second] : {std::pair("2*t + sin(t)", "sin(t) + 0.5*t*4"),
+                                        std::pair("abs(t - 0.25) - 0.25", "abs(t - 0.25000000001) - 0.25000000001")}) {
       const Recorded same = run(twice_driven(first, second), settings);
       EXPECT_TRUE(same.outcome.status.ok()) << settings.integrator << ' ' << same.outcome.status.message;
       EXPECT_THAT(same.outcome.notices, ::testing::Not(::testing::Contains(HasSubstr(apart)))) << settings.integrator;
@@ -209,6 +208,39 @@ TEST_P(Contradictions, AreSeenInSmallPartsOfLargeMechanisms) {
       const Recorded r = run(small_on_arm(size, type, "1 + 4*max(0, t - 0.5)^2"), settings);
       EXPECT_EQ(r.outcome.status.failure, Failure::constraint_lost) << r.outcome.status.message;
     }
+  }
+}
+
+// A triangle of two bars on the arm, open as far as it can be: it turns them by half a radian, and is small.
+TEST(SmallLoops, OnLargeBodiesAreAssembled) {
+  for (const double size : {1e-2, 1e-4, 1e-5, 1e-6}) {
+    const double x = 0.25 * size, y = 0.25 * std::sqrt(3) * size;  // centres of bars of that size at 60 degrees
+    const std::string bars = fmt::format(
+        R"j({{"name": "r1", "mass": 1e-3, "inertia": [{0:.17g}, {0:.17g}, {0:.17g}], "position": [{1:.17g}, {2:.17g}, 0],
+            "orientation": {{"axis": [0, 0, 1], "angle": "pi/3"}}}},
+        {{"name": "r2", "mass": 1e-3, "inertia": [{0:.17g}, {0:.17g}, {0:.17g}], "position": [{3:.17g}, {2:.17g}, 0],
+            "orientation": {{"axis": [0, 0, 1], "angle": "2*pi/3"}}}})j",
+        1e-4 * size * size, x, y, size - x);
+    const auto hinge = [](const char* i, const char* j, double at_i, double at_j) {
+      return fmt::format(
+          R"j({{"type": "revolute", "bodies": ["{}", "{}"], "s_i": [{:.17g}, 0, 0], "s_j": [{:.17g}, 0, 0],
+          "axis_i": [0, 0, 1], "axis_j": [0, 0, 1]}})j",
+          i, j, at_i, at_j);
+    };
+    const Scene scene = parse_scene(
+        R"j({"scene": 1, "name": "triangle", "gravity": [0, 0, 0], "bodies": [
+          {"name": "arm", "mass": 1000, "inertia": [83, 83, 83], "position": [-0.5, 0, 0]}, )j" +
+            bars + R"j(], "joints": [)j" + hinge("ground", "arm", -1, -0.5) + ", " +
+            hinge("arm", "r1", 0.5, -0.5 * size) + ", " + hinge("arm", "r2", 0.5 + size, -0.5 * size) + ", " +
+            hinge("r1", "r2", 0.5 * size, size) + "]}",
+        "triangle");
+    Settings settings = controlled("dop853", "rA", 1e-8, 0.1);
+    settings.assembly = Assembly::always;
+    const Recorded r = run(scene, settings);
+    ASSERT_TRUE(r.outcome.status.ok()) << size << ' ' << r.outcome.status.message;
+    const BodyState &r1 = r.samples.back().bodies[1], &r2 = r.samples.back().bodies[2];
+    const Vector3 gap = r1.r + r1.A * Vector3(0.5 * size, 0, 0) - r2.r - r2.A * Vector3(size, 0, 0);
+    EXPECT_LT(gap.norm(), 1e-9 * size) << size;
   }
 }
 
