@@ -16,7 +16,8 @@ namespace poinsot {
 bool explain_by_functions(Status& status, const Problem& problem, const Settings& settings);
 
 // Adds what is to be said of the position `state` where dynamics stopped, and takes back a remedy that does not help
-// there; nothing where it stopped at a time before. `rows`: constraint rows of G that are the scene's. The problem stands there afterwards.
+// there; nothing of an output time before. `rows`: constraint rows of G that are the scene's. The problem stands there
+// afterwards.
 void explain_by_position(Status& status, Problem& problem, const Settings& settings, int rows,
                          const Eigen::VectorXd& q_start, const State& state);
 

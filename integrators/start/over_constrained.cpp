@@ -13,10 +13,10 @@
 namespace poinsot {
 namespace {
 
-constexpr double kLookedAgain = 1;  // rad, at the latest
-constexpr double kShrunk = 0.05;    // of the longest step since the last look: steps may creep up to worn rows
-constexpr double kLost = 1e-5;      // of a body's size: far above what steps leave, far below what opens to the eye
-constexpr double kWorthTelling = 0.01;      // of that: what is said twice differs by more than its rounding
+constexpr double kLookedAgain = 1;      // rad, at the latest
+constexpr double kShrunk = 0.05;        // of the longest step since the last look: steps may creep up to worn rows
+constexpr double kLost = 1e-5;          // of a body's size: far above what steps leave, far below what opens to the eye
+constexpr double kWorthTelling = 0.01;  // of that: what is said twice differs by more than its rounding
 // Of what kept rows are off, which a tolerance leaves off: rows that follow from them add them up.
 constexpr double kAsKept = 100;
 
@@ -28,8 +28,8 @@ Eigen::Map<const Eigen::ArrayXd> as_array(std::span<const double> x) {
 
 OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model,
                                  const RankAnalysis& rank, std::span<const BodyState> states, Steps steps)
-    : choice_(std::make_shared<Choice>(
-          Choice{RowChoice(model, rank.loops, rank.aside, steps), 0, {states.begin(), states.end()}, kWorthTelling, {}})),
+    : choice_(std::make_shared<Choice>(Choice{
+          RowChoice(model, rank.loops, rank.aside, steps), 0, {states.begin(), states.end()}, kWorthTelling, {}})),
       kept_(std::move(kept)),
       to_tolerance_(steps == Steps::of_kinematics),
       now_(states.begin(), states.end()) {
@@ -183,8 +183,8 @@ Status OverConstrained::measure_rates(double t, std::span<const double> a) {
     const Row& row = model().rows[index(of)];
     const double size = choice_->rows.own_size_of(of), norm = choice_->rows.size_of(of) / size;
     const double asked = row.type == RowType::pfaffian ? row.f.at(t).f : row.f.at(t).fd;
-    const double allowed = kLostRate * std::max(norm * speed_at(row), std::abs(asked)) + kAsKept * others +
-                           kStill * norm * size;
+    const double allowed =
+        kLostRate * std::max(norm * speed_at(row), std::abs(asked)) + kAsKept * others + kStill * norm * size;
     if (std::abs(residual[k]) > most * allowed) worst = static_cast<int>(k), most = std::abs(residual[k]) / allowed;
   }
   lost_rates_ = worst < 0 ? 0 : lost_rates_ + 1;
