@@ -178,7 +178,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     const FlushSubnormals flush;
     outcome.status = integrator.make()->run(run);
   }
-  check(!outcome.status.ok() || state.t == settings.end, "a run that is done has come to its end");
+  check(!outcome.status.ok() || state.t >= (1 - 1e-12) * settings.end, "a run that is done has come to its end");
   const bool explained = explain_by_functions(outcome.status, *problem, settings);
   if (keeps_energy && !outcome.status.ok() && state.t > 0 && model->torsions.empty()) {  // their turns are the method's
     problem->set_position(state.t, span(state.q));
@@ -186,7 +186,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     energy.end({state.t, state.t, *problem, span(state.q), span(state.v), state.a(), state.lambda()});
   }
   if (keeps_energy) energy.conclude(run, integrator);
-  if (redundant && !redundant->apart().empty()) notice(redundant->apart());
+  if (const std::string apart = redundant ? redundant->apart() : ""; !apart.empty()) notice(apart);
   const double largest = outcome.statistics.largest_rotation;
   if (outcome.status.ok() && largest > rotation.wrong) {
     notice(fmt::format(

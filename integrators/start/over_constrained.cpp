@@ -28,8 +28,10 @@ Eigen::Map<const Eigen::ArrayXd> as_array(std::span<const double> x) {
 
 OverConstrained::OverConstrained(std::unique_ptr<Problem> kept, const std::shared_ptr<const Model>& model,
                                  const RankAnalysis& rank, std::span<const BodyState> states, Steps steps)
-    : choice_(std::make_shared<Choice>(Choice{
-          RowChoice(model, rank.loops, rank.aside, steps), 0, {states.begin(), states.end()}, kWorthTelling, {}})),
+    : choice_(std::make_shared<Choice>(Choice{RowChoice(model, rank.loops, rank.aside, steps),
+                                              0,
+                                              {states.begin(), states.end()},
+                                              {.part = kWorthTelling}})),
       kept_(std::move(kept)),
       to_tolerance_(steps == Steps::of_kinematics),
       now_(states.begin(), states.end()) {
@@ -105,16 +107,19 @@ bool OverConstrained::hold(double t) {
   most_aside_ = off.maxCoeff();
   Eigen::Index worst = 0;
   const double part = (off * as_array(by_allowed_)).maxCoeff(&worst);
-  if (part > choice_->apart && part <= 1 && off[worst] > kAsKept * kept_off())
-    choice_->apart = part, choice_->says = describe_apart(aside_->rows()[index(worst)], off[worst]);
+  Apart& apart = choice_->apart;
+  if (part > apart.part && part <= 1 && off[worst] > kAsKept * kept_off())
+    apart = {part, aside_->rows()[index(worst)], off[worst], t};
   return part <= 1;
 }
 
-std::string OverConstrained::describe_apart(int row, double off) const {
+std::string OverConstrained::apart() const {
+  const Apart& at = choice_->apart;
+  if (at.row < 0) return {};
   return fmt::format(
       "{} was set aside, as it follows from other constraints, and is off those by up to {} (at t = {:.4g} s): the "
       "motion is that of the rows that are kept",
-      describe_row(model(), row), describe_residual(model(), row, off, 0), t_);
+      describe_row(model(), at.row), describe_residual(model(), at.row, at.off, 0), at.t);
 }
 
 Status OverConstrained::measure(double t, std::span<const double> a) {

@@ -35,7 +35,7 @@ class OverConstrained final : public Problem {
   }
   int revision() const override { return choice_->revision; }
   // A sentence about a row set aside that held, but not to rounding, at the ends of steps; else empty.
-  const std::string& apart() const { return choice_->says; }
+  std::string apart() const;
   // Whether of its reactions the least can be told (reactions.h).
   bool has_least_reactions() const { return choice_->rows.has_null_vectors(); }
 
@@ -98,13 +98,19 @@ class OverConstrained final : public Problem {
   LeftOut left_out() const override;
 
  private:
+  // Where a row set aside held least.
+  struct Apart {
+    double part;  // of what is allowed
+    int row = -1;
+    double off = 0, t = 0;
+  };
+
   // Shared by the clones of one run: all of them keep the same rows.
   struct Choice {
     RowChoice rows;
     int revision = 0;
     std::vector<BodyState> at;  // where it was last looked at
-    double apart;               // by how much rows set aside did not hold at the most, of what is allowed
-    std::string says;           // of that one
+    Apart apart;
   };
 
   // What becomes of the way since the last look with a step.
@@ -124,7 +130,6 @@ class OverConstrained final : public Problem {
   bool hold(double t);
   Status measure(double t, std::span<const double> a);
   double kept_off();
-  std::string describe_apart(int row, double off) const;
   double speed_at(const Row& row) const;
   Status measure_rates(double t, std::span<const double> a);
   double turned() const;
