@@ -141,7 +141,7 @@ TEST_P(Contradictions, OfVelocitiesLaterEndTheRun) {
 // Two drivers of one hinge that stay within 1e-5 rad of one another and ask for velocities that do not.
 TEST_P(Contradictions, OfRatesEndTheRun) {
   const Scene scene = twice_driven("sin(t)", "sin(t) + 9e-6*sin(1000*max(0, t - 0.1))^4");
-  for (Settings settings : every_way(GetParam(), 0.5)) {
+  for (const Settings& settings : every_way(GetParam(), 0.5)) {
     if (settings.analysis == Analysis::kinematics) continue;
     const Recorded r = run(scene, settings);
     const bool told = std::ranges::any_of(r.outcome.notices, [](const std::string& notice) {
