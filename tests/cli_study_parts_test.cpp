@@ -44,7 +44,7 @@ TEST_F(CliStudy, RanksGiveTheSameBytes) {
     GTEST_SKIP() << "mpirun was not found: studies across processes are not looked at";
   const std::string expected = reference();
   // MPI itself leaves memory behind, and mpirun of Open MPI 4.1 can wait for one of its own threads for good once all
-  // ranks have ended, deaf to SIGTERM then: it is killed and started again.
+  // ranks have ended, and SIGTERM need not end it then: it is killed and started again.
   constexpr int killed = 137;
   const auto run = [&](int ranks, const std::string& out) {
     int status = killed;
