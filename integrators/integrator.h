@@ -106,6 +106,8 @@ struct Run {
   // are limits there, which [M Gᵀ; G 0] does not give.
   double singular_for = 0;
   EnergyBalance* energy = nullptr;  // where something is to keep it; looked at after every step
+  // Of a run beside another one under error control: steps rejected, beyond which it is given up.
+  std::int64_t most_rejected = std::numeric_limits<std::int64_t>::max();
 };
 
 class Integrator {

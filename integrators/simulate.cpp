@@ -101,6 +101,23 @@ void tell_of_redundant_pulses(const Model& model, const RankAnalysis& rank, cons
                     pulse->function, pulse->t));
 }
 
+void take_undetermined(Outcome& outcome, const Model& model, const std::vector<Undetermined>& reactions) {
+  outcome.undetermined_reactions.clear();
+  outcome.undetermined_components.clear();
+  for (const Undetermined& reaction : reactions) {
+    outcome.undetermined_reactions.push_back(model.groups[index(reaction.group)].name);
+    outcome.undetermined_components.push_back(reaction.components(model));
+  }
+}
+
+std::vector<BodyState> bodies_at(Problem& problem, const State& state) {
+  std::vector<BodyState> bodies(index(problem.bodies()));
+  problem.set_position(state.t, span(state.q));
+  problem.set_velocity(span(state.v));
+  problem.to_bodies(state.a(), bodies);
+  return bodies;
+}
+
 Outcome run(const Scene& scene, const Settings& settings, const Observer& observe, const Tell& tell) {
   check_numbers(settings);
   const FormulationEntry& formulation = formulations().require(settings.formulation);
@@ -122,10 +139,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   for (const std::string& sentence : scene.notices) notice(sentence);
   for (const std::string& sentence : scene_doubts(*model)) notice(sentence);
   for (const std::string& sentence : start.notices) notice(sentence);
-  for (const Undetermined& reaction : start.rank.undetermined) {
-    outcome.undetermined_reactions.push_back(model->groups[index(reaction.group)].name);
-    outcome.undetermined_components.push_back(reaction.components(*model));
-  }
+  take_undetermined(outcome, *model, start.rank.undetermined);
   if (!outcome.status.ok()) return outcome;
 
   std::unique_ptr<Problem> problem = formulation.make(model, start.rank.aside);
@@ -186,6 +200,10 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
     energy.end({state.t, state.t, *problem, span(state.q), span(state.v), state.a(), state.lambda()});
   }
   if (keeps_energy) energy.conclude(run, integrator);
+  if (redundant && state.t > 0) {
+    const std::vector<BodyState> bodies = bodies_at(*problem, state);
+    take_undetermined(outcome, *model, together(start.rank.undetermined, redundant->undetermined(state.t, bodies)));
+  }
   if (const std::string apart = redundant ? redundant->apart() : ""; !apart.empty()) notice(apart);
   const double largest = outcome.statistics.largest_rotation;
   if (outcome.status.ok() && largest > rotation.wrong) {
@@ -202,11 +220,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
                     "{:.1g} rad there, more than rtol",
                     largest, kEpsilon * largest));
   if (outcome.status.ok() && !model->open_angles.empty()) {
-    std::vector<BodyState> bodies(model->bodies.size());
-    problem->set_position(state.t, span(state.q));
-    problem->set_velocity(span(state.v));
-    problem->to_bodies(state.a(), bodies);
-    tell_tilted_axes(*model, bodies, notice);
+    tell_tilted_axes(*model, bodies_at(*problem, state), notice);
   }
   if (settings.analysis == Analysis::dynamics && !explained) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());

@@ -31,9 +31,10 @@ struct Outcome {
   Status status;
   Statistics statistics;
   std::vector<std::string> notices;  // what the user should know of: projections, dependent rows, singular starts
-  // Constraints, joints and drivers whose reactions redundant rows leave undetermined: those given are the least.
+  // Constraints, joints and drivers whose reactions redundant rows leave undetermined at the start or at the end: those
+  // given are the least.
   std::vector<std::string> undetermined_reactions;
-  // Of each of these its components that are, at the start ("fz", "nx"); the others are unique. None of constraints.
+  // Of each of these its components that are, there ("fz", "nx"); the others are unique. None of constraints.
   std::vector<std::vector<std::string>> undetermined_components;
 };
 

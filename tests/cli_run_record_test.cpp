@@ -39,6 +39,32 @@ TEST_F(RunRecord, TheRecordSaysWhichReactionsAreNotDetermined) {
   for (std::size_t k = 1; k < table.size(); ++k) EXPECT_TRUE(table[k].ends_with(flags)) << table[k];
 }
 
+// A plate that hangs straight down on three rods of one length and swings: at the start one of its multipliers is the
+// only one, later none is.
+TEST_F(RunRecord, ReactionsThatAreUndeterminedLaterAreSaid) {
+  write("plate.json", R"j({"scene": 1, "gravity": [0, -9.81, 0], "bodies": [{"name": "plate", "mass": 2,
+      "inertia": [0.1, 0.2, 0.25], "position": [0, -1, 0], "velocity": [1.5, 0, 0]}], "constraints": [
+    {"name": "c0", "type": "CD", "bodies": ["ground", "plate"], "c": [0, 0, 1], "s_i": [0, 0, 0], "s_j": [0, 0, 0]},
+    {"name": "c1", "type": "DP1", "bodies": ["ground", "plate"], "a_i": [0, 0, 1], "a_j": [1, 0, 0]},
+    {"name": "c2", "type": "DP1", "bodies": ["ground", "plate"], "a_i": [0, 0, 1], "a_j": [0, 1, 0]},
+    {"name": "c3", "type": "D", "bodies": ["ground", "plate"], "s_i": [-0.4, 0, 0], "s_j": [-0.4, 0, 0], "f": 1},
+    {"name": "c4", "type": "D", "bodies": ["ground", "plate"], "s_i": [0.3, 0, 0], "s_j": [0.3, 0, 0], "f": 1},
+    {"name": "c5", "type": "D", "bodies": ["ground", "plate"], "s_i": [0.1, 0, 0.2], "s_j": [0.1, 0, 0.2], "f": 1}]})j");
+  const Result result =
+      poinsot({"run", "plate.json", "--end", "0.2", "--every", "0.1", "--out", "p.csv", "--reactions", "r.csv"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::vector<std::string> table = lines(read("r.csv"));
+  std::string header = "t";
+  for (const char* what : {"lambda", "lambda.undetermined"})
+    for (int k = 0; k < 6; ++k) header += fmt::format(",c{}.{}", k, what);
+  ASSERT_EQ(table.size(), 4u);
+  EXPECT_EQ(table[0], header);
+  EXPECT_TRUE(table[1].ends_with(",0,0,1,1,1,1")) << table[1];
+  for (const std::size_t later : {2, 3}) EXPECT_TRUE(table[later].ends_with(",0,1,1,1,1,1")) << table[later];
+  EXPECT_EQ(read_json("p.run.json")["undetermined_reactions"],
+            (std::vector<std::string>{"c1", "c2", "c3", "c4", "c5"}));
+}
+
 TEST_F(RunRecord, TheRecordSaysWhereTheNumbersComeFrom) {
   const Result result = poinsot({"run", "pendulum.json", "--integrator", "implicit_euler", "--end", "0.1", "--out",
                                  "a.csv", "--reactions", "r.csv"});

@@ -160,5 +160,32 @@ TEST(FixedStepRows, VelocityRowsAreSecondOrder) {
   }
 }
 
+// Not even in the step that begins in the new chart, or the first of all, whose velocity is none of the scheme's where
+// that makes velocities of differences of positions. A pendulum that is under way, with its hinge and its frame askew.
+TEST(FixedStepCharts, NoStepLosesTheFirstOrder) {
+  const Case pendulum{"pendulum",
+                      parse_scene(R"j({"scene": 1, "gravity": [0, 0, -9.81], "bodies": [{"name": "rod",
+      "mass": 1, "inertia": [0.1, 0.1, 0.1], "position": [-0.2876553231625218, 0.5265495371342236, 0],
+      "orientation": {"euler_parameters": [0.9686629266365361, -0.07965179448796547, -0.13436388130975224,
+        0.1931167356656754]}, "velocity": [0, 0, 2.4],
+      "angular_velocity": [3.8802703861173287, 0.5121483053732561, -0.8253519515480532]}],
+    "joints": [{"type": "revolute", "bodies": ["ground", "rod"], "point": [0, 0, 0],
+      "axis": [0.8775825618903728, 0.479425538604203, 0]}]})j",
+                                  "pendulum"),
+                      1.2, 4e-3};
+  ASSERT_GE(charts(pendulum), 2);
+  for (const Method& method : fixed_step_methods()) {
+    if (method.order > 1) continue;
+    std::array<Errors, 2> found;
+    for (const int level : {0, 1}) {
+      const double h = pendulum.step / (level == 0 ? 1 : 4);
+      found[index(level)] = errors(motion(pendulum.scene, settings_of(method.name, "reps", h, pendulum.end, h)),
+                                   reference(pendulum.scene, h, pendulum.end, h));
+    }
+    for (std::size_t k = 0; k < kQuantities.size(); ++k)
+      EXPECT_LT(found[1][k], found[0][k] / 2.5) << method.name << ", " << kQuantities[k];
+  }
+}
+
 }  // namespace
 }  // namespace poinsot::test

@@ -31,15 +31,15 @@ Ended ended(const Scene& scene, const Settings& settings) {
 }
 
 // A slider whose distance from a point beside its line is driven: it comes to the foot of that point but for `gap` and
-// goes back.
-Scene driven_slider(double gap) {
-  const double x = std::hypot(1, gap);
+// goes back; it comes there after `in` seconds.
+Scene driven_slider(double gap, double in = 1) {
+  const double x = std::hypot(in, gap);
   return parse_scene(fmt::format(R"j({{"scene": 1, "bodies": [{{"name": "b", "mass": 1, "inertia": [1, 1, 1],
       "position": [{0:.17g}, 0.5, 0], "velocity": [{1:.17g}, 0, 0]}}],
       "joints": [{{"type": "translational", "bodies": ["ground", "b"], "point": [{0:.17g}, 0.5, 0], "axis": [1, 0, 0]}}],
       "drivers": [{{"type": "distance", "bodies": ["ground", "b"], "s_i": [0, 0, 0], "s_j": [0, 0, 0],
-      "length": "sqrt((t-1)^2+{2:.17g})"}}]}})j",
-                                 x, -1 / x, 0.25 + gap * gap),
+      "length": "sqrt((t-{3:.17g})^2+{2:.17g})"}}]}})j",
+                                 x, -in / x, 0.25 + gap * gap, in),
                      "slider");
 }
 
@@ -82,6 +82,17 @@ TEST_P(NarrowGaps, ASliderTurnsRoundBeforeItsFoot) {
       ASSERT_TRUE(end.status.ok()) << end.status.message;
       EXPECT_NEAR(end.body.r.x(), std::hypot(0.7301, gap), 1e-4);
       EXPECT_NEAR(end.body.rd.x(), 1, 1e-3);
+    }
+}
+
+// Steps that end right before the foot have accelerations there that lead afar in a step of the usual length.
+TEST_P(NarrowGaps, ASliderThatComesThereFromNearby) {
+  for (const double gap : {1e-5, 1e-6})
+    for (const double in : {0.4, 0.34, 0.28, 0.22, 0.12}) {
+      SCOPED_TRACE(fmt::format("{} {}", gap, in));
+      const Ended end = ended(driven_slider(gap, in), 1e-7, in + 0.3);
+      ASSERT_TRUE(end.status.ok()) << end.status.message;
+      EXPECT_NEAR(end.body.r.x(), std::hypot(0.3, gap), 1e-4);
     }
 }
 
@@ -166,6 +177,48 @@ TEST_P(NarrowGaps, ALightLinkThatWhipsRoundIsNone) {
   EXPECT_TRUE(run.status.ok()) << run.status.message;
   EXPECT_NEAR(last, first, 1e-4 * std::abs(first));
   EXPECT_GT(fastest, 1e3);
+}
+
+// Steps of fixed length go over gaps, and are found out; no run ends on the other branch.
+class GapsInSteps : public ::testing::TestWithParam<std::string> {
+ protected:
+  struct Count {
+    int right = 0, over = 0;
+  };
+  // Of body 0 at `end`, which is to be at x on its branch.
+  void run(const Scene& scene, double end, double x, double order_of_magnitude, Count& count) const {
+    for (const IntegratorEntry& integrator : integrators()) {
+      if (integrator.controls_error || integrator.analysis != Analysis::dynamics) continue;
+      for (const int steps : {40, 200, 2000}) {
+        SCOPED_TRACE(fmt::format("{} {}", integrator.name, steps));
+        Settings settings = dynamics(GetParam(), end / steps, end);
+        settings.integrator = integrator.name;
+        const Ended found = ended(scene, settings);
+        count.over += found.status.message.find("gone over to another branch") != std::string::npos;
+        if (!found.status.ok()) continue;
+        ++count.right;
+        EXPECT_NEAR(found.body.r.x(), x, order_of_magnitude);
+      }
+    }
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, GapsInSteps, ::testing::ValuesIn(formulation_names()),
+                         [](const auto& test) { return test.param; });
+
+TEST_P(GapsInSteps, AreFoundOut) {
+  Count slider, crank;
+  for (const double gap : {1e-2, 1e-3, 1e-4, 1e-5}) {
+    SCOPED_TRACE(gap);
+    run(driven_slider(gap), 1.7301, std::hypot(0.7301, gap), 0.1, slider);
+  }
+  for (const double longer : {1e-4, 1e-6, 1e-8}) {
+    SCOPED_TRACE(longer);
+    run(slider_crank(longer), 0.5, slider_at(longer, 0.5), 0.1, crank);
+  }
+  for (const Count& count : {slider, crank}) {
+    EXPECT_GT(count.right, 3);
+    EXPECT_GT(count.over, 5);
+  }
 }
 
 }  // namespace

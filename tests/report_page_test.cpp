@@ -274,6 +274,46 @@ TEST(Compare, TellsWhatIsIncomplete) {
   EXPECT_EQ(c.origins[0].b, "raw.csv");
 }
 
+// A chart of three cases and one that would have taken too long.
+Results chart(double factor, double spread, const std::string& last = "left out, some 0.038 s are expected") {
+  study::CsvTable table{"door", {"formulation", "integrator", "linear_solver", "parameter", "value", "status"}, {}, {}};
+  for (const auto quantity : study::kQuantities) table.header.emplace_back(quantity);
+  for (const char* column : {"violation_position", "violation_velocity", "energy_drift", "seconds", "spread", "steps",
+                             "newton_iterations", "factorizations"})
+    table.header.emplace_back(column);
+  for (const auto quantity : study::kQuantities) table.header.push_back(fmt::format("front_{}", quantity));
+  for (const auto& [step, seconds] : {std::pair{"0.01", 1.0}, {"0.005", 2.0}, {"0.0025", 4.0}, {"0.00125", 0.0}}) {
+    std::vector<std::string> row{"rA", "rattle", "auto", "step", step, seconds > 0 ? "ok" : last};
+    row.resize(table.header.size());
+    for (const std::size_t error : {6, 7, 8, 9}) row[error] = "1e-3";
+    row[13] = fmt::format("{}", factor * seconds);
+    row[14] = fmt::format("{}", seconds == 1.0 ? 10 * spread : spread);
+    table.rows.push_back(row);
+  }
+  Results r{"results", {}};
+  r.tables.emplace("door", std::move(table));
+  return r;
+}
+
+// Spreads are those of one run: those of a few repetitions may be nothing, and one that was disturbed leaves a wide
+// one.
+TEST(Compare, TimesOfChartsChangeByMoreThanTheirSpreads) {
+  const Comparison alike = compare(chart(1, 0.01), chart(1.09, 0));
+  EXPECT_EQ(alike.times, 3u);
+  EXPECT_TRUE(alike.same());
+  const Comparison slower = compare(chart(1, 0.01), chart(1.3, 0.01));
+  EXPECT_EQ(slower.changed_times.size(), 3u) << "the case with a wide spread among them";
+  EXPECT_TRUE(compare(chart(1, 0.1), chart(1.3, 0.1)).changed_times.empty()) << "a noisy machine";
+}
+
+TEST(Compare, WhatAChartLeavesOutForItsTimeIsNoDifference) {
+  EXPECT_TRUE(compare(chart(1, 0.01), chart(1, 0.01, "left out, some 0.039 s are expected")).same());
+  const Comparison measured = compare(chart(1, 0.01), chart(1, 0.01, "ok"));
+  EXPECT_TRUE(measured.same());
+  EXPECT_THAT(measured.not_compared, ::testing::ElementsAre(HasSubstr("1 case: left out for the time")));
+  EXPECT_FALSE(compare(chart(1, 0.01, "ok"), chart(1, 0.01, "the run stopped")).same());
+}
+
 TEST(Compare, DividesNoTimesOfTwoProcessorsOrCompilers) {
   for (const auto& [which, said] : {std::pair{std::size_t{0}, "another processor"}, {2, "another compiler or flags"}}) {
     Results other = results(2);

@@ -28,9 +28,9 @@ ReactionsWriter::ReactionsWriter(const std::filesystem::path& file, const Model&
 }
 
 void ReactionsWriter::begin(const Model& model) {
-  for (const Undetermined& reaction : reactions_->undetermined()) {
-    undetermined_.push_back(reaction.group);
-    const Group& group = model.groups[index(reaction.group)];
+  undetermined_ = reactions_->may_be_undetermined();
+  for (const int of : undetermined_) {
+    const Group& group = model.groups[index(of)];
     for (const std::string_view component : components_of(group))
       columns_.push_back(fmt::format("{}.{}.undetermined", group.name, component));
   }

@@ -12,6 +12,7 @@
 #include "bench/report/contents.h"
 #include "bench/report/raw_cells.h"
 #include "bench/study/chart_file.h"
+#include "bench/study/measure.h"
 #include "core/counted.h"
 
 namespace poinsot::report {
@@ -179,12 +180,20 @@ class Comparer {
     if (!why.empty()) leave_out(file, "times", why);
     const std::vector<ChartRow> before = chart_rows(a), after = chart_rows(b);
     const PerQuantity agreement = chart_agreement(before);
+    std::vector<double> spreads = chart_spreads(before);
+    for (const double x : chart_spreads(after)) spreads.push_back(x);
+    const CommonSpread spread(spreads);
+    std::size_t left_out = 0;
     const auto name = [](const ChartRow& r) {
       return r.is_reference() ? r.measured.status : fmt::format("{}, {} {}", r.method(), r.parameter, r.value);
     };
     compare_each(file, before, after, name, [&](const ChartRow& row, const ChartRow& other) {
       const Measured &m = row.measured, &n = other.measured;
       if (row.is_reference()) return;
+      if (m.left_out() || n.left_out()) {
+        left_out += m.left_out() != n.left_out();
+        return;
+      }
       changed(file, name(row), "status", m.status, n.status);
       if (!m.ok() || !n.ok()) return;
       changed(file, name(row), "newton_iterations", std::to_string(m.newton_iterations),
@@ -193,17 +202,21 @@ class Comparer {
         if (std::abs(m.error[k] - n.error[k]) > kResolved * agreement[k])
           changed(file, name(row), fmt::format("error in {}", kQuantities[k]), fmt::format("{:.3g}", m.error[k]),
                   fmt::format("{:.3g}", n.error[k]));
-      if (why.empty()) compare_by_spreads(file, name(row), {m.seconds, m.spread}, {n.seconds, n.spread});
+      if (why.empty()) compare_by_spreads(file, name(row), {m.seconds, m.spread}, {n.seconds, n.spread}, spread);
     });
+    if (left_out > 0) leave_out(file, counted(left_out, "case"), "left out for the time they take in one of the two");
   }
 
   struct Timed {
     double seconds, spread;
   };
 
-  void compare_by_spreads(const std::string& file, const std::string& cell, const Timed& a, const Timed& b) {
+  void compare_by_spreads(const std::string& file, const std::string& cell, const Timed& a, const Timed& b,
+                          const CommonSpread& common) {
+    constexpr double kTimes = 3, kBetweenRuns = 0.1;
     if (!(a.seconds > 0) || !(b.seconds > 0)) return;
-    const double ratio = b.seconds / a.seconds, noise = 1 + std::hypot(a.spread, b.spread);
+    const double spread = std::hypot(common.of(a.spread), common.of(b.spread));
+    const double ratio = b.seconds / a.seconds, noise = 1 + std::max(kBetweenRuns, kTimes * spread);
     ++result_.times;
     quotients_.push_back(ratio);
     if (ratio > noise || ratio * noise < 1)
@@ -254,6 +267,12 @@ class Comparer {
       return Timed{csv_number(row[static_cast<std::size_t>(seconds)]),
                    csv_number(row[static_cast<std::size_t>(spread)])};
     };
+    std::vector<double> spreads;
+    if (timed)
+      for (const CsvTable* table : {&a, &b})
+        for (const auto& row : table->rows)
+          if (const double x = time(row).spread; std::isfinite(x)) spreads.push_back(x);
+    const CommonSpread common(spreads);
     std::map<std::string, const std::vector<std::string>*> rest;
     for (const auto& row : b.rows) rest[row[0]] = &row;
     std::vector<Difference> differences(a.header.size());
@@ -270,7 +289,7 @@ class Comparer {
       }
       for (std::size_t c = static_cast<std::size_t>(status); c < row.size(); ++c)
         if (!is_measured(a.header[c])) differences[c].add(row[c], other[c]);
-      if (timed && why.empty()) compare_by_spreads(file, "case " + row[0], time(row), time(other));
+      if (timed && why.empty()) compare_by_spreads(file, "case " + row[0], time(row), time(other), common);
     }
     if (const std::size_t alone = a.rows.size() - both; alone > 0)
       result_.only_a.push_back(fmt::format("{}: {}", file, counted(alone, "case")));

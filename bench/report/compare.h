@@ -3,9 +3,10 @@
 // Times are compared of one processor, compiler and flags only. Of raw.csv the k-th repetition of a cell in B is
 // divided by the k-th in A, and a time has changed where the interval of the median of the quotients does not hold 1;
 // all cells moving alike is the machine as well as the program, so the median of all quotients is told beside them. Of
-// charts and studies, which keep no repetitions, a time has changed where it did by more than the two spreads allow.
-// Counts and statuses have changed where they differ, errors of a chart where they do by more than its reference
-// resolves. Studies are compared case by case, also those in folders of the two.
+// charts and studies, which keep no repetitions, a time has changed where it did by a tenth and by three times what the
+// two spreads allow: spreads are those of a run, while two runs of one program, minutes apart, differ by some
+// hundredths. Counts and statuses have changed where they differ, errors of a chart where they do by more than its
+// reference resolves. Studies are compared case by case, also those in folders of the two.
 #pragma once
 
 #include <string>

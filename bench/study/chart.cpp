@@ -25,7 +25,7 @@ std::string too_long(const Case& one, const std::vector<std::vector<Case>>& leve
   for (const Case& before : levels[static_cast<std::size_t>(one.level) - 1]) {
     if (before.method() != one.method()) continue;
     const ChartRow* row = file.find(before);
-    if (!row || row->measured.status.starts_with("left out")) return "left out, as the one before";
+    if (!row || row->measured.left_out()) return "left out, as the one before";
     const double expected =
         one.parameter() == "step" ? row->measured.seconds * before.value() / one.value() : row->measured.seconds * 2;
     const double patience = one.parameter() == "step" ? 1 : kPatience;

@@ -105,6 +105,13 @@ std::vector<ChartRow> chart_rows(const CsvTable& table) {
   return rows;
 }
 
+std::vector<double> chart_spreads(const std::vector<ChartRow>& rows) {
+  std::vector<double> spreads;
+  for (const ChartRow& row : rows)
+    if (row.measured.ok()) spreads.push_back(row.measured.spread);
+  return spreads;
+}
+
 PerQuantity chart_agreement(const std::vector<ChartRow>& rows) {
   const auto reference = std::ranges::find_if(rows, &ChartRow::is_reference);
   return reference == rows.end() ? PerQuantity{} : reference->measured.error;

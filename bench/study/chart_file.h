@@ -34,6 +34,8 @@ struct ChartRow {
 bool is_chart(const CsvTable& table);
 bool is_chart(const std::filesystem::path& file);  // by its header alone
 std::vector<ChartRow> chart_rows(const CsvTable& table);
+// Of the cases measured.
+std::vector<double> chart_spreads(const std::vector<ChartRow>& rows);
 // How far the reference among the rows can be trusted; zeros where there is none.
 PerQuantity chart_agreement(const std::vector<ChartRow>& rows);
 

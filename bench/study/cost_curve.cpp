@@ -82,21 +82,15 @@ CostCurves::CostCurves(const std::vector<ChartRow>& rows, std::size_t quantity, 
     : quantity_(quantity),
       rows_(rows.size()),
       floor_(kResolved * agreement),
-      curves_(cost_curves(rows, quantity, agreement)) {
-  std::vector<double> spreads;
-  for (const ChartRow& row : rows)
-    if (row.measured.ok()) spreads.push_back(row.measured.spread);
-  if (!spreads.empty()) noise_ = timing(spreads).median;
-}
+      spread_(chart_spreads(rows)),
+      curves_(cost_curves(rows, quantity, agreement)) {}
 
 Standing CostCurves::at(double error) const {
   Standing standing;
   for (std::size_t k = 0; k < curves_.size(); ++k)
     if (const auto seconds = curves_[k].seconds_at(error)) standing.order.push_back({k, *seconds});
   std::ranges::sort(standing.order, {}, &Standing::Place::seconds);
-  const auto spread = [&](const Standing::Place& place) {
-    return std::max(noise_, curves_[place.curve].spread_at(error));
-  };
+  const auto spread = [&](const Standing::Place& place) { return spread_.of(curves_[place.curve].spread_at(error)); };
   while (standing.alike < standing.order.size()) {
     const Standing::Place &best = standing.order.front(), &next = standing.order[standing.alike];
     if (next.seconds > best.seconds * (1 + std::hypot(spread(best), spread(next)))) break;

@@ -4,7 +4,7 @@
 // them. Where less accuracy is asked for than its coarsest case has, that case is what it costs; beyond its finest case
 // there is nothing. Two curves are apart at an accuracy where their times differ by more than the noise: the root of
 // the sum of squares of their spreads (distance of the quartiles over the median, of the larger of two neighbouring
-// cases, at least the median spread of the chart, since few repetitions may agree by chance).
+// cases; CommonSpread of the chart).
 #pragma once
 
 #include <optional>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/study/chart_file.h"
+#include "bench/study/measure.h"
 
 namespace poinsot::study {
 
@@ -60,7 +61,8 @@ class CostCurves {
 
  private:
   std::size_t quantity_, rows_;
-  double floor_, noise_ = 0;
+  double floor_;
+  CommonSpread spread_;
   std::vector<CostCurve> curves_;
 };
 

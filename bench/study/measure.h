@@ -3,6 +3,7 @@
 // charts, advice, growth and the timed cases of studies.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -29,6 +30,21 @@ struct Timing {
   double spread = 0;  // distance of the quartiles relative to the median
 };
 Timing timing(std::vector<double> values);
+
+// What spreads of measurements made together say of one of them. Few repetitions may agree by chance, and one that was
+// disturbed moves their quartiles but not the median: a spread counts as the common one at least, and as four times
+// that at the most.
+class CommonSpread {
+ public:
+  explicit CommonSpread(const std::vector<double>& spreads) : median_(spreads.empty() ? 0 : timing(spreads).median) {}
+  double of(double spread) const {
+    constexpr double kMost = 4;
+    return median_ > 0 ? std::clamp(spread, median_, kMost * median_) : spread;
+  }
+
+ private:
+  double median_;
+};
 
 // Microseconds of a phase for one step, over the repetitions.
 using PhaseSeconds = double (*)(const Statistics&);  // seconds of a run

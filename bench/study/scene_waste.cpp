@@ -4,6 +4,7 @@
 
 #include "bench/study/name_list.h"
 #include "bench/study/scene_check.h"
+#include "core/index.h"
 #include "integrators/start/rank.h"
 
 namespace poinsot::study {
@@ -18,11 +19,13 @@ std::vector<std::string> scene_waste(const Scene& scene, const Motion& motion) {
   const auto model = std::make_shared<const Model>(compile(scene));
   const RankAnalysis rank = analyze_rank(model, pose_meant(model), RankNames::all);
   if (const std::vector<int> dependent = rank.dependent_rows(); !dependent.empty()) {
-    std::vector<std::string> names;
+    std::vector<std::string> names, reactions;
     for (const int row : dependent) names.push_back(describe_row(*model, row));
-    sentences.push_back(fmt::format(
-        "{} of {} constraint rows follow from the others; they are set aside, and reactions are undetermined: {}",
-        dependent.size(), model->rows.size(), listed(names)));
+    for (const Undetermined& of : rank.undetermined) reactions.push_back(model->groups[index(of.group)].name);
+    sentences.push_back(
+        fmt::format("{} of {} constraint rows follow from the others and are set aside: {}; undetermined "
+                    "are the reactions of {}",
+                    dependent.size(), model->rows.size(), listed(names), listed(reactions)));
   }
 
   const Sizes scale = sizes(motion, *model);

@@ -32,6 +32,7 @@ struct Measured {
   double seconds = 0, spread = 0;  // of the time-stepping loop: median, and distance of the quartiles relative to it
 
   bool ok() const { return status == "ok"; }
+  bool left_out() const { return status.starts_with("left out"); }  // for the time it would take
 };
 
 inline constexpr int kOutputs = 20;  // output times after 0

@@ -25,6 +25,7 @@ class HalfImplicit final : public FixedSteps {
         to_and_fro_(run) {}
 
   double index3_scale() const override { return h_ * h_; }
+  bool backward_velocities() const override { return true; }
   PhaseError phase_error() const override { return {1.0 / 24}; }
   Status prepare() override { return ends_.prepare(); }
   void resize(double before) override { extrapolation_.resize(x_.z, h_ / before); }

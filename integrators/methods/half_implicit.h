@@ -9,7 +9,7 @@
 // spring and damper. It is symplectic Euler where M is constant and Q does not depend on v: in plane motion in rA and
 // reps. In rp, whose M depends on p, and in space, where Q holds the gyroscopic terms, energy drifts. In the first step
 // a and λ carry an error of order 1, as in every index-3 Euler scheme: there (v_1 − v_0)/h compares a velocity of the
-// scheme, h/2 off normal to the constraints, with one that is right.
+// scheme, h/2 off normal to the constraints, with one that is right. Given out are others (stepping/index1_output.h).
 #pragma once
 
 #include <memory>

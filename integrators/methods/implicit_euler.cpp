@@ -21,6 +21,7 @@ class ImplicitEuler final : public FixedSteps {
 
   bool damps() const override { return true; }
   double index3_scale() const override { return scale_.position; }
+  bool backward_velocities() const override { return true; }
   void resize(double before) override {
     scale_ = {1, h_, h_ * h_};
     extrapolation_.resize(x_.z, h_ / before);

@@ -56,6 +56,11 @@ class BlockChoice {
   // Where it was last looked at, rad: what bodies may turn by until it is to be looked at again.
   double good_for() const { return good_for_; }
   void add_aside(const RowSpace& space, std::vector<int>& rows) const;
+  // Calls function(row) for each of the block's rows, the model's numbers.
+  template <typename Function>
+  void for_each_row(const RowSpace& space, Function&& function) const {
+    for (int k = 0; k < static_cast<int>(rows_.size()); ++k) function(row_of(space, k));
+  }
   // After renew() has chosen others. λ, by row of the model: of rows kept before ← that of those kept now, which are
   // the same forces.
   void carry_over(const RowSpace& space, std::span<double> lambda);

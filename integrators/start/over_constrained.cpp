@@ -65,6 +65,12 @@ std::unique_ptr<Problem> OverConstrained::clone() const {
   return std::unique_ptr<Problem>(new OverConstrained(*this));
 }
 
+std::vector<Undetermined> OverConstrained::undetermined(double t, std::span<const BodyState> states) const {
+  RowChoice& rows = choice_->rows;
+  const std::vector<SparseEntries> null_vectors = rows.null_vectors(t, states);
+  return undetermined_by(null_vectors, false, model(), rows.space(), states);
+}
+
 void OverConstrained::keep() {
   kept_ = kept_->clone_without(choice_->rows.aside());
   kept_revision_ = choice_->revision;

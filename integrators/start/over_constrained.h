@@ -38,6 +38,8 @@ class OverConstrained final : public Problem {
   std::string apart() const;
   // Whether of its reactions the least can be told (reactions.h).
   bool has_least_reactions() const { return choice_->rows.has_null_vectors(); }
+  // Reactions that redundant rows leave undetermined where the bodies stand; none where null vectors are not known.
+  std::vector<Undetermined> undetermined(double t, std::span<const BodyState> states) const;
 
   std::string_view formulation() const override { return kept_->formulation(); }
   const Model& model() const override { return kept_->model(); }

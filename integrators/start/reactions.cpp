@@ -60,20 +60,11 @@ void Reactions::make_least() {
 
 std::vector<Undetermined> Reactions::undetermined() const {
   if (!whole_) return {};
-  const RowSpace& space = choice_->space();
-  LoadedGroups groups(problem_->model(), space, states_);
-  if (!least_) groups.add_all();
-  SparseEntries unit;
-  for (const SparseEntries& z : null_vectors_) {
-    unit.clear();
-    for (const auto& [row, value] : z) {
-      const auto k = std::ranges::lower_bound(space.rows(), row) - space.rows().begin();
-      unit.emplace_back(static_cast<int>(k), value * space.lengths()[index(k)]);
-    }
-    std::ranges::sort(unit);
-    groups.add(space.columns(), unit);
-  }
-  return groups.found();
+  return undetermined_by(null_vectors_, !least_, problem_->model(), choice_->space(), states_);
+}
+
+std::vector<int> Reactions::may_be_undetermined() const {
+  return whole_ ? choice_->groups_of_redundant_loops(problem_->model()) : std::vector<int>();
 }
 
 void Reactions::of_group(int group, Vector3& force, Vector3& moment) const {

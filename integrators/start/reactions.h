@@ -38,6 +38,8 @@ class Reactions {
   // Of the sample: the groups that have other reactions, too, which are as right. Where too many loops hang together,
   // all that are in a loop.
   std::vector<Undetermined> undetermined() const;
+  // Of any sample: the groups, ascending, that are in a loop with redundant rows.
+  std::vector<int> may_be_undetermined() const;
   // Force (N, global) and moment about the group's point (N m, global) on body j.
   void of_group(int group, Vector3& force, Vector3& moment) const;
 

@@ -71,6 +71,16 @@ bool RowChoice::has_null_vectors() const {
   return std::ranges::all_of(blocks_, &BlockChoice::has_null_vectors);
 }
 
+std::vector<int> RowChoice::groups_of_redundant_loops(const Model& model) const {
+  std::vector<char> any(model.groups.size(), 0);
+  for (const BlockChoice& block : blocks_)
+    block.for_each_row(space_, [&](int row) { any[index(model.rows[index(row)].group)] = 1; });
+  std::vector<int> groups;
+  for (std::size_t g = 0; g < any.size(); ++g)
+    if (any[g]) groups.push_back(static_cast<int>(g));
+  return groups;
+}
+
 std::vector<SparseEntries> RowChoice::null_vectors(double t, std::span<const BodyState> states) {
   space_.stand(t, states);
   std::vector<SparseEntries> vectors;

@@ -38,6 +38,8 @@ class RowChoice {
   // Whether there are null vectors for all rows set aside: no loops hang together that have more than
   // BlockChoice::kMostNull of them.
   bool has_null_vectors() const;
+  // Those with a row in a loop, or in loops that hang together, that has redundant ones; ascending.
+  std::vector<int> groups_of_redundant_loops(const Model& model) const;
   // Null vectors of Gᵀ by row of the model: one for each row set aside, but for loops that have none, and where the
   // kept rows are not independent or those set aside no combinations of them.
   std::vector<SparseEntries> null_vectors(double t, std::span<const BodyState> states);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -12,13 +11,6 @@
 #include "formulations/registry.h"
 
 namespace poinsot {
-
-std::vector<int> all_but(std::size_t count, const std::vector<int>& some) {
-  std::vector<int> all(count), others;
-  std::iota(all.begin(), all.end(), 0);
-  std::ranges::set_difference(all, some, std::back_inserter(others));
-  return others;
-}
 
 RowSpace::RowSpace(std::shared_ptr<const Model> model, std::vector<int> rows, Use use)
     : model_(std::move(model)),

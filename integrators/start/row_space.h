@@ -22,6 +22,7 @@
 
 #include "core/body_state.h"
 #include "core/index.h"
+#include "core/all_but.h"
 #include "core/model.h"
 #include "formulations/problem.h"
 #include "linsolve/csc_layout.h"
@@ -31,9 +32,6 @@ namespace poinsot {
 inline constexpr double kDependent = 1e-9, kIndependent = 1e-5;
 inline constexpr double kVelocityRow = 32;
 inline constexpr double kRoundings = 4, kFarthest = 10;
-
-// The numbers below `count` that are not among `some`; both ascending.
-std::vector<int> all_but(std::size_t count, const std::vector<int>& some);
 
 class RowSpace {
  public:

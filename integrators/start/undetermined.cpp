@@ -1,5 +1,6 @@
 #include "integrators/start/undetermined.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/index.h"
@@ -67,6 +68,35 @@ std::vector<Undetermined> LoadedGroups::found() const {
   for (const Undetermined& group : of_groups_)
     if (any_[index(group.group)]) some.push_back(group);
   return some;
+}
+
+std::vector<Undetermined> undetermined_by(const std::vector<SparseEntries>& null_vectors, bool all, const Model& model,
+                                          const RowSpace& space, std::span<const BodyState> states) {
+  LoadedGroups groups(model, space, states);
+  if (all) groups.add_all();
+  SparseEntries unit;
+  for (const SparseEntries& z : null_vectors) {
+    unit.clear();
+    for (const auto& [row, value] : z) {
+      const auto k = std::ranges::lower_bound(space.rows(), row) - space.rows().begin();
+      unit.emplace_back(static_cast<int>(k), value * space.lengths()[index(k)]);
+    }
+    std::ranges::sort(unit);
+    groups.add(space.columns(), unit);
+  }
+  return groups.found();
+}
+
+std::vector<Undetermined> together(const std::vector<Undetermined>& some, const std::vector<Undetermined>& others) {
+  std::vector<Undetermined> all = some;
+  for (const Undetermined& other : others) {
+    const auto place = std::ranges::lower_bound(all, other.group, {}, &Undetermined::group);
+    if (place == all.end() || place->group != other.group)
+      all.insert(place, other);
+    else
+      for (std::size_t c = 0; c < other.loaded.size(); ++c) place->loaded[c] = place->loaded[c] || other.loaded[c];
+  }
+  return all;
 }
 
 }  // namespace poinsot

@@ -46,4 +46,11 @@ class LoadedGroups {
   std::vector<char> any_;  // by group
 };
 
+// Of null vectors of Gᵀ by row of the model (RowChoice), where the space and the bodies stand; `all`: there are others
+// that are not known.
+std::vector<Undetermined> undetermined_by(const std::vector<SparseEntries>& null_vectors, bool all, const Model& model,
+                                          const RowSpace& space, std::span<const BodyState> states);
+// Of some where the mechanism stands and some elsewhere, both by group: all, each with the components of both.
+std::vector<Undetermined> together(const std::vector<Undetermined>& some, const std::vector<Undetermined>& others);
+
 }  // namespace poinsot

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <utility>
 
+#include "integrators/stepping/position_rows.h"
 #include "integrators/stepping/switch_times.h"
 #include "integrators/stepping/vectors.h"
+#include "integrators/stepping/velocity_rows.h"
 
 namespace poinsot {
 namespace {
@@ -18,9 +21,10 @@ constexpr double kFarNegligible = 1e-14;  // relative to the largest coordinate:
 constexpr double kMostCurved = 1e9;       // 1 over what is left of a row that counts as independent (kDependent)
 
 constexpr int kCorrections = 6;
-constexpr double kRounding = 1e-15;    // product of two corrections that leaves nothing to correct
-constexpr double kJump = 1e-9;         // relative to the largest coordinate: more than rounding of a time leads to
-constexpr double kNegligible = 1e-14;  // a correction of this size is the rounding of the coordinates
+constexpr double kRounding = 1e-15;  // product of two corrections that leaves nothing to correct
+constexpr double kJump = 1e-9;       // relative to the largest coordinate: more than rounding of a time leads to
+// A correction of this size is the rounding of the coordinates; relative to the largest one, where that is large.
+constexpr double kNegligible = 1e-14, kRoundingOfLargest = 8 * std::numeric_limits<double>::epsilon();
 // Relative to velocities. Where the gradient of a row vanishes its position is known to √ε only, and G v = ν to so
 // much: a correction of a hundredth for what is off by less is made of rounding.
 constexpr double kUnseen = 1e-7, kOther = 0.01;
@@ -41,6 +45,7 @@ Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& stati
     : problem_(problem),
       aside_(std::move(aside)),
       system_(problem, linear, MatrixKind::consistent, statistics, clock),
+      has_velocity_rows_(!velocity_rows(problem).empty()),
       parts_(problem),
       branches_(parts_.count()),
       nv_(static_cast<std::size_t>(problem.nv())),
@@ -56,6 +61,8 @@ Consistent::Consistent(Problem& problem, LinearSystem& linear, Statistics& stati
   std::uniform_real_distribution<double> uniform(0.5, 1);
   for (Eigen::Index k = problem.nv(); k < off_by_one_.size(); ++k) off_by_one_[k] = uniform(random);
 }
+
+Consistent::~Consistent() = default;
 
 Status Consistent::prepare() {
   Status status = system_.prepare();
@@ -94,6 +101,21 @@ Status Consistent::velocity_correction(double t) {
   off_ = largest(rows());
   for (double& x : rows()) x = -x;
   return system_.solve(t, span(rhs_));
+}
+
+Status Consistent::project_position(double t, std::span<double> q, std::span<double> moved) {
+  if (!has_velocity_rows_) return onto_positions(t, q, moved, HUGE_VAL);
+  if (Status status = onto_position_rows(t, q, moved); !status.ok()) return status;
+  problem_.set_velocity(std::span<const double>(span(zeros_)).first(nv_));
+  return factor(t);
+}
+
+Status Consistent::onto_position_rows(double t, std::span<double> q, std::span<double> moved) {
+  if (!position_rows_ || !position_rows_->are_those_of(problem_))
+    position_rows_ = std::make_unique<PositionRows>(problem_);
+  const Status status = position_rows_->project_position(t, q, moved);
+  problem_.set_position(t, q);
+  return status;
 }
 
 Status Consistent::onto_positions(double t, std::span<double> q, std::span<double> moved, double before) {
@@ -176,12 +198,21 @@ Status Consistent::project(State& at, bool& moved) {
   moved = false;
   moved_by_.setZero();
   double first = 0, before = HUGE_VAL;
+  const double rounding = std::max(kNegligible, kRoundingOfLargest * largest(span(at.q)));
   for (int k = 0;; ++k) {
     if (Status status = position_correction(at.t); !status.ok()) return status;
     const double correction = largest(moves());
-    if (k == 0 && correction <= kNegligible) break;
+    if (k == 0 && correction <= rounding) break;
     if (k == 0 && usual_steepness_ > 0 && correction > kSteep * usual_steepness_ * off_) {
       look(steepness(at.t));
+      if (has_velocity_rows_) {
+        if (Status status = onto_position_rows(at.t, span(at.q), span(moved_by_, 0, problem_.nv())); !status.ok())
+          return status;
+        stand(at);
+        moved = true;
+        first = largest(span(moved_by_));
+        break;
+      }
       if (Status status = position_correction(at.t); !status.ok()) return status;
     }
     if (k == kCorrections || !(correction < before)) {
@@ -193,7 +224,7 @@ Status Consistent::project(State& at, bool& moved) {
     stand(at);
     moved = true;
     first = std::max(first, correction);
-    if (first * correction * amplification_ <= kRounding) break;
+    if (first * correction * amplification_ <= kRounding || correction <= rounding) break;
     before = correction;
   }
   for (int k = 0; k < kCorrections; ++k) {

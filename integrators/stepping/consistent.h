@@ -23,12 +23,15 @@
 
 namespace poinsot {
 
+class PositionRows;
+
 class Consistent {
  public:
   // Part of a run: counted and timed there.
   Consistent(Problem& problem, LinearSystem& linear, Statistics& statistics, PhaseClock& clock);
   // Beside a run: with a linear system of its own, counted nowhere.
   Consistent(Problem& problem, const LinearChoice& choice);
+  ~Consistent();
 
   // Analyses the pattern. Where steps must not allocate, call it before the clock starts; else the first factorization
   // does.
@@ -42,9 +45,7 @@ class Consistent {
   Status accelerations(double t, std::span<double> z);
   // Moves q onto Φ = 0 to rounding; the problem stands at the result. Fails with inconsistent_state where it cannot.
   // `moved`, where it is asked for, is what it adds up its corrections in.
-  Status project_position(double t, std::span<double> q, std::span<double> moved = {}) {
-    return onto_positions(t, q, moved, HUGE_VAL);
-  }
+  Status project_position(double t, std::span<double> q, std::span<double> moved = {});
   // The same from nearby the position whose factorization is at hand: that leads most of the way.
   Status project_nearby(double t, std::span<double> q) { return onto_positions(t, q, {}, draw_near(t, q)); }
   // The problem stands at (t, q) and (·, v); v and the problem are moved onto G v = ν.
@@ -138,6 +139,8 @@ class Consistent {
   double draw_near(double t, std::span<double> q);
   // `before`: the size of the correction that led to q.
   Status onto_positions(double t, std::span<double> q, std::span<double> moved, double before);
+  // The same by the rows of positions alone; nothing is factored.
+  Status onto_position_rows(double t, std::span<double> q, std::span<double> moved);
   // δq and δv for the constraints' residuals at the problem's point, in moves().
   Status position_correction(double t);
   Status velocity_correction(double t);
@@ -148,8 +151,10 @@ class Consistent {
   std::unique_ptr<Aside> aside_;
   StepSystem system_;
   bool prepared_ = false;
-  static constexpr int kSeldom = 4;     // steps, of which one is looked at where no singular position is near
-  static constexpr double kSteep = 30;  // times the usual steepness: a singular position is near
+  const bool has_velocity_rows_;
+  std::unique_ptr<PositionRows> position_rows_;  // once they are needed
+  static constexpr int kSeldom = 4;              // steps, of which one is looked at where no singular position is near
+  static constexpr double kSteep = 30;           // times the usual steepness: a singular position is near
   double steepness_ = 0, usual_steepness_ = 0, amplification_ = 1, steeper_ = 1;
   double least_steepness_ = HUGE_VAL;
   bool beside_singular_ = false;

@@ -113,7 +113,7 @@ class ControlledSteps {
   // Of a step that failed or is too inaccurate: with what the next one is tried.
   Status reject(const Aim& aim, const Status& status, double error) {
     if (status.failure == Failure::refused) return status;
-    ++course_.statistics().rejected_steps;
+    if (++course_.statistics().rejected_steps > course_.most_rejected()) return step_too_small(aim.from, h_, status);
     if (const double seen = course_.switched(status, error, aim.to, method_); seen < aim.to) {
       h_ = seen - aim.from;
       cut_ = true;

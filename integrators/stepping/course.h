@@ -125,6 +125,7 @@ class Course {
   // See Run::singular_for; 0 once the run is under way.
   double singular_for(double t) const { return t > 0 ? 0 : run_.singular_for; }
   Statistics& statistics() { return run_.statistics; }
+  std::int64_t most_rejected() const { return run_.most_rejected; }
 
   const bool every_step;
   SampleTimes times;

@@ -46,7 +46,7 @@ Status FixedSteps::advance(double t, bool sampled) {
 }
 
 Status FixedSteps::reach_or_redo(double t, bool sampled, int halvings) {
-  if (divides_ || chooses_ || jumps_.steps_may_fail()) z_began_ = x_.z;
+  if (divides_ || chooses_ || jumps_.steps_may_fail() || anew_) z_began_ = x_.z;
   const double began = x_.t;
   const auto failed = [&](const Status& status) { return may_be_too_long(status.failure) && x_.t == began; };
   on_branch_ = OnBranch::asked;
@@ -139,6 +139,7 @@ Status FixedSteps::reach_in_halves(double t, double half, bool sampled, int halv
 // Of the rows or coordinates of where the next step begins.
 void FixedSteps::rewrite() {
   if (start_ == Start::usual) start_ = Start::rewritten;
+  anew_ = true;
   rests_.forget();
 }
 
@@ -167,6 +168,7 @@ bool FixedSteps::settles_beginning() {
   SingularEnds ends(problem_, settings_);
   if (!settle(ends, *problem, x_.v, x_)) return false;
   start_ = Start::limit;
+  anew_ = true;
   return true;
 }
 
@@ -179,6 +181,7 @@ std::vector<BodyState> FixedSteps::bodies() {
 void FixedSteps::set_step(double h) {
   const double before = std::exchange(h_, h);
   resize(before);
+  anew_ = true;
 }
 
 }  // namespace poinsot

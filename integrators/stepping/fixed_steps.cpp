@@ -7,6 +7,7 @@
 #include "core/interruption.h"
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/energy_balance.h"
+#include "integrators/stepping/velocity_rows.h"
 
 namespace poinsot {
 namespace {
@@ -28,11 +29,13 @@ FixedSteps::FixedSteps(const Run& run)
       v_n_(run.state.v),
       discrete_(run.problem.has_discrete_state()),
       has_alternates_(has_alternates(run.problem.model())),
+      has_velocity_rows_(!velocity_rows(run.problem).empty()),
       chooses_(run.problem.model_rows().size() < run.problem.model().rows.size()),
       branch_(run.problem),
       jump_(first_jump(run.problem.model(), run.settings.end)),
       driver_jumps_(run.problem.model(), run.settings.end),
       rests_(run.problem),
+      gaps_(run.problem, run.settings),
       still_(run.problem, run.tell),
       damping_(run),
       singular_ends_(run.problem, run.settings),
@@ -49,6 +52,7 @@ Status FixedSteps::march() {
   Status status = begin();
   if (status.ok()) status = measure_rotation(problem_, 0);
   settles_ = settings_.retry && integrates();
+  if (integrates()) gaps_.begin(problem_, x_);
   branch_.begin(x_.a());
   if (integrates() && passed_.due(h_)) passed_.look(problem_, x_, h_);
   if (integrates() && turned_.due(h_)) turned_.look(problem_, x_, h_);
@@ -78,6 +82,7 @@ Status FixedSteps::march() {
     if (status.ok() && run_.energy && run_.energy->due()) run_.energy->look(last_seen(), x_.v);
     if (n % kStillSteps == 0 && status.ok() && integrates()) still_.look(problem_, x_);
     if (status.ok() && integrates() && rests_.due()) status = rests_.look(problem_, settings_.linear(), x_);
+    if (status.ok() && integrates() && gaps_.due(rotation_, x_.v, h_)) status = gaps_.look(last_seen(), x_);
     if (status.ok() && sampled) status = give_out(*standing_);
   }
   finish(clock_, run_.statistics);
@@ -120,6 +125,7 @@ Status FixedSteps::reach(double t, bool sampled) {
   if (!struck_.none() && integrates() && struck_.due(x_.v, v_n_)) struck_.look(last_seen(), x_, q_n_, v_n_, h_);
   if (integrates() && !jumps_.none()) look_for_jumps();
   start_ = settled ? Start::limit : led_ ? Start::rewritten : Start::usual;
+  began_anew_ = std::exchange(anew_, start_ != Start::usual);
   rows_asked_ = false;
   ++run_.statistics.steps;
   const bool due = discrete_ || (has_alternates_ && last_seen().exchanges_rows());
@@ -144,7 +150,9 @@ Status FixedSteps::give_out(Problem& problem) {
   clock_.pause();  // what is computed for the output alone is no part of a step
   if (last) run_.systems.let_go();
   const State* given = &x_;
-  if (!settled && scale > 0) given = &output_.choose(problem, x_, scale, last, run_.statistics);
+  if (!settled && scale > 0)
+    given = &output_.choose(problem, x_, scale, last, began_anew_ && backward_velocities() ? &z_began_ : nullptr,
+                            run_.statistics);
   if (!settled && settles_ && singular_ends_.doubts(problem, *given, v_n_, h_)) {
     given_ = *given;
     if (settle(singular_ends_, problem, v_n_, *given_)) given = &*given_;

@@ -15,6 +15,7 @@
 #include "integrators/stepping/branch.h"
 #include "integrators/stepping/coarse_steps.h"
 #include "integrators/stepping/driver_jumps.h"
+#include "integrators/stepping/gap_watch.h"
 #include "integrators/stepping/index1_output.h"
 #include "integrators/stepping/law_jumps.h"
 #include "integrators/stepping/numerical_damping.h"
@@ -73,6 +74,9 @@ class FixedSteps {
   // δq/δa of a step whose (a, λ) are solved from Φ = 0, by which rounding is magnified and better may be given out;
   // else 0.
   virtual double index3_scale() const { return 0; }
+  // Whether its velocities are differences of positions: half a step behind, by more of a motion that turns. The step
+  // that begins with others has an acceleration and multipliers that no step makes smaller.
+  virtual bool backward_velocities() const { return false; }
   // Whether velocities go on from those of steps before, by which branches are told apart.
   virtual bool integrates() const { return true; }
   // Whether a step that fails may be done in parts, of other lengths than the rest.
@@ -150,6 +154,7 @@ class FixedSteps {
   // Whether x_ is to stand as the end of its step; as the limit of states beside it where it was `settled`.
   Status examine_end(bool& settled);
   Status settle_end(bool& settled);
+  bool settle_step(State& at);
   bool settle(SingularEnds& ends, Problem& problem, const Vector& v_n, State& at);
   void look_for_jumps();
   Status measure_rotation(Problem& problem, double t);
@@ -158,12 +163,15 @@ class FixedSteps {
 
   const bool discrete_;        // something is to be brought up to date after every step
   const bool has_alternates_;  // or where rows stand in for others
-  const bool chooses_;         // rows among those that are redundant
+  const bool has_velocity_rows_;
+  const bool chooses_;  // rows among those that are redundant
   Start start_ = Start::usual;
   OnBranch on_branch_ = OnBranch::asked;
+  bool anew_ = true;             // the step under way begins with a velocity that is none of its scheme's
+  bool began_anew_ = false;      // so did the last
   bool rows_asked_ = false;      // other rows were asked for where the step under way begins
   Problem* standing_ = nullptr;  // the problem that stands at x_
-  Vector z_began_;               // of a step that may be done again, where it began
+  Vector z_began_;               // of a step that may be done again or begins anew, where it began
   double shortest_ = 0;          // of the steps done
   double rotation_ = 0;          // of the last step, the largest of a body
   double rotation_began_ = 0;    // at the start
@@ -172,6 +180,7 @@ class FixedSteps {
   const PositionJump jump_;  // up to which steps go
   DriverJumps driver_jumps_;
   RestWatch rests_;
+  GapWatch gaps_;
   StillWatch still_;
   NumericalDamping damping_;
   std::optional<CoarseSteps> coarse_;

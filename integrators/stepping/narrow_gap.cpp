@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "integrators/stepping/vectors.h"
+#include "integrators/stepping/velocity_rows.h"
 
 namespace poinsot {
 namespace {
@@ -19,7 +20,11 @@ constexpr double kRoundingOfGaps = 1e-14;  // of Φ, relative to the largest coo
 }  // namespace
 
 NarrowGap::NarrowGap(Problem& problem, Consistent& consistent)
-    : problem_(problem), consistent_(consistent), parts_(problem), rows_change_(has_alternates(problem.model())) {}
+    : problem_(problem),
+      consistent_(consistent),
+      parts_(problem),
+      rows_change_(has_alternates(problem.model())),
+      has_velocity_rows_(!velocity_rows(problem).empty()) {}
 
 // δ of w, and the next w, which comes nearer to the one that leads out the farthest; both by mechanism.
 bool NarrowGap::find_way(double t, Vector& w, Vector& way) {
@@ -154,6 +159,7 @@ bool NarrowGap::stand_between(const Path& path, double s, bool first) {
     e_ = 0;
     for (Eigen::Index i = 0; i < nc; ++i)
       if (parts_.of_row(problem_, static_cast<std::size_t>(i)) == part_) e_ += w_here_[i] * rows_[i];
+    if (has_velocity_rows_in_it(w_here_)) e_ = 0;
     if (k == kCorrections) break;
     rhs_.setZero(nv + nc);
     for (Eigen::Index i = 0; i < nc; ++i)
@@ -164,6 +170,19 @@ bool NarrowGap::stand_between(const Path& path, double s, bool first) {
     q_.swap(q_moved_);
   }
   return true;
+}
+
+// Whether what w leaves of the constraints, wᵀG, would be far more without its velocity rows. These keep no branches of
+// positions apart.
+bool NarrowGap::has_velocity_rows_in_it(const Vector& w) {
+  constexpr double kFarMore = 10;
+  if (!has_velocity_rows_) return false;
+  Vector of_velocities = Vector::Zero(w.size()), force(problem_.nv());
+  for (const int k : velocity_rows(problem_)) of_velocities[k] = w[k];
+  problem_.constraint_forces(span(std::as_const(of_velocities)), span(force));
+  const double theirs = force.norm();
+  problem_.constraint_forces(span(w), span(force));
+  return theirs > kFarMore * force.norm();
 }
 
 double NarrowGap::slope(std::size_t part, const Vector& way) {
@@ -185,7 +204,9 @@ bool NarrowGap::is_gap(const Path& path) {
     return by_orientation_ ? consistent_.orientation() != began_ : product(part_, way_here_, way_began_) < 0;
   };
   if (!stand_between(path, 1, false)) return true;
-  if (!beyond()) return false;
+  if (!beyond()) {  // it ends elsewhere than the step does, or that began in the position
+    return path.to && (!by_orientation_ || began_ == orientation_);
+  }
   const double length = moved_ * (path.to ? 1 : 2), steep = slope(part_, way_here_);
   double low = 0, high = 1;
   for (int k = 0; k < kBisections; ++k) {

@@ -14,7 +14,8 @@
 //
 //   e = wᵀΦ
 //
-// is 0 where branches cross, else as much as keeps them apart. A step over a gap is to be done in shorter ones, which
+// is 0 where branches cross, else as much as keeps them apart; of velocity rows (pfaffian), which keep none apart, the
+// slope |δ|⁻¹ alone is to come down to rounding. A step over a gap is to be done in shorter ones, which
 // come to see it.
 #pragma once
 
@@ -61,11 +62,13 @@ class NarrowGap {
   double move_along(const Path& path, double s);
   bool stand_between(const Path& path, double s, bool first);
   bool is_gap(const Path& path);
+  bool has_velocity_rows_in_it(const Vector& w);
 
   Problem& problem_;
   Consistent& consistent_;
   const Parts parts_;
   const bool rows_change_;
+  const bool has_velocity_rows_;
   int forgotten_ = -1;             // what Consistent had when all of this was found
   std::uint64_t orientation_ = 0;  // at the end of the last step; 0: not known
   std::uint64_t began_ = 0;        // where a path begins

@@ -1,0 +1,195 @@
+#include "integrators/stepping/gap_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "core/all_but.h"
+#include "core/index.h"
+#include "integrators/stepping/consistent.h"
+#include "integrators/stepping/singular_position.h"
+#include "integrators/stepping/vectors.h"
+
+namespace poinsot {
+namespace {
+
+constexpr std::size_t kMostBodies = 1000;
+constexpr double kTurnedMost = 0.3,
+                 kTurnedLeast = 0.03;  // rad, between, where constraints are as steep as at the least, and at the most
+constexpr double kSteepTimes = 8;      // times the least: a singular position may be near
+constexpr double kOtherVelocities = 0.3;  // of their size, as far apart on two branches
+constexpr int kMostUnjudged = 3;
+
+// Whether a mechanism of the scene may come to a singular position at all.
+bool may_be_singular(const Model& model) {
+  const int ground = static_cast<int>(model.bodies.size());
+  std::vector<int> parent(model.bodies.size() + 1);
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int body) {
+    while (parent[index(body)] != body) body = parent[index(body)] = parent[index(parent[index(body)])];
+    return body;
+  };
+  std::set<std::pair<int, int>> joined;
+  for (const Group& group : model.groups) {
+    const int i = group.i == kGround ? ground : group.i, j = group.j == kGround ? ground : group.j;
+    const std::pair<int, int> pair = std::minmax(i, j);
+    if (group.kind == GroupKind::joint) {
+      if (root(i) == root(j)) return true;
+      parent[index(root(i))] = root(j);
+      joined.insert(pair);
+    } else if (group.kind == GroupKind::constraint || group.type != "angle" || !joined.contains(pair)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Twice the kinetic energy of the difference of velocities, of the bodies of one mechanism.
+double apart(const Model& model, const Parts& parts, std::size_t part, std::span<const BodyState> x,
+             std::span<const BodyState> y) {
+  double sum = 0;
+  for (std::size_t b = 0; b < x.size(); ++b) {
+    if (parts.of_body(static_cast<int>(b)) != part) continue;
+    const Body& body = model.bodies[b];
+    const Vector3 v = x[b].rd - y[b].rd, w = x[b].w - y[b].w;
+    sum += body.mass * v.squaredNorm() + w.dot(body.inertia * w);
+  }
+  return sum;
+}
+
+std::vector<BodyState> bodies_at(Problem& problem, double t, const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
+  std::vector<BodyState> states(index(problem.bodies()));
+  problem.set_position(t, span(q));
+  problem.set_velocity(span(v));
+  problem.to_bodies(std::vector<double>(index(problem.nv()), 0.0), states);
+  return states;
+}
+
+// The same motion from `state` on, to t; consistent to begin with. Given up where that takes unusually long.
+Status do_again(Problem& problem, const Settings& settings, State& state, double t) {
+  constexpr std::int64_t kMostRejected = 300;
+  constexpr double kRtol = 1e-7;
+  Settings again = settings;
+  again.integrator = "dop853";
+  again.rtol = kRtol;
+  again.atol.reset();
+  again.end = again.every = t;
+  Consistent consistent(problem, settings.linear());
+  consistent.stand(state);
+  if (Status status = consistent.complete(state); !status.ok()) return status;
+  LinearSystems systems(settings.linear());
+  Statistics statistics;
+  const Observer observe;
+  const Tell tell = [](const std::string&) {};
+  Run run{problem, systems, again, state, observe, statistics, tell};
+  run.most_rejected = kMostRejected;
+  return integrators().require(again.integrator).make()->run(run);
+}
+
+}  // namespace
+
+GapWatch::GapWatch(const Problem& problem, const Settings& settings)
+    : settings_(settings),
+      parts_(problem),
+      looks_(problem.model().bodies.size() <= kMostBodies && may_be_singular(problem.model())),
+      length_(longest_arm(problem.model())),
+      due_(kTurnedLeast),
+      least_(HUGE_VAL) {}
+
+void GapWatch::begin(const Problem& problem, const State& at) {
+  if (!looks_) return;
+  q_ = q_steepest_ = at.q;
+  v_ = at.v;
+  prepare(problem);
+  if (looks_) (void)look(problem, at);
+}
+
+void GapWatch::prepare(const Problem& problem) {
+  own_ = problem.clone_without(all_but(problem.model().rows.size(), problem.model_rows()));
+  revision_ = problem.revision();
+  consistent_.emplace(*own_, settings_.linear());
+  looks_ = consistent_->prepare().ok();
+}
+
+bool GapWatch::due(double turned, const Eigen::VectorXd& v, double h) {
+  if (!looks_ || unjudged_ == kMostUnjudged) return false;
+  double speed = 0;
+  for (Eigen::Index b = 0; b < v.size(); b += parts_.per_body()) speed = std::max(speed, v.segment<3>(b).norm());
+  turned_ += length_ > 0 ? std::max(turned, h * speed / length_) : turned;
+  return turned_ >= due_;
+}
+
+double GapWatch::steepness(const Problem& problem, const State& at) {
+  if (revision_ != problem.revision()) prepare(problem);
+  own_->set_position(at.t, span(at.q));
+  own_->set_velocity(span(at.v));
+  return consistent_->factor(at.t).ok() ? consistent_->steepness(at.t) : HUGE_VAL;
+}
+
+Status GapWatch::look(const Problem& problem, const State& at) {
+  turned_ = 0;
+  const double here = steepness(problem, at);
+  least_ = std::min(least_, here);
+  due_ = std::clamp(kTurnedMost * least_ / here, kTurnedLeast, kTurnedMost);
+  if (!(here < kSteepTimes * least_)) {
+    steep_ = known_;
+    if (here >= steepest_) {
+      steepest_ = here;
+      t_steepest_ = at.t;
+      q_steepest_ = at.q;
+    }
+    return {};
+  }
+  const Status status = std::exchange(steep_, false) ? judge(problem, at) : Status{};
+  steepest_ = 0;
+  t_ = at.t;
+  q_ = at.q;
+  v_ = at.v;
+  known_ = true;
+  return status;
+}
+
+Status GapWatch::judge(const Problem& problem, const State& at) {
+  const std::unique_ptr<Problem> own =
+      problem.clone_without(all_but(problem.model().rows.size(), problem.model_rows()));
+  State again(*own);
+  again.t = t_;
+  again.q = q_;
+  again.v = v_;
+  const std::vector<BodyState> began = bodies_at(*own, t_, q_, v_), now = bodies_at(*own, at.t, at.q, at.v);
+  if (!do_again(*own, settings_, again, at.t).ok()) {
+    ++unjudged_;
+    return {};
+  }
+  const std::vector<BodyState> right = bodies_at(*own, again.t, again.q, again.v), rest(now.size());
+  for (std::size_t part = 0; part < parts_.count(); ++part) {
+    const auto square = [&](const std::vector<BodyState>& x, const std::vector<BodyState>& y) {
+      return apart(problem.model(), parts_, part, x, y);
+    };
+    const double size = std::max({square(began, rest), square(now, rest), square(right, rest)});
+    const double share = size > 0 ? std::sqrt(square(now, right) / size) : 0;
+    if (share > kOtherVelocities) return gone_over(problem, at, share);
+  }
+  return {};
+}
+
+Status GapWatch::gone_over(const Problem& problem, const State& at, double share) {
+  const int rows = static_cast<int>(problem.model_rows().size());
+  const int row = most_dependent_row(*own_, rows, t_steepest_, span(q_steepest_)).row;
+  const std::string where = row < 0 ? "" : fmt::format(" by {}", problem.describe_unknown(problem.nv() + row));
+  return with_settings(
+      {Failure::singular_position, at.t,
+       fmt::format("between t = {:.9g} s and t = {:.9g} s, beside a singular position of the constraints{}, the steps "
+                   "have gone over to another branch than the motion belongs to: velocities are off by {:.2g} of their "
+                   "size from those of error control",
+                   t_, at.t, where, share)},
+      "try another step or dop853");
+}
+
+}  // namespace poinsot
