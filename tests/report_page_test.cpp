@@ -15,6 +15,7 @@
 #include "bench/report/page.h"
 #include "bench/report/ratios.h"
 #include "bench/report/svg_panel.h"
+#include "bench/study/motion.h"
 
 namespace poinsot::report {
 namespace {
@@ -285,7 +286,7 @@ Results chart(double factor, double spread, const std::string& last = "left out,
   for (const auto& [step, seconds] : {std::pair{"0.01", 1.0}, {"0.005", 2.0}, {"0.0025", 4.0}, {"0.00125", 0.0}}) {
     std::vector<std::string> row{"rA", "rattle", "auto", "step", step, seconds > 0 ? "ok" : last};
     row.resize(table.header.size());
-    for (const std::size_t error : {6, 7, 8, 9}) row[error] = "1e-3";
+    for (std::size_t k = 0; k < study::kQuantities.size(); ++k) row[6 + k] = "1e-3";
     row[13] = fmt::format("{}", factor * seconds);
     row[14] = fmt::format("{}", seconds == 1.0 ? 10 * spread : spread);
     table.rows.push_back(row);

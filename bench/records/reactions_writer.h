@@ -2,8 +2,8 @@
 // moment on body j at its point, global, N and N m.
 //
 // Where redundant rows leave some of them undetermined, columns behind these say of which: of each joint, driver and
-// constraint in a loop with such rows "NAME.fx.undetermined" and so on, 1 where the component is not the only one at the
-// sample, others being as right, 0 where it is.
+// constraint in a loop with such rows "NAME.fx.undetermined" and so on, 1 where the component is not the only one at
+// the sample, others being as right, 0 where it is.
 #pragma once
 
 #include <optional>

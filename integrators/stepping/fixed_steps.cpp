@@ -85,6 +85,7 @@ Status FixedSteps::march() {
     if (status.ok() && integrates() && gaps_.due(rotation_, x_.v, h_)) status = gaps_.look(last_seen(), x_);
     if (status.ok() && sampled) status = give_out(*standing_);
   }
+  if (status.ok() && integrates()) status = gaps_.end(last_seen(), x_);
   finish(clock_, run_.statistics);
   if (status.ok() && damps()) damping_.say(run_, h_);
   if (status.ok() && coarse_) coarse_->say(run_, h_);

@@ -20,9 +20,10 @@ namespace poinsot {
 namespace {
 
 constexpr std::size_t kMostBodies = 1000;
-constexpr double kTurnedMost = 0.3,
-                 kTurnedLeast = 0.03;  // rad, between, where constraints are as steep as at the least, and at the most
-constexpr double kSteepTimes = 8;      // times the least: a singular position may be near
+// From one look to the next, where constraints are as steep as at the least: rad, and a part of the run. And how much
+// sooner at the most.
+constexpr double kTurnedMost = 0.5, kLooks = 20, kMuchSooner = 0.06;
+constexpr double kSteepTimes = 8;         // times the least: a singular position may be near
 constexpr double kOtherVelocities = 0.3;  // of their size, as far apart on two branches
 constexpr int kMostUnjudged = 3;
 
@@ -51,8 +52,8 @@ bool may_be_singular(const Model& model) {
 }
 
 // Twice the kinetic energy of the difference of velocities, of the bodies of one mechanism.
-double apart(const Model& model, const Parts& parts, std::size_t part, std::span<const BodyState> x,
-             std::span<const BodyState> y) {
+double twice_kinetic(const Model& model, const Parts& parts, std::size_t part, std::span<const BodyState> x,
+                     std::span<const BodyState> y) {
   double sum = 0;
   for (std::size_t b = 0; b < x.size(); ++b) {
     if (parts.of_body(static_cast<int>(b)) != part) continue;
@@ -99,7 +100,7 @@ GapWatch::GapWatch(const Problem& problem, const Settings& settings)
       parts_(problem),
       looks_(problem.model().bodies.size() <= kMostBodies && may_be_singular(problem.model())),
       length_(longest_arm(problem.model())),
-      due_(kTurnedLeast),
+      of_run_(std::min(1.0, kLooks * settings.step / settings.end)),
       least_(HUGE_VAL) {}
 
 void GapWatch::begin(const Problem& problem, const State& at) {
@@ -120,9 +121,10 @@ void GapWatch::prepare(const Problem& problem) {
 bool GapWatch::due(double turned, const Eigen::VectorXd& v, double h) {
   if (!looks_ || unjudged_ == kMostUnjudged) return false;
   double speed = 0;
-  for (Eigen::Index b = 0; b < v.size(); b += parts_.per_body()) speed = std::max(speed, v.segment<3>(b).norm());
-  turned_ += length_ > 0 ? std::max(turned, h * speed / length_) : turned;
-  return turned_ >= due_;
+  for (Eigen::Index b = 0; b < v.size(); b += parts_.per_body()) speed = std::max(speed, v.segment<3>(b).squaredNorm());
+  if (length_ > 0) turned = std::max(turned, h * std::sqrt(speed) / length_);
+  way_ += std::max(turned / kTurnedMost, of_run_);
+  return way_ >= due_;
 }
 
 double GapWatch::steepness(const Problem& problem, const State& at) {
@@ -133,10 +135,10 @@ double GapWatch::steepness(const Problem& problem, const State& at) {
 }
 
 Status GapWatch::look(const Problem& problem, const State& at) {
-  turned_ = 0;
+  way_ = 0;
   const double here = steepness(problem, at);
   least_ = std::min(least_, here);
-  due_ = std::clamp(kTurnedMost * least_ / here, kTurnedLeast, kTurnedMost);
+  due_ = std::clamp(least_ / here, kMuchSooner, 1.0);
   if (!(here < kSteepTimes * least_)) {
     steep_ = known_;
     if (here >= steepest_) {
@@ -146,16 +148,32 @@ Status GapWatch::look(const Problem& problem, const State& at) {
     }
     return {};
   }
-  const Status status = std::exchange(steep_, false) ? judge(problem, at) : Status{};
+  if (std::exchange(steep_, false)) {
+    if (const double share = judge(problem, at); share > kOtherVelocities) {
+      if (suspected_) return gone_over(problem, at, share);
+      suspected_ = steep_ = true;
+      return {};
+    }
+  }
+  suspected_ = false;
   steepest_ = 0;
   t_ = at.t;
   q_ = at.q;
   v_ = at.v;
   known_ = true;
-  return status;
+  return {};
 }
 
-Status GapWatch::judge(const Problem& problem, const State& at) {
+Status GapWatch::end(const Problem& problem, const State& at) {
+  if (!suspected_) return {};
+  const double share = judge(problem, at);
+  return share > kOtherVelocities ? gone_over(problem, at, share) : Status{};
+}
+
+// By how much of their size velocities are others than those of error control; 0 where nothing moves, or that is not
+// known. The largest of a mechanism.
+double GapWatch::judge(const Problem& problem, const State& at) {
+  constexpr double kMoves = 1e-4;  // arms of the mechanism, meanwhile
   const std::unique_ptr<Problem> own =
       problem.clone_without(all_but(problem.model().rows.size(), problem.model_rows()));
   State again(*own);
@@ -165,18 +183,24 @@ Status GapWatch::judge(const Problem& problem, const State& at) {
   const std::vector<BodyState> began = bodies_at(*own, t_, q_, v_), now = bodies_at(*own, at.t, at.q, at.v);
   if (!do_again(*own, settings_, again, at.t).ok()) {
     ++unjudged_;
-    return {};
+    return 0;
   }
   const std::vector<BodyState> right = bodies_at(*own, again.t, again.q, again.v), rest(now.size());
+  double share = 0;
   for (std::size_t part = 0; part < parts_.count(); ++part) {
+    double fastest = 0;
+    for (std::size_t b = 0; b < now.size(); ++b)
+      if (parts_.of_body(static_cast<int>(b)) == part)
+        for (const std::vector<BodyState>* x : {&began, &now, &right})
+          fastest = std::max({fastest, (*x)[b].rd.norm(), length_ * (*x)[b].w.norm()});
+    if (!(fastest * (at.t - t_) > kMoves * length_)) continue;
     const auto square = [&](const std::vector<BodyState>& x, const std::vector<BodyState>& y) {
-      return apart(problem.model(), parts_, part, x, y);
+      return twice_kinetic(problem.model(), parts_, part, x, y);
     };
     const double size = std::max({square(began, rest), square(now, rest), square(right, rest)});
-    const double share = size > 0 ? std::sqrt(square(now, right) / size) : 0;
-    if (share > kOtherVelocities) return gone_over(problem, at, share);
+    if (size > 0) share = std::max(share, std::sqrt(square(now, right) / size));
   }
-  return {};
+  return share;
 }
 
 Status GapWatch::gone_over(const Problem& problem, const State& at, double share) {
@@ -185,10 +209,11 @@ Status GapWatch::gone_over(const Problem& problem, const State& at, double share
   const std::string where = row < 0 ? "" : fmt::format(" by {}", problem.describe_unknown(problem.nv() + row));
   return with_settings(
       {Failure::singular_position, at.t,
-       fmt::format("between t = {:.9g} s and t = {:.9g} s, beside a singular position of the constraints{}, the steps "
-                   "have gone over to another branch than the motion belongs to: velocities are off by {:.2g} of their "
-                   "size from those of error control",
-                   t_, at.t, where, share)},
+       fmt::format(
+           "between t = {:.9g} s and t = {:.9g} s, beside a singular position of the constraints{}, the steps "
+           "have gone over to another branch than the motion belongs to, or are too long to follow it: velocities "
+           "are off by {:.2g} of their size from those of error control",
+           t_, at.t, where, share)},
       "try another step or dop853");
 }
 

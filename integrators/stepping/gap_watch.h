@@ -3,11 +3,11 @@
 //
 // Constraints hold on the other branch as well, and velocities go straight on to it, so no step shows it. But the
 // constraints are steep there (Consistent::steepness). How steep is looked at, at the price of a factorization,
-// whenever bodies have turned, or moved in arms of the mechanism, by a third of a radian, and more often where it is
-// steeper than elsewhere: about as many times less far a singular position may be. Once it has been several times its
-// least, and is not any more, what lies between is done again under error control, which does not go over gaps: where
-// velocities come to be altogether others, the steps have left the branch. Where error control finds no way, either,
-// nothing is said.
+// whenever bodies have turned, or moved in arms of the mechanism, by half a radian, or a twentieth of the run is over,
+// and more often where it is steeper than elsewhere: about as many times less far a singular position may be. Once it
+// has been several times its least, and is not any more, what lies between is done again under error control, which
+// does not go over gaps: where velocities come to be altogether others, at two looks, the steps have left the branch.
+// Where error control finds no way, either, nothing is said.
 //
 // Mechanisms without loops, of hinges and driven angles alone, have no such positions; those of more than a thousand
 // bodies are not looked at.
@@ -33,11 +33,13 @@ class GapWatch {
   bool due(double turned, const Eigen::VectorXd& v, double h);
   // That end, `at`. Fails where the branch was left.
   Status look(const Problem& problem, const State& at);
+  // The run ends there.
+  Status end(const Problem& problem, const State& at);
 
  private:
   void prepare(const Problem& problem);
   double steepness(const Problem& problem, const State& at);
-  Status judge(const Problem& problem, const State& at);
+  double judge(const Problem& problem, const State& at);
   Status gone_over(const Problem& problem, const State& at, double share);
 
   const Settings& settings_;
@@ -47,12 +49,14 @@ class GapWatch {
   std::unique_ptr<Problem> own_;  // with the rows of the run's
   std::optional<Consistent> consistent_;
   int revision_ = 0;
-  double turned_ = 0;  // rad, since the last look
-  double due_ = 0;     // rad, from one to the next
-  double least_;       // steepness
+  const double of_run_;  // part of the way to the next look, of a step at least
+  double way_ = 0;       // since the last look, of 1
+  double due_ = 0;       // when the next is
+  double least_;         // steepness
   bool steep_ = false, known_ = false;
-  int unjudged_ = 0;  // stretches that error control could not do
-  double t_ = 0;      // where it was not steep at last
+  bool suspected_ = false;  // it seems so, at one look
+  int unjudged_ = 0;        // stretches that error control could not do
+  double t_ = 0;            // where it was not steep at last
   Eigen::VectorXd q_, v_;
   double steepest_ = 0, t_steepest_ = 0;  // since
   Eigen::VectorXd q_steepest_;
