@@ -20,9 +20,9 @@
 #include <span>
 #include <vector>
 
+#include "core/all_but.h"
 #include "core/body_state.h"
 #include "core/index.h"
-#include "core/all_but.h"
 #include "core/model.h"
 #include "formulations/problem.h"
 #include "linsolve/csc_layout.h"
