@@ -108,7 +108,9 @@ void GapWatch::begin(const Problem& problem, const State& at) {
   q_ = q_steepest_ = at.q;
   v_ = at.v;
   prepare(problem);
-  if (looks_) (void)look(problem, at);
+  if (!looks_) return;
+  (void)look(problem, at);
+  looks_ = least_ < HUGE_VAL;
 }
 
 void GapWatch::prepare(const Problem& problem) {

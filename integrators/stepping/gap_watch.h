@@ -10,7 +10,7 @@
 // Where error control finds no way, either, nothing is said.
 //
 // Mechanisms without loops, of hinges and driven angles alone, have no such positions; those of more than a thousand
-// bodies are not looked at.
+// bodies are not looked at, nor are runs that begin in a singular position.
 #pragma once
 
 #include <Eigen/Core>
