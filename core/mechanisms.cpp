@@ -3,23 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/index.h"
+#include "core/joined.h"
 
 namespace poinsot {
 
 std::vector<int> mechanisms(const Model& model) {
-  std::vector<int> first(model.bodies.size());  // a body before it in its mechanism, in the end the first; or itself
-  std::iota(first.begin(), first.end(), 0);
-  const auto first_of = [&](int body) {
-    while (first[index(body)] != body) body = first[index(body)] = first[index(first[index(body)])];
-    return body;
-  };
+  Joined joined(model.bodies.size());
   const auto join = [&](int i, int j) {
-    if (i == kGround || j == kGround) return;
-    i = first_of(i), j = first_of(j);
-    first[index(std::max(i, j))] = std::min(i, j);
+    if (i != kGround && j != kGround) joined.join(i, j);
   };
   for (const Row& row : model.rows) join(row.i, row.j);
   for (const Spring& spring : model.springs) join(spring.i, spring.j);
@@ -27,10 +20,10 @@ std::vector<int> mechanisms(const Model& model) {
   for (const CallbackForce& callback : model.callbacks)
     for (const int body : callback.bodies) join(callback.bodies.front(), body);
 
-  std::vector<int> number(first.size());
+  std::vector<int> number(model.bodies.size());
   int numbered = 0;
-  for (int body = 0; body < static_cast<int>(first.size()); ++body)
-    number[index(body)] = first_of(body) == body ? numbered++ : number[index(first_of(body))];
+  for (int body = 0; body < static_cast<int>(number.size()); ++body)
+    number[index(body)] = joined.first_of(body) == body ? numbered++ : number[index(joined.first_of(body))];
   return number;
 }
 

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "core/all_but.h"
 #include "core/index.h"
+#include "core/joined.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/singular_position.h"
 #include "integrators/stepping/vectors.h"
@@ -30,21 +30,15 @@ constexpr int kMostUnjudged = 3;
 // Whether a mechanism of the scene may come to a singular position at all.
 bool may_be_singular(const Model& model) {
   const int ground = static_cast<int>(model.bodies.size());
-  std::vector<int> parent(model.bodies.size() + 1);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int body) {
-    while (parent[index(body)] != body) body = parent[index(body)] = parent[index(parent[index(body)])];
-    return body;
-  };
-  std::set<std::pair<int, int>> joined;
+  Joined joined(model.bodies.size() + 1);
+  std::set<std::pair<int, int>> pairs;
   for (const Group& group : model.groups) {
     const int i = group.i == kGround ? ground : group.i, j = group.j == kGround ? ground : group.j;
     const std::pair<int, int> pair = std::minmax(i, j);
     if (group.kind == GroupKind::joint) {
-      if (root(i) == root(j)) return true;
-      parent[index(root(i))] = root(j);
-      joined.insert(pair);
-    } else if (group.kind == GroupKind::constraint || group.type != "angle" || !joined.contains(pair)) {
+      if (!joined.join(i, j)) return true;
+      pairs.insert(pair);
+    } else if (group.kind == GroupKind::constraint || group.type != "angle" || !pairs.contains(pair)) {
       return true;
     }
   }
