@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "core/dual.h"
@@ -30,6 +31,11 @@ Mat3<T> tilde(const Vec3<T>& s) {
       s.z(), T(0), -s.x(),   //
       -s.y(), s.x(), T(0);
   return m;
+}
+
+// rad, 0 to π: of the rotation from A to B, by |A − B|² = 8 sin²(angle/2).
+inline double angle_between(const Mat3<double>& A, const Mat3<double>& B) {
+  return 2 * std::asin(std::min(1.0, (A - B).norm() / std::sqrt(8.0)));
 }
 
 // Σ_k (−x)ᵏ n!/(n + 2k)!, the series behind the coefficients above (n = 1: a, 2: 2b, 3: 6c), up to xᵗ, t = terms.

@@ -238,7 +238,7 @@ TEST(BodyFixedJoints, RedundantRowsAreSoFromPosesThatAreOffByLittle) {
       const InitialState start = start_of(given);
       ASSERT_TRUE(start.status.ok()) << start.status.message;
       EXPECT_EQ(start.rank.aside.size(), exact.rank.aside.size()) << links << ' ' << off;
-      EXPECT_EQ(start.rank.doubtful, -1) << links << ' ' << off;
+      EXPECT_EQ(start.rank.doubt.row, -1) << links << ' ' << off;
       const Distance d = distance({{0, start.bodies, {}}}, {{0, exact.bodies, {}}});
       EXPECT_LT(std::max(d.r, d.A), 100 * off) << links;
       EXPECT_LT(violation(std::make_shared<const Model>(compile(scene)), start.bodies).position, 1e-13) << off;

@@ -35,7 +35,7 @@ TEST(Hubs, RankIsFound) {
         const RankAnalysis found = analyze_rank(model, given_state(*model), names);
         EXPECT_EQ(found.rank, 6 * static_cast<int>(model->bodies.size()) - kind.freedoms(count));
         EXPECT_EQ(found.aside.size(), model->rows.size() - index(found.rank));
-        EXPECT_EQ(found.doubt, 0);
+        EXPECT_EQ(found.doubt.part, 0);
         EXPECT_THAT(found.singular, IsEmpty());
         EXPECT_THAT(found.conflicts, IsEmpty());
       }

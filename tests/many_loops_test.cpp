@@ -124,7 +124,7 @@ TEST(Rank, OfACarriedLadder) {
       EXPECT_EQ(found.degrees_of_freedom(), cells + 1);
       EXPECT_EQ(found.aside.size(), static_cast<std::size_t>(3 * cells));
       EXPECT_TRUE(found.singular.empty());
-      EXPECT_EQ(found.doubt, 0);
+      EXPECT_EQ(found.doubt.part, 0);
     }
 }
 

@@ -274,7 +274,7 @@ TEST(Rank, OfABodyWithAllButNoArms) {
                     joint(JointType::translational, 1, 2, middle, {1, -1, 0})};
     const RankAnalysis rank = analyze(scene);
     EXPECT_EQ(rank.aside.size(), 3u) << off;
-    EXPECT_EQ(rank.doubtful, -1) << off;
+    EXPECT_EQ(rank.doubt.row, -1) << off;
     EXPECT_GT(body_sizes(compile(scene))[1], 0.01) << off;
   }
 }

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/input_error.h"
+#include "core/so3.h"
 
 namespace poinsot::study {
 namespace {
@@ -132,10 +132,6 @@ PerQuantity difference(const Motion& motion, const Motion& from, const Sizes& si
       raise(d[3], std::abs(as_force(model.rows[row], motion.lambda[k][row] - from.lambda[k][row], sizes.length)) /
                       sizes.force);
   return d;
-}
-
-double angle_between(const Matrix3& A, const Matrix3& B) {
-  return 2 * std::asin(std::min(1.0, (A - B).norm() / (2 * std::numbers::sqrt2)));
 }
 
 double kinetic_energy(const Motion& motion, const Model& model) {

@@ -74,9 +74,6 @@ struct BodyDifference {
 };
 BodyDifference body_difference(const Motion& motion, const Motion& from, const Sizes& sizes);
 
-// rad, of two orientations: 2 asin(|A − B|/(2√2)) with the Frobenius norm, good for small angles.
-double angle_between(const Matrix3& A, const Matrix3& B);
-
 // Largest kinetic energy of the motion, J.
 double kinetic_energy(const Motion& motion, const Model& model);
 

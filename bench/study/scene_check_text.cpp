@@ -112,10 +112,10 @@ void add_undetermined(std::string& text, const SceneCheck& found) {
 
 void add_doubt(std::string& text, const SceneCheck& found) {
   const RankAnalysis& analysis = found.rank;
-  if (analysis.doubtful < 0) return;
+  if (analysis.doubt.row < 0) return;
   text += fmt::format("neither dependent nor clearly independent: {}, of which {:.0e} is left{}\n",
-                      describe_row(*found.model, analysis.doubtful), analysis.doubt,
-                      analysis.vanishing ? "" : " beside the others");
+                      describe_row(*found.model, analysis.doubt.row), analysis.doubt.part,
+                      analysis.doubt.vanishing ? "" : " beside the others");
 }
 
 void add_state(std::string& text, const SceneCheck& found) {

@@ -8,6 +8,7 @@
 
 #include "bench/study/motion.h"
 #include "core/input_error.h"
+#include "core/so3.h"
 #include "integrators/simulate.h"
 #include "integrators/start/reactions.h"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "bench/study/motion.h"
+#include "core/so3.h"
 
 namespace poinsot::view {
 namespace {
@@ -67,7 +68,7 @@ std::vector<Apart> apart(const Motion& first, const Motion& second) {
         most.position = distance;
         most.body = b;
       }
-      most.angle = std::max(most.angle, study::angle_between(x.A, y.A));
+      most.angle = std::max(most.angle, angle_between(x.A, y.A));
     }
   }
   return result;

@@ -10,16 +10,15 @@
 // Scenes without redundant rows have none of this.
 #pragma once
 
-#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "formulations/problem.h"
+#include "integrators/start/aside_watch.h"
 #include "integrators/start/rank.h"
 #include "integrators/start/row_choice.h"
-#include "integrators/start/rows_aside.h"
 
 namespace poinsot {
 
@@ -35,7 +34,7 @@ class OverConstrained final : public Problem {
   }
   int revision() const override { return choice_->revision; }
   // A sentence about a row set aside that held, but not to rounding, at the ends of steps; else empty.
-  std::string apart() const;
+  std::string apart() const { return describe(choice_->apart, model()); }
   // Whether of its reactions the least can be told (reactions.h).
   bool has_least_reactions() const { return choice_->rows.has_null_vectors(); }
   // Reactions that redundant rows leave undetermined where the bodies stand; none where null vectors are not known.
@@ -100,13 +99,6 @@ class OverConstrained final : public Problem {
   LeftOut left_out() const override;
 
  private:
-  // Where a row set aside held least.
-  struct Apart {
-    double part;  // of what is allowed
-    int row = -1;
-    double off = 0, t = 0;
-  };
-
   // Shared by the clones of one run: all of them keep the same rows.
   struct Choice {
     RowChoice rows;
@@ -128,12 +120,6 @@ class OverConstrained final : public Problem {
   void go(const Way& way);
   void keep();
   void watch();
-  // Whether |Φ| of the rows set aside is allowed where the kept problem stands; of all that are measured.
-  bool hold(double t);
-  Status measure(double t, std::span<const double> a);
-  double kept_off();
-  double speed_at(const Row& row) const;
-  Status measure_rates(double t, std::span<const double> a);
   double turned() const;
   void exchange(double t, std::span<const double> q, std::span<const double> v, std::span<double> lambda);
   void normalize(std::span<const double> forces, std::span<double> lambda);
@@ -141,13 +127,8 @@ class OverConstrained final : public Problem {
   std::shared_ptr<Choice> choice_;
   int kept_revision_ = 0;
   std::unique_ptr<Problem> kept_;
-  const bool to_tolerance_;                 // kept rows hold
-  mutable std::optional<RowsAside> aside_;  // those that are measured, if any
-  mutable double most_aside_ = -1;          // |Φ| of these where the problem stands; below 0: not known
-  std::vector<double> by_allowed_;          // 1 over what is allowed of |Φ|, by row set aside
-  bool rates_aside_ = false;                // their rates are measured, too
-  int lost_rates_ = 0;                      // times, one after the other
-  std::vector<double> kept_rates_, kept_positions_;
+  const bool to_tolerance_;  // kept rows hold
+  mutable std::optional<AsideWatch> watch_;
   double t_ = 0;                // where the problem stands
   double accepted_at_ = 0;      // the last step's end
   double longest_ = 0;          // s, step since the last look

@@ -1,9 +1,6 @@
 #include "integrators/start/rank.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -11,6 +8,7 @@
 #include "core/index.h"
 #include "integrators/start/beside.h"
 #include "integrators/start/closed_beside.h"
+#include "integrators/start/doubtful_rows.h"
 #include "integrators/start/few_groups.h"
 #include "integrators/start/loop_rows.h"
 #include "integrators/start/row_space.h"
@@ -37,7 +35,7 @@ class Examination {
     result_.variables = 6 * static_cast<int>(model_->bodies.size());
     result_.rank = result_.rank_here = rows;
     space_.emplace(all_rows(model_, 0, states_));
-    tell_vanishing();
+    result_.doubt = vanishing_row(*space_);
     result_.loops = loop_rows(*model_, *space_);
     if (result_.loops.empty()) return std::move(result_);
     if (result_.loops.size() < model_->rows.size()) space_->keep(result_.loops);
@@ -107,12 +105,12 @@ class Examination {
   LookedAt look_each_way(const Sparse& columns) {
     LookedAt at;
     Trial trial = beside_->begin(without_, kDirections);
-    if (trial.regular) find_conflicts(trial);
+    if (trial.regular) result_.conflicts = conflicts(trial, *beside_, *space_);
     if (surely_.columns.empty()) result_.conflicts.clear();  // rows independent, if only just, contradict nothing
     if (!result_.conflicts.empty()) {
       std::vector<Conflict> as_chosen = std::exchange(result_.conflicts, {});
       Trial other = beside_->begin(by_order(columns));
-      if (other.regular) find_conflicts(other);
+      if (other.regular) result_.conflicts = conflicts(other, *beside_, *space_);
       if (result_.conflicts.empty()) result_.conflicts = std::move(as_chosen);
     }
     if (trial.regular && result_.conflicts.empty()) {
@@ -151,7 +149,8 @@ class Examination {
   }
 
   void tell_what_follows(const Sparse& columns, const LookedAt& at) {
-    if (surely_.columns.size() < suspects()) tell_doubt(columns, surely_.columns, kIndependent, kDependent);
+    if (surely_.columns.size() < suspects())
+      result_.doubt = barely_independent_row(*space_, columns, surely_.columns, kIndependent, kDependent);
     tell_redundant(columns, kDependent, surely_);
     if (!at.along || at.along->holds || surely_.columns.size() < suspects()) return;
     Trial other = beside_->begin(by_order(columns));
@@ -167,8 +166,7 @@ class Examination {
   bool all_follow_beside(std::shared_ptr<FrontQr> decomposition) {
     Trial trial = decomposition ? beside_->begin(std::move(decomposition)) : beside_->begin(without_, 1);
     if (!trial.regular) return false;
-    find_conflicts(trial);
-    if (!std::exchange(result_.conflicts, {}).empty()) return false;
+    if (!conflicts(trial, *beside_, *space_).empty()) return false;
     const std::optional<PlaceBeside> place = beside_->anywhere(trial);
     return place && place->dependent == here_.columns.size() && place->holds;
   }
@@ -201,24 +199,6 @@ class Examination {
     result_ = std::move(*least);
   }
 
-  // Of the rows left out, where the others hold.
-  void find_conflicts(Trial& trial) {
-    const PlaceBeside& start = trial.start;
-    const std::span<const double> off = beside_->measure_start(trial);
-    std::vector<double> rate(off.size()), nu(off.size());
-    space_->rates(start.v, rate, nu);
-    const double speed = beside_->extent(start.v);
-    for (const int row : trial.onto->without()) {
-      const std::size_t k = index(std::ranges::lower_bound(space_->rows(), row) - space_->rows().begin());
-      const double size = space_->own_size_of_row(k), length = space_->norm_of_row(k);
-      const double rate_off = std::abs(rate[k]) / length;
-      if (off[k] > kContradicts * size)
-        result_.conflicts.push_back({row, Conflict::Level::position, off[k], 0});
-      else if (rate_off > kContradicts * std::max({speed * size, std::abs(nu[k]) / length, kHolds * size}))
-        result_.conflicts.push_back({row, Conflict::Level::velocity, rate_off, 0});
-    }
-  }
-
   void tell_redundant(const Sparse& columns, double tolerance, const NullSpace& null) {
     if (names_ == RankNames::all) {
       const bool known = named_ && tolerance == kDependent;
@@ -229,7 +209,7 @@ class Examination {
     }
     tell_undetermined(columns, null);
     // Beside rows that are barely independent nothing of the others' independence is to be given away.
-    if (result_.doubt > 0 && !result_.vanishing) {
+    if (result_.doubt.part > 0 && !result_.doubt.vanishing) {
       result_.aside = chosen(null);
     } else {
       const bool known = here_.from <= kDependent && tolerance == kDependent;
@@ -241,10 +221,11 @@ class Examination {
   }
 
   void tell_undetermined(const Sparse& columns, const NullSpace& null) {
-    const auto vanishes = [&](const auto& entry) { return space_->rows()[index(entry.first)] == result_.doubtful; };
-    const bool stands_in = std::ranges::any_of(
-        null.vectors, [&](const SparseEntries& z) { return result_.vanishing && std::ranges::any_of(z, vanishes); });
-    if (stands_in) result_.vanishing = false, result_.doubt = 0, result_.doubtful = -1;  // others say the same
+    const auto vanishes = [&](const auto& entry) { return space_->rows()[index(entry.first)] == result_.doubt.row; };
+    const bool stands_in = std::ranges::any_of(null.vectors, [&](const SparseEntries& z) {
+      return result_.doubt.vanishing && std::ranges::any_of(z, vanishes);
+    });
+    if (stands_in) result_.doubt = {};  // others say the same
     LoadedGroups groups(*model_, *space_, states_);
     if (many(null)) groups.add_all();
     for (const SparseEntries& z : null.vectors) groups.add(columns, z);
@@ -275,41 +256,11 @@ class Examination {
     result_.rank_here = result_.rank - static_cast<int>(result_.singular.size());
   }
 
-  void tell_vanishing() {
-    for (std::size_t k = 0; k < space_->rows().size(); ++k) {
-      const double left = space_->left_of(k);
-      if (left <= kDependent || left >= (result_.vanishing ? result_.doubt : kIndependent)) continue;
-      result_.doubt = left;
-      result_.doubtful = space_->rows()[k];
-      result_.vanishing = true;
-    }
-  }
-
-  // Of a row that follows from others but for less than `most` of its length, where `surely` do all but for `least`.
-  void tell_doubt(const Sparse& columns, const std::vector<int>& surely, double most, double least) {
-    result_.doubt = most;
-    result_.vanishing = false;
-    for (const int column : dependent_columns(columns, most))
-      if (!std::ranges::binary_search(surely, column)) result_.doubtful = space_->rows()[index(column)];
-    for (double part = most / 10; part > least; part /= 10)
-      if (dependent_columns(columns, part).size() > surely.size()) result_.doubt = part;
-  }
-
-  // Where axes and points are written with few digits, rows that follow from others are off that by as much: the
-  // mechanism is locked, or constrained once more than is meant. Of mechanisms of a few hundred rows; in longer ones
-  // independent rows come as near.
   void tell_few_digits() {
-    constexpr double kFewDigits = 1e-3;
-    constexpr std::size_t kMostRows = 400;
     const bool redundant = !result_.aside.empty(), moves = result_.degrees_of_freedom() > 0;
-    if (result_.doubtful >= 0 || result_.singular_position() || !result_.conflicts.empty()) return;
-    if ((!redundant && moves) || space_->rows().size() > kMostRows) return;
-    const Sparse columns = space_->columns();
-    if (dependent_columns(columns, kFewDigits).size() <= result_.aside.size()) return;
-    const std::vector<int> surely = dependent_columns(columns, kIndependent);
-    if (surely.size() != result_.aside.size()) return;
-    tell_doubt(columns, surely, kFewDigits, kIndependent);
-    result_.few_digits = true;
+    if (result_.doubt.row >= 0 || result_.singular_position() || !result_.conflicts.empty()) return;
+    if (!redundant && moves) return;
+    result_.doubt = row_of_few_digits(*space_, result_.aside.size());
   }
 
   std::shared_ptr<const Model> model_;
@@ -331,14 +282,6 @@ std::vector<int> RankAnalysis::dependent_rows() const {
   std::vector<int> rows;
   for (const Dependency& d : dependent) rows.push_back(d.row);
   return rows;
-}
-
-std::string describe(const Conflict& conflict) {
-  if (conflict.level == Conflict::Level::velocity) return fmt::format("{:.3g} m/s (velocity)", conflict.by);
-  if (conflict.level == Conflict::Level::later_velocity)
-    return fmt::format("{:.3g} m/s (velocity, at t = {:.3g} s)", conflict.by, conflict.time);
-  if (conflict.level == Conflict::Level::position) return fmt::format("{:.3g} m (position)", conflict.by);
-  return fmt::format("{:.3g} m (position, at t = {:.3g} s)", conflict.by, conflict.time);
 }
 
 RankAnalysis analyze_rank(const std::shared_ptr<const Model>& model, std::span<const BodyState> states,

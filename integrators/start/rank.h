@@ -16,11 +16,12 @@
 
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/body_state.h"
 #include "core/model.h"
+#include "integrators/start/conflicts.h"
+#include "integrators/start/doubtful_rows.h"
 #include "integrators/start/undetermined.h"
 
 namespace poinsot {
@@ -29,17 +30,6 @@ struct Dependency {
   int row;                  // model row that adds nothing
   std::vector<int> others;  // model rows it is a combination of
 };
-
-// A redundant row that does not hold where those hold that it follows from.
-struct Conflict {
-  enum class Level { position, velocity, later, later_velocity };
-  int row;
-  Level level;
-  double by;    // m or m/s that the bodies are off it; `later`: m, `later_velocity`: m/s, at `time`
-  double time;  // s
-};
-
-std::string describe(const Conflict& conflict);  // "0.002 m (position)"
 
 struct RankAnalysis {
   int variables = 0;                  // 6 per body
@@ -60,13 +50,7 @@ struct RankAnalysis {
   bool named = true;       // false: too many to say what each depends on; `others` are empty
   bool moves_on = true;    // singular: whether the velocities lead away from the singular position
   double time_beside = 0;  // s: after which they have, by a thousandth of the bodies' sizes
-  // The power of ten below which a part is left of a row beside the others, kIndependent at most but for `few_digits`,
-  // or of a gradient that vanishes the part itself; 0: there is none so small.
-  double doubt = 0;
-  int doubtful = -1;       // the row
-  bool vanishing = false;  // its gradient is as small a part of its terms: by itself, not beside the others
-  // It is above kIndependent, as numbers of few digits make it, beside redundant rows or where nothing moves.
-  bool few_digits = false;
+  Doubt doubt;
 
   int degrees_of_freedom() const { return variables - rank; }
   bool singular_position() const { return rank_here < rank; }
