@@ -139,6 +139,7 @@ void tell_springs(const Model& model, std::vector<std::string>& sentences) {
           spring.name, std::abs(F)));
 }
 
+constexpr double kLongest = 1e75;  // a direction: the square of the product of two is finite, and so is 1 over it
 const double kSquareOverflows = std::sqrt(std::numeric_limits<double>::max());
 
 std::string too_large(const std::string& whose, std::string_view what, double size) {
@@ -157,15 +158,26 @@ double force_without_direction(const Model& model, const Spring& spring) {
 }
 
 std::string overflowing_length(const Model& model) {
+  static constexpr const char* kOtherUnits = "; give it in units in which it is smaller";
   for (std::size_t k = 0; k < model.rows.size(); ++k) {
     const Row& row = model.rows[k];
     const double size = std::max(row.s_i.cwiseAbs().maxCoeff(), row.s_j.cwiseAbs().maxCoeff());
-    if (size > kSquareOverflows) return too_large(describe_row(model, static_cast<int>(k)), "length", size);
+    if (size > kSquareOverflows)
+      return too_large(describe_row(model, static_cast<int>(k)), "length", size) + kOtherUnits;
+    for (const Vector3* direction : {&row.a_i, &row.b_i, &row.a_j, &row.c}) {
+      const double length = direction->cwiseAbs().maxCoeff();
+      if (length > kLongest || (length > 0 && length < 1 / kLongest))
+        return fmt::format(
+            "{} has a direction of length {:.3g}, and products of such are no numbers of a computer; give it one near "
+            "to 1",
+            describe_row(model, static_cast<int>(k)), length);
+    }
     for (const int b : {row.i, row.j}) {
       if (b == kGround) continue;
       const Body& body = model.bodies[static_cast<std::size_t>(b)];
       const double far = body.position.cwiseAbs().maxCoeff();
-      if (far > kSquareOverflows) return too_large(fmt::format("body '{}'", body.name), "coordinate", far);
+      if (far > kSquareOverflows)
+        return too_large(fmt::format("body '{}'", body.name), "coordinate", far) + kOtherUnits;
     }
   }
   return {};

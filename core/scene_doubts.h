@@ -17,8 +17,9 @@ std::vector<std::string> scene_doubts(const Model& model);
 std::string overflowing(const Model& model, double t = 0);
 // The force at t = 0 of a spring whose ends are at one point, N, which has no direction there; 0 of others.
 double force_without_direction(const Model& model, const Spring& spring);
-// A length of a constraint, or of a body that one holds, whose square overflows: what rows are worth is judged by those
-// squares, so that no motion of the model can be trusted. Empty where there is none.
+// A length of a constraint, or of a body that one holds, whose square overflows, or a direction as long, or as short:
+// what rows are worth is judged by those squares, so that no motion of the model can be trusted; and what to write in
+// its place. Empty where there is none.
 std::string overflowing_length(const Model& model);
 
 }  // namespace poinsot

@@ -224,7 +224,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   }
   if (settings.analysis == Analysis::dynamics && !explained) {
     const int rows = static_cast<int>(model->rows.size() - start.rank.aside.size());
-    explain_by_position(outcome.status, *problem, settings, rows, q_start, state);
+    explain_by_position(outcome.status, *problem, settings, rows, start.rank.doubt, q_start, state);
   }
   outcome.statistics.linear = systems.work();
   return outcome;

@@ -50,7 +50,7 @@ bool explain_by_functions(Status& status, const Problem& problem, const Settings
   return true;
 }
 
-void explain_by_position(Status& status, Problem& problem, const Settings& settings, int rows,
+void explain_by_position(Status& status, Problem& problem, const Settings& settings, int rows, const Doubt& doubt,
                          const Eigen::VectorXd& q_start, const State& state) {
   const Failure failure = status.failure;
   const bool unexplained = failure == Failure::step_size_too_small || failure == Failure::not_converged ||
@@ -59,6 +59,16 @@ void explain_by_position(Status& status, Problem& problem, const Settings& setti
   if (!unexplained && failure != Failure::singular_position) return;
   // An output time within the last step: who finds nothing there to give out names the row, and stands elsewhere now.
   if (failure == Failure::singular_position && state.t > status.time) return;
+  if (doubt.row >= 0 && !doubt.vanishing) {
+    status.withdraw_remedy();
+    status.explain(fmt::format(
+        "{} follows from the other constraints but for less than {:.0e} of its length where the run begins, as axes "
+        "and points of few digits leave it, and what it asks for beside them is rounding",
+        describe_row(problem.model(), doubt.row), doubt.part));
+    status =
+        with_remedy(failure, status.time, std::move(status.message), "write axes and points with 12 digits or more");
+    return;
+  }
   const double instant = chooses_steps(settings) ? instant_of(settings.end) : settings.step;
   problem.set_position(state.t, span(state.q));
   problem.set_velocity(span(state.v));

@@ -7,6 +7,7 @@
 #include "core/status.h"
 #include "formulations/problem.h"
 #include "integrators/settings.h"
+#include "integrators/start/doubtful_rows.h"
 #include "integrators/state.h"
 
 namespace poinsot {
@@ -16,9 +17,9 @@ namespace poinsot {
 bool explain_by_functions(Status& status, const Problem& problem, const Settings& settings);
 
 // Adds what is to be said of the position `state` where dynamics stopped, and takes back a remedy that does not help
-// there; nothing of an output time before. `rows`: constraint rows of G that are the scene's. The problem stands there
-// afterwards.
-void explain_by_position(Status& status, Problem& problem, const Settings& settings, int rows,
+// there; nothing of an output time before. `rows`: constraint rows of G that are the scene's; `doubt`: of which of them
+// it was where the run began. The problem stands there afterwards.
+void explain_by_position(Status& status, Problem& problem, const Settings& settings, int rows, const Doubt& doubt,
                          const Eigen::VectorXd& q_start, const State& state);
 
 }  // namespace poinsot

@@ -160,5 +160,28 @@ TEST(SceneDoubts, lengths_whose_squares_overflow_are_refused) {
   EXPECT_EQ(refusal(), "");
 }
 
+TEST(SceneDoubts, directions_whose_products_overflow_are_refused) {
+  for (const double length : {1e-12, 1.0, 1e12, 1e155, 1e308, 1e-160}) {
+    Scene scene = two_rods();
+    scene.joints.clear();
+    Constraint& row = scene.constraints.emplace_back();
+    row.name = "row", row.type = ConstraintType::DP1, row.j = 0, row.a_i = {1, 0, 0}, row.a_j = {0, length, 0};
+    Settings settings;
+    settings.end = 1e-3;
+    if (length > 1e-75 && length < 1e75) {
+      EXPECT_TRUE(simulate(scene, settings, [](const Sample&) {}).status.ok()) << length;
+      continue;
+    }
+    try {
+      (void)simulate(scene, settings, [](const Sample&) {});
+      ADD_FAILURE() << length << " is not refused";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("constraint 'row' (/constraints/0) has a direction of length 1e"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace poinsot

@@ -30,6 +30,9 @@ std::vector<std::string> names_in(std::string_view option, const std::string& li
   for (std::size_t begin = 0; begin <= list.size();) {
     const std::size_t end = name_end(list, begin, known);
     const std::string name = list.substr(begin, end - begin);
+    if (name.empty() && !list.empty())
+      throw InputError(
+          fmt::format("{}: a name is missing in \"{}\", expected names with a comma between", option, list));
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       throw InputError(fmt::format("{}: found \"{}\", expected one or more of {}, with commas between", option, name,
                                    fmt::join(known, ", ")));

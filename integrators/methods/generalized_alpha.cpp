@@ -48,6 +48,7 @@ class GeneralizedAlpha : public FixedSteps {
         dq_(nv_),
         corrects_velocity_(form == Form::stabilized2),
         y_(Vector::Zero(nv_)),
+        eta_(Vector::Zero(nc_)),
         held_dq_(nv_),
         held_v_(nv_),
         held_a_(nv_),
@@ -68,10 +69,11 @@ class GeneralizedAlpha : public FixedSteps {
     a_ = x_.z.head(nv_) + ratio * (a_ - x_.z.head(nv_));
     extrapolation_.resize(x_.z, ratio);
     newton_.renew();
+    eta_.setZero();
   }
   Status forget() override {
     extrapolation_.restart(x_.z);
-    y_.setZero();
+    eta_.setZero();
     return {};
   }
   Status prepare() override { return system_.prepare(); }
@@ -93,6 +95,7 @@ class GeneralizedAlpha : public FixedSteps {
     held_v_.noalias() = v_n_ + (h_ * (1 - k_.gamma)) * a_ + (h_ * k_.gamma) * held_a_;
     held_dq_.noalias() = h_ * v_n_ + (h_ * h_ * (0.5 - k_.beta)) * a_ + (h_ * h_ * k_.beta) * held_a_;
     extrapolation_.lead(x_.z);
+    if (Status status = lead_displacement(t); !status.ok()) return status;
 
     Status status = iterate(t);
     const bool open =
@@ -161,6 +164,7 @@ class GeneralizedAlpha : public FixedSteps {
     corrects_velocity_ = false;
     x_.z = extrapolation_.before();
     y_.setZero();
+    eta_.setZero();
     newton_.renew();
     const Status status = iterate(t);
     if (status.ok()) advance();
@@ -199,7 +203,7 @@ class GeneralizedAlpha : public FixedSteps {
     jerk_ /= h_;
     a_.noalias() = x_.z.head(nv_) + (k_.shift() * h_) * jerk_;
     extrapolation_.restart(x_.z);
-    y_.setZero();
+    eta_.setZero();
     if (form_ == Form::stabilized2) return {};
 
     // h v̂ v̇ = T(hv)⁻¹ v̇ − T(−hv)⁻¹ v̇
@@ -268,13 +272,34 @@ class GeneralizedAlpha : public FixedSteps {
   }
   // An acceleration normal to the constraints takes it out, and y the displacement that goes with it.
   Status correct_velocity(double t, Vector& delta) {
-    aside_.head(nv_).setZero();
-    aside_.tail(nc_) = -residual_.tail(nc_);
-    if (Status status = system_.solve(t, span(aside_)); !status.ok()) return status;
+    eta_ -= residual_.tail(nc_);
+    if (Status status = solve_normal(t, -residual_.tail(nc_)); !status.ok()) return status;
     x_.z += aside_;
     y_ -= scale_.position * aside_.head(nv_);
     delta = delta.cwiseAbs() + aside_.cwiseAbs();
     return {};
+  }
+  // Where y begins: the multiples of the step before in the directions of now. Carried along as it is, y would keep
+  // what was normal there and is a motion here, from step to step. Where directions turn altogether, as beside a
+  // singular position, nothing is known of it.
+  Status lead_displacement(double t) {
+    if (eta_.isZero(0)) {
+      y_.setZero();
+      return {};
+    }
+    if (Status status = solve_normal(t, eta_); !status.ok()) return status;
+    aside_.head(nv_) *= -scale_.position;
+    const bool goes_on = (aside_.head(nv_) - y_).squaredNorm() <= 0.25 * y_.squaredNorm();
+    y_ = aside_.head(nv_);
+    if (goes_on) return {};
+    y_.setZero();
+    eta_.setZero();
+    return {};
+  }
+  Status solve_normal(double t, const Vector& along) {
+    aside_.head(nv_).setZero();
+    aside_.tail(nc_) = along;
+    return system_.solve(t, span(aside_));
   }
 
   Form form_;
@@ -290,7 +315,7 @@ class GeneralizedAlpha : public FixedSteps {
   Vector dq_;                         // what leads from q_n to q
   bool corrects_velocity_;            // stabilized index 2, but for steps that do not converge so
   bool told_ = false;                 // of those
-  Vector y_;                          // displacement of stabilized index 2
+  Vector y_, eta_;                    // displacement of stabilized index 2, and what it is a multiple of by row
   Vector held_dq_, held_v_, held_a_;  // what does not depend on the step's unknowns
   Vector residual_, aside_, there_;
   Ringing ringing_{problem_};

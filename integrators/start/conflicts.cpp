@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "integrators/start/beside.h"
+#include "integrators/start/row_space.h"
 
 namespace poinsot {
 

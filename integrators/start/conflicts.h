@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "integrators/start/beside.h"
-#include "integrators/start/row_space.h"
-
 namespace poinsot {
+
+class Beside;
+class RowSpace;
+struct Trial;
 
 // A redundant row that does not hold where those hold that it follows from.
 struct Conflict {

@@ -69,7 +69,7 @@ void tell_far_bodies(const Model& model, std::vector<std::string>& notices) {
 }
 
 void tell_far_joints(const Model& model, std::vector<std::string>& notices) {
-  constexpr double kFar = 2;
+  constexpr double kFar = 4;
   if (model.joints.empty()) return;
   double first = 0, second = 0;  // the two longest arms
   for_each_joint(model, [&](const Group& group, const JointFrames& f) {

@@ -198,8 +198,7 @@ InitialState find_initial_state(const std::shared_ptr<const Model>& model, const
   if (const std::string fault = fault_of_functions(*model, 0); !fault.empty()) return {no_value(0, fault), {}, {}, {}};
   if (const std::string beyond = beyond_any_position(*model, 0, 0); !beyond.empty())
     throw InputError(beyond + ", which no position has");
-  if (const std::string length = overflowing_length(*model); !length.empty())
-    throw InputError(length + "; give it in units in which it is smaller");
+  if (const std::string length = overflowing_length(*model); !length.empty()) throw InputError(length);
   if (settings.analysis == Analysis::dynamics)
     if (const std::string spin = open_spin(*model); !spin.empty()) throw InputError(spin);
   return Assembler(model, settings, rank).run();

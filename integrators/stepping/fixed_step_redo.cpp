@@ -71,13 +71,13 @@ Status FixedSteps::reach_or_redo(double t, bool sampled, int halvings) {
 
 // A step of the grid, which as one ended as it did.
 Status FixedSteps::redo_whole(double t, double half, bool sampled, Status as_one) {
-  const bool doubted = on_branch_ == OnBranch::doubted;
+  const bool doubted = on_branch_ == OnBranch::doubted, thrown = thrown_;
   const Beginning beginning{x_, start_, rows_asked_, shortest_, run_.statistics.steps};
   const std::vector<BodyState> before = bodies();
   const LawJumps::Sides sides = sides_of_jumps();
   over_jumps_ = false;
   Status status = reach_in_halves(t, half, sampled, kHalvings);
-  const auto forced = [&] { return over_jumps_ || jumps_.crossed(sides, sides_of_jumps()); };
+  const auto forced = [&] { return thrown || over_jumps_ || jumps_.crossed(sides, sides_of_jumps()); };
   if (status.ok() && velocities_jump(before, bodies()) && !forced()) {
     begin_from(beginning);
     status = std::move(as_one);
@@ -141,6 +141,7 @@ void FixedSteps::rewrite() {
   if (start_ == Start::usual) start_ = Start::rewritten;
   anew_ = true;
   rests_.forget();
+  gaps_.rewritten();
 }
 
 // After a step that failed, which left position and velocity as they were: x_ and the method stand where it began.

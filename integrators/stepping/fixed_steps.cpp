@@ -35,7 +35,7 @@ FixedSteps::FixedSteps(const Run& run)
       jump_(first_jump(run.problem.model(), run.settings.end)),
       driver_jumps_(run.problem.model(), run.settings.end),
       rests_(run.problem),
-      gaps_(run.problem, run.settings),
+      gaps_(run.problem, run.settings, run.tell),
       still_(run.problem, run.tell),
       damping_(run),
       singular_ends_(run.problem, run.settings),
@@ -50,12 +50,13 @@ FixedSteps::FixedSteps(const Run& run)
 Status FixedSteps::march() {
   if (Status status = prepare(); !status.ok()) return status;
   Status status = begin();
+  if (integrates()) place(problem_);  // a beginning may have looked ahead
   if (status.ok()) status = measure_rotation(problem_, 0);
   settles_ = settings_.retry && integrates();
   if (integrates()) gaps_.begin(problem_, x_);
   branch_.begin(x_.a());
   if (integrates() && passed_.due(h_)) passed_.look(problem_, x_, h_);
-  if (integrates() && turned_.due(h_)) turned_.look(problem_, x_, h_);
+  if (status.ok() && integrates() && turned_.due(h_)) status = turned_.look(problem_, x_, h_);
   jumps_.look(problem_, x_, sides_);
   if (run_.singular_for > 0) start_ = Start::limit;
   if (phase_error().vibration != 0) coarse_.emplace(run_, phase_error());
@@ -114,6 +115,11 @@ Status FixedSteps::reach(double t, bool sampled) {
   x_.t = t;
   bool settled = false;
   if (status.ok()) status = examine_end(settled);
+  thrown_ = false;
+  if (status.ok() && integrates() && turned_.due(h_)) {
+    status = turned_.look(last_seen(), x_, h_);
+    thrown_ = !status.ok();
+  }
   if (!status.ok()) {
     x_.t = began;
     x_.q.swap(q_n_);
@@ -122,7 +128,6 @@ Status FixedSteps::reach(double t, bool sampled) {
   }
   branch_.follow();
   if (integrates() && passed_.due(h_)) passed_.look(last_seen(), x_, h_);
-  if (integrates() && turned_.due(h_)) turned_.look(last_seen(), x_, h_);
   if (!struck_.none() && integrates() && struck_.due(x_.v, v_n_)) struck_.look(last_seen(), x_, q_n_, v_n_, h_);
   if (integrates() && !jumps_.none()) look_for_jumps();
   start_ = settled ? Start::limit : led_ ? Start::rewritten : Start::usual;

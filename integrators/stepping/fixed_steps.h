@@ -191,6 +191,7 @@ class FixedSteps {
   LawJumps jumps_;
   LawJumps::Sides sides_, sides_before_;  // of jumps, at the last look and the one before
   bool over_jumps_ = false;               // the step under way was led over some
+  bool thrown_ = false;                   // the step that was tried last put a spring on its other side
   bool jump_told_ = false;
   std::optional<State> led_;    // where the step under way leads, by accelerations as they are
   std::optional<State> given_;  // a sample in a singular position

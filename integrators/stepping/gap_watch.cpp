@@ -25,6 +25,8 @@ constexpr std::size_t kMostBodies = 1000;
 constexpr double kTurnedMost = 0.5, kLooks = 20, kMuchSooner = 0.06;
 constexpr double kSteepTimes = 8;         // times the least: a singular position may be near
 constexpr double kOtherVelocities = 0.3;  // of their size, as far apart on two branches
+constexpr double kVerySteep = 50;         // times the least: a singular position was as good as met
+constexpr double kMayBeNear = 0.5;        // of the way from look to look
 constexpr int kMostUnjudged = 3;
 
 // Whether a mechanism of the scene may come to a singular position at all.
@@ -89,8 +91,9 @@ Status do_again(Problem& problem, const Settings& settings, State& state, double
 
 }  // namespace
 
-GapWatch::GapWatch(const Problem& problem, const Settings& settings)
+GapWatch::GapWatch(const Problem& problem, const Settings& settings, Tell tell)
     : settings_(settings),
+      tell_(std::move(tell)),
       parts_(problem),
       looks_(problem.model().bodies.size() <= kMostBodies && may_be_singular(problem.model())),
       length_(longest_arm(problem.model())),
@@ -111,6 +114,7 @@ void GapWatch::prepare(const Problem& problem) {
   own_ = problem.clone_without(all_but(problem.model().rows.size(), problem.model_rows()));
   revision_ = problem.revision();
   consistent_.emplace(*own_, settings_.linear());
+  side_.emplace(*own_);
   looks_ = consistent_->prepare().ok();
 }
 
@@ -134,7 +138,8 @@ Status GapWatch::look(const Problem& problem, const State& at) {
   way_ = 0;
   const double here = steepness(problem, at);
   least_ = std::min(least_, here);
-  due_ = std::clamp(least_ / here, kMuchSooner, 1.0);
+  const double before = std::exchange(due_, std::clamp(least_ / here, kMuchSooner, 1.0));
+  if (side_->reversed(*own_, std::min(before, due_) < kMayBeNear)) crossed_ = known_;
   if (!(here < kSteepTimes * least_)) {
     steep_ = known_;
     if (here >= steepest_) {
@@ -144,14 +149,16 @@ Status GapWatch::look(const Problem& problem, const State& at) {
     }
     return {};
   }
-  if (std::exchange(steep_, false)) {
-    if (const double share = judge(problem, at); share > kOtherVelocities) {
-      if (suspected_) return gone_over(problem, at, share);
+  if (std::exchange(steep_, false) || crossed_) {
+    const std::optional<Apart> apart = judge(problem, at);
+    if (!apart && crossed_) tell_unjudged(problem, at);
+    if (apart && are_others(*apart)) {
+      if (suspected_) return gone_over(problem, at, *apart);
       suspected_ = steep_ = true;
       return {};
     }
   }
-  suspected_ = false;
+  suspected_ = crossed_ = false;
   steepest_ = 0;
   t_ = at.t;
   q_ = at.q;
@@ -160,15 +167,21 @@ Status GapWatch::look(const Problem& problem, const State& at) {
   return {};
 }
 
-Status GapWatch::end(const Problem& problem, const State& at) {
-  if (!suspected_) return {};
-  const double share = judge(problem, at);
-  return share > kOtherVelocities ? gone_over(problem, at, share) : Status{};
+// Where it was only steep, coarse steps lead single bodies elsewhere that stay on their branch: what counts is all the
+// mechanism. Else one body is enough.
+bool GapWatch::are_others(const Apart& velocities) const {
+  const bool met = crossed_ || steepest_ > kVerySteep * least_;
+  return (met ? velocities.of_a_body : velocities.of_all) > kOtherVelocities;
 }
 
-// By how much of their size velocities are others than those of error control; 0 where nothing moves, or that is not
-// known. The largest of a mechanism.
-double GapWatch::judge(const Problem& problem, const State& at) {
+Status GapWatch::end(const Problem& problem, const State& at) {
+  if (!suspected_) return {};
+  const std::optional<Apart> apart = judge(problem, at);
+  return apart && are_others(*apart) ? gone_over(problem, at, *apart) : Status{};
+}
+
+// Nothing where error control finds no way; 0 where nothing moves.
+std::optional<GapWatch::Apart> GapWatch::judge(const Problem& problem, const State& at) {
   constexpr double kMoves = 1e-4;  // arms of the mechanism, meanwhile
   const std::unique_ptr<Problem> own =
       problem.clone_without(all_but(problem.model().rows.size(), problem.model_rows()));
@@ -179,37 +192,54 @@ double GapWatch::judge(const Problem& problem, const State& at) {
   const std::vector<BodyState> began = bodies_at(*own, t_, q_, v_), now = bodies_at(*own, at.t, at.q, at.v);
   if (!do_again(*own, settings_, again, at.t).ok()) {
     ++unjudged_;
-    return 0;
+    return {};
   }
   const std::vector<BodyState> right = bodies_at(*own, again.t, again.q, again.v), rest(now.size());
-  double share = 0;
+  Apart apart;
   for (std::size_t part = 0; part < parts_.count(); ++part) {
-    double fastest = 0;
-    for (std::size_t b = 0; b < now.size(); ++b)
-      if (parts_.of_body(static_cast<int>(b)) == part)
-        for (const std::vector<BodyState>* x : {&began, &now, &right})
-          fastest = std::max({fastest, (*x)[b].rd.norm(), length_ * (*x)[b].w.norm()});
+    const auto largest_of = [&](const std::vector<BodyState>& x, const std::vector<BodyState>& y) {
+      double largest = 0;
+      for (std::size_t b = 0; b < x.size(); ++b)
+        if (parts_.of_body(static_cast<int>(b)) == part)
+          largest = std::max({largest, (x[b].rd - y[b].rd).norm(), length_ * (x[b].w - y[b].w).norm()});
+      return largest;
+    };
+    const double fastest = std::max({largest_of(began, rest), largest_of(now, rest), largest_of(right, rest)});
     if (!(fastest * (at.t - t_) > kMoves * length_)) continue;
+    apart.of_a_body = std::max(apart.of_a_body, largest_of(now, right) / fastest);
     const auto square = [&](const std::vector<BodyState>& x, const std::vector<BodyState>& y) {
       return twice_kinetic(problem.model(), parts_, part, x, y);
     };
     const double size = std::max({square(began, rest), square(now, rest), square(right, rest)});
-    if (size > 0) share = std::max(share, std::sqrt(square(now, right) / size));
+    if (size > 0) apart.of_all = std::max(apart.of_all, std::sqrt(square(now, right) / size));
   }
-  return share;
+  return apart;
 }
 
-Status GapWatch::gone_over(const Problem& problem, const State& at, double share) {
+// "by" the row that is hardly independent at the steepest place.
+std::string GapWatch::place(const Problem& problem) {
   const int rows = static_cast<int>(problem.model_rows().size());
   const int row = most_dependent_row(*own_, rows, t_steepest_, span(q_steepest_)).row;
-  const std::string where = row < 0 ? "" : fmt::format(" by {}", problem.describe_unknown(problem.nv() + row));
+  return row < 0 ? "" : fmt::format(" by {}", problem.describe_unknown(problem.nv() + row));
+}
+
+void GapWatch::tell_unjudged(const Problem& problem, const State& at) {
+  tell_(fmt::format(
+      "between t = {:.6g} s and t = {:.6g} s, beside a singular position of the constraints{}, the steps go straight "
+      "on to where another branch of positions begins or crosses theirs, and error control finds no way there: that "
+      "the motion does so is not certain",
+      t_, at.t, place(problem)));
+}
+
+Status GapWatch::gone_over(const Problem& problem, const State& at, const Apart& apart) {
+  const std::string where = place(problem);
   return with_settings(
       {Failure::singular_position, at.t,
        fmt::format(
            "between t = {:.9g} s and t = {:.9g} s, beside a singular position of the constraints{}, the steps "
            "have gone over to another branch than the motion belongs to, or are too long to follow it: velocities "
            "are off by {:.2g} of their size from those of error control",
-           t_, at.t, where, share)},
+           t_, at.t, where, std::max(apart.of_all, apart.of_a_body))},
       "try another step or dop853");
 }
 

@@ -16,8 +16,10 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "integrators/integrator.h"
+#include "integrators/stepping/branch_side.h"
 #include "integrators/stepping/consistent.h"
 #include "integrators/stepping/parts.h"
 
@@ -25,7 +27,7 @@ namespace poinsot {
 
 class GapWatch {
  public:
-  GapWatch(const Problem& problem, const Settings& settings);
+  GapWatch(const Problem& problem, const Settings& settings, Tell tell);
 
   // Before the run, which begins at `at`: later looks allocate nothing.
   void begin(const Problem& problem, const State& at);
@@ -33,27 +35,42 @@ class GapWatch {
   bool due(double turned, const Eigen::VectorXd& v, double h);
   // That end, `at`. Fails where the branch was left.
   Status look(const Problem& problem, const State& at);
+  // Rows or coordinates are others from here on.
+  void rewritten() {
+    if (side_) side_->forget();
+  }
   // The run ends there.
   Status end(const Problem& problem, const State& at);
 
  private:
   void prepare(const Problem& problem);
   double steepness(const Problem& problem, const State& at);
-  double judge(const Problem& problem, const State& at);
-  Status gone_over(const Problem& problem, const State& at, double share);
+  // By how much of their size velocities are others than those of error control, in the mechanism where they are most.
+  struct Apart {
+    double of_all = 0;     // by kinetic energy
+    double of_a_body = 0;  // by that which moves or turns differently most
+  };
+  std::optional<Apart> judge(const Problem& problem, const State& at);
+  bool are_others(const Apart& velocities) const;
+  void tell_unjudged(const Problem& problem, const State& at);
+  std::string place(const Problem& problem);
+  Status gone_over(const Problem& problem, const State& at, const Apart& apart);
 
   const Settings& settings_;
+  const Tell tell_;
   const Parts parts_;
   bool looks_;
   double length_;                 // m, the longest arm
   std::unique_ptr<Problem> own_;  // with the rows of the run's
   std::optional<Consistent> consistent_;
+  std::optional<BranchSide> side_;
   int revision_ = 0;
   const double of_run_;  // part of the way to the next look, of a step at least
   double way_ = 0;       // since the last look, of 1
   double due_ = 0;       // when the next is
   double least_;         // steepness
   bool steep_ = false, known_ = false;
+  bool crossed_ = false;    // to another branch, since, as gradients say
   bool suspected_ = false;  // it seems so, at one look
   int unjudged_ = 0;        // stretches that error control could not do
   double t_ = 0;            // where it was not steep at last

@@ -21,6 +21,23 @@ double turns_round(const SpringLaw& of, const LawPlace& from, const LawPlace& to
   return std::abs(F) * h > kCounts * of.inertia * speed ? F : 0;
 }
 
+// s, the longest step for a spring that one of h throws to the other side of no length, as its force and not the ends'
+// velocities lead to; 0 where that is not what has happened. Where its force is as good as constant, as that of a long
+// soft one, steps follow it.
+double step_not_thrown(const SpringLaw& of, const LawPlace& from, const LawPlace& to, double t, double h) {
+  constexpr double kNear = 0.5;  // of the shorter span: how close to no length the straight way passes
+  constexpr double kLed = 0.5;   // of the first: what the velocities leave of it
+  constexpr double kPart = 0.5;  // of the way: what the change of the force has to account for
+  const double before = from.d.norm(), after = to.d.norm();
+  const Vector3 way = to.d - from.d;
+  const double side = from.d.dot(to.d);
+  if (!(side < 0) || from.d.cross(way).norm() > kNear * std::min(before, after) * way.norm()) return 0;
+  if (from.d.dot(from.d + h * from.rate) < kLed * before * before) return 0;
+  const double change = std::abs(of.at_rest(before, t) - of.at_rest(0, t));
+  if (!(h * h * change > kPart * of.inertia * way.norm())) return 0;
+  return std::sqrt(of.inertia * before / change);
+}
+
 // Steps of h until the ends may pass one another.
 double steps_until_passed(const LawPlace& at, double h) {
   constexpr double kMost = 64;
@@ -36,26 +53,44 @@ TurnedInSteps::TurnedInSteps(const Model& model, Tell tell) : model_(model), tel
   if (!springs_.empty()) bodies_.resize(model.bodies.size());
 }
 
-void TurnedInSteps::look(const Problem& problem, const State& at, double h) {
+Status TurnedInSteps::look(const Problem& problem, const State& at, double h) {
   problem.to_bodies(at.a(), bodies_);
-  const bool goes_on = look_.goes_on(at.t, h);
-  double quiet = HUGE_VAL;
-  for (Spring& spring : springs_) {
-    const LawPlace to = spring.of.place(model_, problem, bodies_);
-    const double F = goes_on ? turns_round(spring.of, spring.from, to, at.t, h) : 0;
-    if (F != 0) {
+  for (Spring& spring : springs_) spring.to = spring.of.place(model_, problem, bodies_);
+  if (look_.goes_on(at.t, h)) {
+    for (const Spring& spring : springs_) {
+      if (Status status = thrown_over(spring, at, h); !status.ok()) return status;
+      const double F = told_ ? 0 : turns_round(spring.of, spring.from, spring.to, at.t, h);
+      if (F == 0) continue;
+      told_ = true;
       tell_(fmt::format(
           "at t = {:.6g} s {} passes through no length within a step, and its force, {:.3g} N, turns round: "
           "that costs an error in proportion to the step, whatever the method's order; an integrator with "
           "error control steps onto it",
           at.t, spring.of.called(model_), F));
-      springs_.clear();
-      return;
     }
-    spring.from = to;
-    quiet = std::min(quiet, steps_until_passed(to, h));
   }
-  look_.after(at.t, h, quiet);
+  double quiet = HUGE_VAL;
+  for (Spring& spring : springs_) {
+    spring.from = spring.to;
+    quiet = std::min(quiet, steps_until_passed(spring.to, h));
+  }
+  const bool first = !std::exchange(begun_, true);  // accelerations may not be known yet
+  look_.after(at.t, h, first ? 1 : quiet);
+  return {};
+}
+
+Status TurnedInSteps::thrown_over(const Spring& spring, const State& at, double h) const {
+  const double serves = step_not_thrown(spring.of, spring.from, spring.to, at.t, h);
+  if (serves == 0) return {};
+  Status status = with_settings(
+      {Failure::not_converged, at.t,
+       fmt::format("at t = {:.9g} s a step has put {} through no length to the other side, where its ends' velocities "
+                   "do not lead: it is too long for so stiff a spring, and its equations have a solution on either "
+                   "side",
+                   at.t, spring.of.called(model_))},
+      fmt::format("try a step of at most {:.2g} s", serves));
+  status.step = serves;
+  return status;
 }
 
 }  // namespace poinsot

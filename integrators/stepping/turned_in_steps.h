@@ -3,6 +3,9 @@
 //
 // What the force does in the meantime is unknown to the step, which leaves F h/m of velocity open: an error of first
 // order, whatever the method's. Nothing is looked at while the ends cannot have come near one another.
+//
+// Of a spring that is stiff beside the step, h² k/m > 1, the equations of a step have a solution on either side of no
+// length. One on the other side than the ends' velocities lead to is none of the motion: such a step fails.
 #pragma once
 
 #include <vector>
@@ -21,20 +24,23 @@ class TurnedInSteps {
 
   // Whether the end of the step under way is to be looked at.
   bool due(double h) { return !springs_.empty() && look_.due(h); }
-  // The problem stands at `at`, where a step of h has ended or the run begins.
-  void look(const Problem& problem, const State& at, double h);
+  // The problem stands at `at`, where a step of h has ended or the run begins. A step that has failed was not looked
+  // at.
+  Status look(const Problem& problem, const State& at, double h);
 
  private:
   struct Spring {
     SpringLaw of;
-    LawPlace from;  // where the last look was
+    LawPlace from{}, to{};  // where the last look was, and this one is
   };
+  Status thrown_over(const Spring& spring, const State& at, double h) const;
 
   const Model& model_;
   const Tell tell_;
   std::vector<Spring> springs_;
   std::vector<BodyState> bodies_;
   NextLook look_;
+  bool begun_ = false, told_ = false;
 };
 
 }  // namespace poinsot
