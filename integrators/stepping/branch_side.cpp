@@ -1,6 +1,8 @@
 #include "integrators/stepping/branch_side.h"
 
-#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/body_sizes.h"
 #include "core/index.h"
@@ -23,9 +25,10 @@ BranchSide::BranchSide(const Problem& problem) {
   const std::vector<double> sizes = body_sizes(problem.model());
   const Eigen::Index per_body = columns / static_cast<Eigen::Index>(sizes.size());
   weights_ = Eigen::VectorXd::Ones(columns);
-  for (Eigen::Index k = 0; k < columns; ++k)
-    if (k % per_body >= 3)
-      weights_[k] /= sizes[index(static_cast<int>(k / per_body))] * sizes[index(static_cast<int>(k / per_body))];
+  for (Eigen::Index first = 3; const double size : sizes) {  // what turns, as the way it makes there
+    weights_.segment(first, per_body - 3).setConstant(1 / (size * size));
+    first += per_body;
+  }
 }
 
 bool BranchSide::reversed(Problem& problem, bool near) {
