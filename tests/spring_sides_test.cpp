@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/scene_reader.h"
 #include "integrators/stepping/turned_in_steps.h"
 #include "tests/support/simulation.h"
 
@@ -91,6 +92,18 @@ TEST(SpringSides, WhatVelocitiesLeadToIsLeftAlone) {
       EXPECT_LT(nearest(r), 0) << integrator;
       EXPECT_THAT(r.outcome.notices, Each(Not(HasSubstr("done in parts"))));
     }
+}
+
+// Short stiff springs that hold bodies together like pins: coarse steps go over no length of theirs to and fro.
+TEST(SpringSides, PinsHaveNone) {
+  const Scene scene = read_scene(POINSOT_SOURCE_DIR "/tests/scenes/bushings.json");
+  for (const char* integrator : {"implicit_euler", "generalized_alpha", "generalized_alpha_i2"}) {
+    Settings settings;
+    settings.integrator = integrator, settings.step = 0.02, settings.end = 1;
+    const Recorded r = run(scene, settings);
+    EXPECT_TRUE(r.outcome.status.ok()) << integrator << ": " << r.outcome.status.message;
+    EXPECT_THAT(r.outcome.notices, Each(Not(HasSubstr("done in parts"))));
+  }
 }
 
 }  // namespace

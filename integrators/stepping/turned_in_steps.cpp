@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/index.h"
+
 namespace poinsot {
 namespace {
 
@@ -23,16 +25,24 @@ double turns_round(const SpringLaw& of, const LawPlace& from, const LawPlace& to
 
 // s, the longest step for a spring that one of h throws to the other side of no length, as its force and not the ends'
 // velocities lead to; 0 where that is not what has happened. Where its force is as good as constant, as that of a long
-// soft one, steps follow it.
-double step_not_thrown(const SpringLaw& of, const LawPlace& from, const LawPlace& to, double t, double h) {
+// soft one, steps follow it. That other solution is no farther from no length than about the spring is long, and there
+// is none where its force there is too small to hold the ends against their velocities: coarse steps go beyond where a
+// short stiff spring leads. Nor is a side anything of springs that stand for a pin, short beside their `arm`, m.
+double step_not_thrown(const SpringLaw& of, double arm, const LawPlace& from, const LawPlace& to, double t, double h) {
   constexpr double kNear = 0.5;  // of the shorter span: how close to no length the straight way passes
   constexpr double kLed = 0.5;   // of the first: what the velocities leave of it
+  constexpr double kFar = 2;     // of its own length
+  constexpr double kPin = 0.01;  // of the arm
   constexpr double kPart = 0.5;  // of the way: what the change of the force has to account for
   const double before = from.d.norm(), after = to.d.norm();
   const Vector3 way = to.d - from.d;
   const double side = from.d.dot(to.d);
-  if (!(side < 0) || from.d.cross(way).norm() > kNear * std::min(before, after) * way.norm()) return 0;
-  if (from.d.dot(from.d + h * from.rate) < kLed * before * before) return 0;
+  if (of.zero < kPin * arm || !(side < 0) || after > kFar * of.zero ||
+      from.d.cross(way).norm() > kNear * std::min(before, after) * way.norm())
+    return 0;
+  const Vector3 led = from.d + h * from.rate;
+  if (from.d.dot(led) < kLed * before * before) return 0;
+  if (!(h * h * std::abs(of.at_rest(0, t)) > of.inertia * led.norm())) return 0;
   const double change = std::abs(of.at_rest(before, t) - of.at_rest(0, t));
   if (!(h * h * change > kPart * of.inertia * way.norm())) return 0;
   return std::sqrt(of.inertia * before / change);
@@ -49,7 +59,11 @@ double steps_until_passed(const LawPlace& at, double h) {
 }  // namespace
 
 TurnedInSteps::TurnedInSteps(const Model& model, Tell tell) : model_(model), tell_(std::move(tell)) {
-  for (const SpringLaw& of : springs_that_may_turn_round(model)) springs_.push_back({of, {}});
+  const auto arm = [](int body, const Vector3& s) { return body == kGround ? 0 : s.norm(); };
+  for (const SpringLaw& of : springs_that_may_turn_round(model)) {
+    const ::poinsot::Spring& spring = model.springs[index(of.spring)];
+    springs_.push_back({of, std::max(arm(spring.i, spring.s_i), arm(spring.j, spring.s_j))});
+  }
   if (!springs_.empty()) bodies_.resize(model.bodies.size());
 }
 
@@ -80,7 +94,7 @@ Status TurnedInSteps::look(const Problem& problem, const State& at, double h) {
 }
 
 Status TurnedInSteps::thrown_over(const Spring& spring, const State& at, double h) const {
-  const double serves = step_not_thrown(spring.of, spring.from, spring.to, at.t, h);
+  const double serves = step_not_thrown(spring.of, spring.arm, spring.from, spring.to, at.t, h);
   if (serves == 0) return {};
   Status status = with_settings(
       {Failure::not_converged, at.t,

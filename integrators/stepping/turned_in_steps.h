@@ -31,6 +31,7 @@ class TurnedInSteps {
  private:
   struct Spring {
     SpringLaw of;
+    double arm;             // m, the longer one on a body
     LawPlace from{}, to{};  // where the last look was, and this one is
   };
   Status thrown_over(const Spring& spring, const State& at, double h) const;
