@@ -19,8 +19,8 @@ struct WhatMoved {
   std::span<const BodyState> from, to;
   Violation before;  // of `from`
 
-  // One sentence. Throw InputError where constraints that all but depend on one another are satisfied by a change that
-  // nobody can have meant.
+  // One sentence each. Throw InputError where constraints that all but depend on one another are satisfied by a change
+  // that nobody can have meant.
   std::string told_of_pose() const;
   std::string told_of_velocities() const;
 };

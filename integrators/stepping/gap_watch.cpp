@@ -140,13 +140,13 @@ Status GapWatch::look(const Problem& problem, const State& at) {
   least_ = std::min(least_, here);
   const double before = std::exchange(due_, std::clamp(least_ / here, kMuchSooner, 1.0));
   if (side_->reversed(*own_, std::min(before, due_) < kMayBeNear)) crossed_ = known_;
+  if (here >= steepest_) {
+    steepest_ = here;
+    t_steepest_ = at.t;
+    q_steepest_ = at.q;
+  }
   if (!(here < kSteepTimes * least_)) {
     steep_ = known_;
-    if (here >= steepest_) {
-      steepest_ = here;
-      t_steepest_ = at.t;
-      q_steepest_ = at.q;
-    }
     return {};
   }
   if (std::exchange(steep_, false) || crossed_) {

@@ -7,7 +7,10 @@
 // and more often where it is steeper than elsewhere: about as many times less far a singular position may be. Once it
 // has been several times its least, and is not any more, what lies between is done again under error control, which
 // does not go over gaps: where velocities come to be altogether others, at two looks, the steps have left the branch.
-// Where error control finds no way, either, nothing is said.
+// The same is done where the constraints' gradients are reversed from one look to the next (branch_side.h), however
+// steep it was: then, or beside what is as good as a singular position, one body with other velocities is enough, as of
+// several degrees of freedom a gap may touch few. Where gradients are reversed and error control finds no way, it is
+// told that the branch is not certain; after three stretches without a way no more are looked at.
 //
 // Mechanisms without loops, of hinges and driven angles alone, have no such positions; those of more than a thousand
 // bodies are not looked at, nor are runs that begin in a singular position.
