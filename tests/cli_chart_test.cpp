@@ -208,6 +208,8 @@ TEST_F(Chart, SaysWhatIsWrong) {
        "--integrators, --formulations: integrator 'ida' refuses formulation 'rA': it needs a vector space of "
        "coordinates with their rates as velocities, which is rp");
   says({"chart", "pendulum.json", "--out", ""}, "--out: found \"\", expected a folder; see poinsot chart --help");
+  says({"chart", "pendulum.json", "--formulations", "rA,"},
+       "--formulations: a name is missing in \"rA,\", expected names with a comma between");
   says({"chart", "pendulum.json", "--end", "0"}, "--end: found \"0\", expected a number greater than 0");
   EXPECT_EQ(files(), before);
   write("conflicting.json", kConflicting);
