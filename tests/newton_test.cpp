@@ -350,6 +350,27 @@ TEST_P(Newton, StepsAllocateNothing) {
   }
 }
 
+// Nor do steps of the other methods of fixed steps; where pivots are chosen anew, or a look is due, it is the solver's.
+TEST_P(Newton, StepsOfNoMethodAllocate) {
+  for (const IntegratorEntry& integrator : integrators()) {
+    if (integrator.controls_error || integrator.analysis != Analysis::dynamics) continue;
+    for (const char* model : {"double_pendulum", "double_pendulum_joints", "slider_crank_joints"}) {
+      Settings settings = dynamics_with(1e-3, 0.04);
+      settings.integrator = integrator.name, settings.linear_solver = "dense";
+      if (refusal_of(integrator, formulation())) continue;
+      std::int64_t steps = 0, allocated = 0, allocating = 0;
+      const Outcome outcome = simulate(scene_of(model), settings, [&](const Sample& sample) {
+        const std::int64_t now = allocations();
+        if (++steps > 2 && sample.t < settings.end) allocating += now != allocated;
+        allocated = allocations();
+      });
+      EXPECT_TRUE(outcome.status.ok()) << outcome.status.message;
+      EXPECT_EQ(steps, 41);
+      EXPECT_LE(allocating, 1) << model << ' ' << integrator.name;
+    }
+  }
+}
+
 TEST(Allocations, AreCounted) {
   const long before = allocations();
   const Eigen::VectorXd x = Eigen::VectorXd::Zero(10);

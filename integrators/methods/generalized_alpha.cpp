@@ -296,7 +296,8 @@ class GeneralizedAlpha : public FixedSteps {
     eta_.setZero();
     return {};
   }
-  Status solve_normal(double t, const Vector& along) {
+  template <class Along>
+  Status solve_normal(double t, const Along& along) {
     aside_.head(nv_).setZero();
     aside_.tail(nc_) = along;
     return system_.solve(t, span(aside_));
