@@ -138,12 +138,25 @@ class Configuration {
   Vec3<T> span_rate(int i, int j, int p, int q_marker) const {
     return rd(j) + s_dot[static_cast<std::size_t>(q_marker)] - rd(i) - s_dot[static_cast<std::size_t>(p)];
   }
+  // What of ḋ bodies make that are rigid: in rp p·ṗ is not 0 within a step, and stretches besides.
+  Vec3<T> rigid_span_rate(int i, int j, int p, int q_marker) const {
+    return rd(j) + turn_rate(q_marker) - rd(i) - turn_rate(p);
+  }
+  Vec3<T> w(int body) const {  // global
+    return body == kGround ? Vec3<T>(Vec3<T>::Zero()) : rate[static_cast<std::size_t>(body)].wg;
+  }
 
   // E(s)ᵀ w = [s × w; s·w], E(s) z = z × s + stretch s; E(s) is 3 × ambient.
   static Ambient Et_times(const Vec3<T>& s_of, const Vec3<T>& w) {
     Ambient e;
     e.template head<3>() = s_of.cross(w);
     if constexpr (F::ambient == 4) e[3] = s_of.dot(w);
+    return e;
+  }
+  // The same of w's moment alone.
+  static Ambient moment(const Vec3<T>& s_of, const Vec3<T>& w) {
+    Ambient e = Ambient::Zero();
+    e.template head<3>() = s_of.cross(w);
     return e;
   }
   static Vec3<T> E_times(const Vec3<T>& s_of, const Ambient& z) {
@@ -194,6 +207,10 @@ class Configuration {
   mutable std::vector<LawPotential> stored;      // of springs, then of torsion springs
 
  private:
+  Vec3<T> turn_rate(int marker) const {
+    return w(elements->markers[static_cast<std::size_t>(marker)].body).cross(s[static_cast<std::size_t>(marker)]);
+  }
+
   static Jet2<T> evaluate(const RightSide& side, const T& t) {
     const Jet2<double> jet = side.f.at(plain(t));
     if (!side.squared) return lift(jet, t);

@@ -107,6 +107,7 @@ struct Elements::Builder {
       case RowType::pfaffian:
         e.pfaffian.push_back({base, marker(r.j, r.a_j), marker(r.i, r.s_i), marker(r.j, r.s_j)});
         couple(base.pair, false, true, false);
+        touch(r.i, false, true);
         touch(r.j, false, true);
         break;
     }

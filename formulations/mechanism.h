@@ -23,10 +23,7 @@ class Mechanism {
   static constexpr int kV = C::kVelocities, kQ = C::kCoordinates;
 
   explicit Mechanism(std::shared_ptr<const Elements> elements)
-      : c(std::move(elements)),
-        wrench_(c.at.size()),
-        N_(c.at.size()),
-        needs_s_dot_(!c.elements->pfaffian.empty() || damped(*c.elements)) {}
+      : c(std::move(elements)), wrench_(c.at.size()), N_(c.at.size()), needs_s_dot_(damped(*c.elements)) {}
 
   int nb() const { return c.elements->nb; }
   int nq() const { return kQ * nb(); }

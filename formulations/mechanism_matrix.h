@@ -106,6 +106,7 @@ class MechanismMatrix {
         const auto& own = second_.body(b);
         const auto& W = at.W();
         K += W.transpose() * own.xx * W;
+        if (!c.elements->pfaffian.empty()) K += F::torque_variation(at, own.moment);
         sink.first(r, x, Eigen::Matrix<T, 3, F::m>(cq * own.rx * W));
         sink.first(x, r, Eigen::Matrix<T, F::m, 3>(cq * (own.xr_transposed * W).transpose()));
       }

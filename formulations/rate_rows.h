@@ -72,8 +72,9 @@ class RateRows {
   static void velocity(const C& c, Visit&& visit) {
     for (const PfaffianRow& k : c.elements->pfaffian) {
       const Vec3<T>& a = c.s[index(k.a)];
-      const auto [xi, xj] = along(c, k, a, Vec3<T>(Vec3<T>::Zero()));
-      visit(Variation{k.row, k.i, k.j, xi, xj + moved(c, k.j, a, c.span_rate(k.i, k.j, k.p, k.q)), Vec3<T>::Zero()},
+      const Vec3<T> dd = c.rigid_span_rate(k.i, k.j, k.p, k.q);
+      visit(Variation{k.row, k.i, k.j, -swept(c, k.i, k.p, a), swept(c, k.j, k.q, a) + moved(c, k.j, a, dd),
+                      Vec3<T>::Zero()},
             std::false_type());
     }
   }
@@ -88,6 +89,13 @@ class RateRows {
   static X turned(const C& c, int body, const Vec3<T>& s_bar, const Vec3<T>& w) {
     if (body == kGround) return X::Zero();
     return F::s_dot_variation(c.at[index(body)], c.rate[index(body)], c.xd(body), s_bar).transpose() * w;
+  }
+  // w·δ(ω × s)
+  static X swept(const C& c, int body, int marker, const Vec3<T>& w) {
+    if (body == kGround) return X::Zero();
+    const Vec3<T>& s = c.s[index(marker)];
+    const auto dw = F::angular_velocity_variation(c.at[index(body)], c.rate[index(body)], c.xd(body));
+    return dw.transpose() * s.cross(w) + moved(c, body, s, w.cross(c.w(body)));
   }
   // ẇ·δd + w·δḋ without r, as rows for the two bodies
   template <class Row>

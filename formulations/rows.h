@@ -2,7 +2,8 @@
 // f(t).
 //
 // A row's gradient is (−g, e_i | g, e_j): g for r_j and −g for r_i, and for the orientations the ambient vectors
-// e = Σ E(s)ᵀw over the attached vectors s the row depends on, which a formulation pulls back by Ŵᵀ.
+// e = Σ E(s)ᵀw over the attached vectors s the row depends on, which a formulation pulls back by Ŵᵀ; of a velocity row
+// the moment alone, e = Σ [s × w; 0].
 #pragma once
 
 #include <algorithm>
@@ -76,13 +77,14 @@ class Rows {
     }
   }
 
-  // visit(gradient, has_r, Ψv − f): the velocity rows; needs compute_s_dot.
+  // visit(gradient, has_r, Ψv − f): the velocity rows. Of bodies that are rigid: in rp, within a step of implicit
+  // Euler, p·ṗ = −½ h ṗ·ṗ, and where rows are all but parallel the stretch in their place would lead them astray.
   template <class Visit>
   static void velocity(const C& c, Visit&& visit, RowRange range = {}) {
     for (const PfaffianRow& k : of(c.elements->pfaffian, range)) {
       const Vec3<T>& a = c.s[index(k.a)];
-      visit(along(k, c.s[index(k.p)], c.s[index(k.q)], a), std::true_type(),
-            T(a.dot(c.span_rate(k.i, k.j, k.p, k.q)) - c.f[index(k.f)].f));
+      visit(Gradient{k.row, k.i, k.j, -C::moment(c.s[index(k.p)], a), C::moment(c.s[index(k.q)], a), a},
+            std::true_type(), T(a.dot(c.rigid_span_rate(k.i, k.j, k.p, k.q)) - c.f[index(k.f)].f));
     }
   }
 
@@ -118,6 +120,11 @@ class Rows {
       if (body == kGround) return Vec3<T>::Zero();
       return N[index(body)] * c.s_bar(k);
     };
+    const auto rigid_sdd = [&](int k) -> Vec3<T> {  // (ω × s)˙ at ẍ = 0
+      if constexpr (!F::normalized) return sdd(k);
+      const Vec3<T> w = c.w(e.markers[index(k)].body);
+      return w.cross(w.cross(s(k)));
+    };
     for (const DP1Row& k : c.dp1) {
       out[k.row] = c.f[index(k.f)].fdd - s(k.v).dot(sdd(k.u)) - 2 * sd(k.u).dot(sd(k.v)) - s(k.u).dot(sdd(k.v));
     }
@@ -148,8 +155,8 @@ class Rows {
       Eigen::Map<Vec3<T>>{out + k.row} = sdd(k.p) - sdd(k.q);
     }
     for (const PfaffianRow& k : e.pfaffian) {
-      const Vec3<T> dd = c.span_rate(k.i, k.j, k.p, k.q);
-      out[k.row] = c.f[index(k.f)].fd - sd(k.a).dot(dd) - s(k.a).dot(sdd(k.q) - sdd(k.p));
+      const Vec3<T> dd = c.rigid_span_rate(k.i, k.j, k.p, k.q);
+      out[k.row] = c.f[index(k.f)].fd - sd(k.a).dot(dd) - s(k.a).dot(rigid_sdd(k.q) - rigid_sdd(k.p));
     }
   }
 

@@ -23,6 +23,7 @@ struct SecondVariation {
     RA3 rx = RA3::Zero();
     RA3 xr_transposed = RA3::Zero();
     AA xx = AA::Zero();
+    Vec3<T> moment = Vec3<T>::Zero();  // of velocity rows; its variation at a moment that stays is not in xx
   };
   struct OnPair {  // (i, j) and, mirrored, (j, i)
     AA xx_ij = AA::Zero(), xx_ji = AA::Zero();
@@ -118,17 +119,22 @@ struct SecondVariation {
       on_S(k.i, -force, bar(k.p));
       on_S(k.j, force, bar(k.q));
     }
-    for (const PfaffianRow& k : e.pfaffian) {  // the reaction Ψᵀλ varies with a_j only; no mirror
+    for (const PfaffianRow& k : e.pfaffian) {  // the reaction Ψᵀλ, forces and moments, varies with a_j; no mirror
       const Vec3<T> a = lambda[k.row] * s(k.a);
-      on_S(k.i, -a, bar(k.p));
-      on_S(k.j, a, bar(k.q));
+      const auto acts = [&](int of, const Vec3<T>& s_of, const Vec3<T>& force) {
+        if (of == kGround) return;
+        body(of).moment += s_of.cross(force);
+        body(of).xx.template topRows<3>() -= tilde<T>(force) * C::E(s_of);
+      };
+      acts(k.i, s(k.p), -a);
+      acts(k.j, s(k.q), a);
       if (k.j != kGround) {
         body(k.j).rx += C::E(a);
-        body(k.j).xx += C::EtE(s(k.q), a);
+        body(k.j).xx.template topRows<3>() += tilde<T>(s(k.q)) * C::E(a);
       }
       if (k.pair < 0) continue;
       pair_with_r(k.pair).rx_ij -= C::E(a);
-      pair(k.pair).xx_ij -= C::EtE(s(k.p), a);
+      pair(k.pair).xx_ij.template topRows<3>() -= tilde<T>(s(k.p)) * C::E(a);
     }
   }
 
