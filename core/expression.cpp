@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/expression_parser.h"
+#include "core/expression_terms.h"
 
 namespace poinsot {
 
@@ -21,16 +22,35 @@ Expression::Expression(std::string_view text, ParsedTape parsed) {
   if (constant_) {
     value_ = parsed.tape[0].value;
   } else {
-    kept->switches =
-        static_cast<int>(std::ranges::count_if(parsed.tape, [](const TapeInstruction& i) { return has_switch(i.op); }));
-    const auto has = [&](TapeOp op) {
-      return std::ranges::find(parsed.tape, op, &TapeInstruction::op) != parsed.tape.end();
-    };
-    kept->with_rate = has(TapeOp::rate), kept->with_time = has(TapeOp::time);
     kept->tape = std::move(parsed.tape);
     kept->tables = std::move(parsed.tables);
+    look_through(*kept);
   }
   parsed_ = std::move(kept);
+}
+
+void Expression::look_through(Parsed& parsed) {
+  const auto& tape = parsed.tape;
+  parsed.switches =
+      static_cast<int>(std::ranges::count_if(tape, [](const TapeInstruction& i) { return has_switch(i.op); }));
+  const auto has = [&](TapeOp op) { return std::ranges::find(tape, op, &TapeInstruction::op) != tape.end(); };
+  parsed.with_elongation = has(TapeOp::elongation);
+  parsed.with_rate = has(TapeOp::rate);
+  parsed.with_time = has(TapeOp::time);
+}
+
+std::vector<Expression> Expression::terms() const {
+  if (constant_ || is_function()) return {*this};
+  std::vector<Tape> tapes = tape_terms(parsed_->tape);
+  if (tapes.size() == 1) return {*this};
+  std::vector<Expression> terms(tapes.size(), *this);
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    auto kept = std::make_shared<Parsed>(*parsed_);
+    kept->tape = std::move(tapes[k]);
+    look_through(*kept);
+    terms[k].parsed_ = std::move(kept);
+  }
+  return terms;
 }
 
 Expression Expression::parse(std::string_view text, ExpressionNames* names) {

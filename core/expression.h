@@ -93,6 +93,10 @@ class Expression {
     if (!parsed_->with_rate) return {F.f, F.fd, T(0)};
     return {F.f, F.fd, run_tape<T>(parsed_->tape, {t, {at.x, T(0), T(0)}, {at.v, T(1), T(0)}}).fd};
   }
+  // The terms it is the sum of but for a constant (core/expression_terms.h), each with the text of the whole: itself
+  // alone, mostly.
+  std::vector<Expression> terms() const;
+  bool depends_on_elongation() const { return !constant_ && parsed_->with_elongation; }
   bool depends_on_rate() const { return !constant_ && parsed_->with_rate; }
   bool depends_on_time() const { return !constant_ && parsed_->with_time; }
 
@@ -117,9 +121,9 @@ class Expression {
     if (parsed_->function) return {Bounds::unknown(), Bounds::unknown(), Bounds::unknown()};
     return tape_range(parsed_->tape, at);
   }
-  // Of a law, by x in the place of time.
-  Jet2<Bounds> law_range(const Arguments<Bounds>& at) const {
-    return parsed_ ? tape_range(parsed_->tape, at, TapeOp::elongation) : range(at);
+  // Of a law, by x, or by v, in the place of time.
+  Jet2<Bounds> law_range(const Arguments<Bounds>& at, TapeOp by = TapeOp::elongation) const {
+    return parsed_ ? tape_range(parsed_->tape, at, by) : range(at);
   }
 
   // Why f, or one of its first `derivatives` derivatives with time, is not finite at t, as a sentence's part:
@@ -136,9 +140,10 @@ class Expression {
     std::vector<std::shared_ptr<const Spline>> tables;
     std::function<Jet2<double>(double)> function;  // in the place of the tape
     int switches = 0;
-    bool with_rate = false, with_time = false;
+    bool with_elongation = false, with_rate = false, with_time = false;
   };
   Expression(std::string_view text, ParsedTape parsed);
+  static void look_through(Parsed& parsed);
   template <class T>
   static Jet2<T> jet_of(const Jet2<double>& f) {
     return {static_cast<T>(f.f), static_cast<T>(f.fd), static_cast<T>(f.fdd)};

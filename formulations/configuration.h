@@ -95,7 +95,7 @@ class Configuration {
     return z;
   }
 
-  // ṡ of every attached vector: for velocity rows, damping and γ only, so not part of set_velocity.
+  // ṡ of every attached vector: for the damping of torsion springs and γ only, so not part of set_velocity.
   void compute_s_dot() {
     for (std::size_t k = 0; k < static_cast<std::size_t>(elements->ground_markers); ++k) {
       s_dot[k] = E_times(s[k], ambient_rate(elements->markers[k].body));
@@ -129,6 +129,17 @@ class Configuration {
   Eigen::Matrix<T, 3, F::m> s_dot_variation(int body, int marker) const {
     const std::size_t b = static_cast<std::size_t>(body);
     return F::s_dot_variation(at[b], rate[b], xd(body), s_bar(marker));
+  }
+  // ∂(ω × s)/∂x and ∂(ω × s)/∂ẋ
+  Eigen::Matrix<T, 3, F::m> turn_rate_variation(int body, int marker) const {
+    const std::size_t b = static_cast<std::size_t>(body);
+    const Vec3<T>& s_of = s[static_cast<std::size_t>(marker)];
+    return -tilde<T>(s_of) * F::angular_velocity_variation(at[b], rate[b], xd(body)) +
+           tilde<T>(rate[b].wg) * E_times(s_of, at[b].W());
+  }
+  Eigen::Matrix<T, 3, F::m> turn_rate_gradient(int body, int marker) const {
+    return -tilde<T>(s[static_cast<std::size_t>(marker)]) *
+           at[static_cast<std::size_t>(body)].W().template topRows<3>();
   }
 
   // d = r_j + s_q − r_i − s_p and its rate.

@@ -29,7 +29,7 @@ std::string first_fault(const Configuration<F, double>& c) {
   for (std::size_t k = 0; k < e.springs.size(); ++k) {
     const SpringElement& s = e.springs[k];
     const Vec3<double> d = c.span(s.i, s.j, s.p, s.q);
-    const double l = d.norm(), rate = s.damped && l > 0 ? d.dot(c.span_rate(s.i, s.j, s.p, s.q)) / l : 0;
+    const double l = d.norm(), rate = s.damped && l > 0 ? d.dot(c.rigid_span_rate(s.i, s.j, s.p, s.q)) / l : 0;
     if (std::string what = of_law(s, e.model->springs[k].name, l - s.length, rate); !what.empty()) return what;
   }
   for (std::size_t k = 0; k < e.torsions.size(); ++k) {

@@ -92,9 +92,10 @@ class Forces {
           if (k.damped) {  // tension's part ∂F/∂v n·ḋ varies with ḋ, and ḋ with the orientation and the velocity
             const Eigen::Matrix<T, 1, 3> along = s.damping * s.direction.transpose();
             Eigen::Matrix<T, n, 1> left = arm[a].transpose() * s.direction;
-            D = left * (along * arm[b]);
-            K.template rightCols<F::m>() +=
-                (b == 0 ? T(-1) : T(1)) * left * (along * c.s_dot_variation(body[b], point[b]));
+            const T sign = b == 0 ? T(-1) : T(1);
+            D.template leftCols<3>() = sign * left * along;
+            D.template rightCols<F::m>() = sign * left * (along * c.turn_rate_gradient(body[b], point[b]));
+            K.template rightCols<F::m>() += sign * left * (along * c.turn_rate_variation(body[b], point[b]));
           }
           if (a == b) {
             const T sign = a == 0 ? T(-1) : T(1);
@@ -194,7 +195,7 @@ class Forces {
       Vec3<T> d_dot = Vec3<T>::Zero();
       T l_dot = T(0);
       if (k.damped) {
-        d_dot = c.span_rate(k.i, k.j, k.p, k.q);
+        d_dot = c.rigid_span_rate(k.i, k.j, k.p, k.q);
         l_dot = direction.dot(d_dot);
       }
       const LawValue<T> tension = spring_force(k, l - T(k.length), l_dot, c.time);

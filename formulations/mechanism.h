@@ -23,7 +23,7 @@ class Mechanism {
   static constexpr int kV = C::kVelocities, kQ = C::kCoordinates;
 
   explicit Mechanism(std::shared_ptr<const Elements> elements)
-      : c(std::move(elements)), wrench_(c.at.size()), N_(c.at.size()), needs_s_dot_(damped(*c.elements)) {}
+      : c(std::move(elements)), wrench_(c.at.size()), N_(c.at.size()), needs_s_dot_(damped_torsion(*c.elements)) {}
 
   int nb() const { return c.elements->nb; }
   int nq() const { return kQ * nb(); }
@@ -168,9 +168,8 @@ class Mechanism {
 
  private:
   static Eigen::Map<const X> coordinates(const T* x) { return Eigen::Map<const X>(x); }
-  static bool damped(const Elements& e) {
-    return std::any_of(e.springs.begin(), e.springs.end(), [](const SpringElement& k) { return k.damped; }) ||
-           std::any_of(e.torsions.begin(), e.torsions.end(), [](const TorsionSpringElement& k) { return k.damped; });
+  static bool damped_torsion(const Elements& e) {
+    return std::any_of(e.torsions.begin(), e.torsions.end(), [](const TorsionSpringElement& k) { return k.damped; });
   }
 
   // Gᵀλ into the wrenches, and the step's constraint residual into `rows`.

@@ -93,9 +93,7 @@ class RateRows {
   // w·δ(ω × s)
   static X swept(const C& c, int body, int marker, const Vec3<T>& w) {
     if (body == kGround) return X::Zero();
-    const Vec3<T>& s = c.s[index(marker)];
-    const auto dw = F::angular_velocity_variation(c.at[index(body)], c.rate[index(body)], c.xd(body));
-    return dw.transpose() * s.cross(w) + moved(c, body, s, w.cross(c.w(body)));
+    return c.turn_rate_variation(body, marker).transpose() * w;
   }
   // ẇ·δd + w·δḋ without r, as rows for the two bodies
   template <class Row>

@@ -164,6 +164,7 @@ Arguments<double> LawPath::arguments(double s) const {
 }
 
 Jet2<double> LawPath::along(double s) const {
+  if (by_rate()) return moving_along(s);
   const Vector d = at(s), by_s = derivative(s);
   const double length = of_.torsion >= 0 ? d.x() : d.norm();
   const double longer = of_.torsion >= 0 ? by_s.x() : length > 0 ? d.dot(by_s) / length : 0;
@@ -171,7 +172,7 @@ Jet2<double> LawPath::along(double s) const {
 }
 
 Jet2<double> LawPath::moving_along(double s) const {
-  if (!of_.F->depends_on_rate()) return along(s);
+  if (!moves()) return along(s);
   const LawPlace here = place(s);
   const Vector faster = change_ + (1 - 2 * s) * bulge_;
   const Arguments<double> x = of_.arguments(here, t_ + s * h_);
@@ -191,11 +192,13 @@ Bounds LawPath::force(double from, double to) const {
   return of_.F->range(reached(from, to)).f;
 }
 
-// Taylor's formula about the middle of x, too.
+// Taylor's formula about the middle of x, or v, too.
 Bounds LawPath::close_force(double from, double to) const {
   const Expression& F = *of_.F;
   Arguments<Bounds> at = reached(from, to);
-  const Jet2<Bounds> all = F.law_range(at);
+  const TapeOp by = by_rate() ? TapeOp::rate : TapeOp::elongation;
+  Bounds& y = by_rate() ? at.v : at.x;
+  const Jet2<Bounds> all = F.law_range(at, by);
   const auto switches = [&] {
     for (int k = 0; k < F.switch_count(); ++k) {
       const Bounds side = F.switch_range(k, at);
@@ -204,28 +207,42 @@ Bounds LawPath::close_force(double from, double to) const {
     return false;
   };
   if (F.depends_on_time() || switches()) return all.f;
-  const double middle = at.x.least + 0.5 * (at.x.most - at.x.least);
-  const Bounds off{at.x.least - middle, at.x.most - middle};
-  at.x = {middle, middle};
-  const Jet2<Bounds> there = F.law_range(at);
+  const double middle = y.least + 0.5 * (y.most - y.least);
+  const Bounds off{y.least - middle, y.most - middle};
+  y = {middle, middle};
+  const Jet2<Bounds> there = F.law_range(at, by);
   const Bounds by_slope = there.f + all.fd * off;
   const Bounds by_bend = there.f + there.fd * off + 0.5 * (all.fdd * square(off));
   return {std::max({all.f.least, by_slope.least, by_bend.least}), std::min({all.f.most, by_slope.most, by_bend.most})};
 }
 
 Arguments<Bounds> LawPath::reached(double from, double to) const {
-  Bounds x;
+  Bounds x, v{v_, v_};
   if (of_.torsion >= 0) {
     x = component(0, from, to);
+    if (by_rate()) v = rate_component(0, from, to);
   } else {
-    x = square(component(0, from, to)) + square(component(1, from, to)) + square(component(2, from, to));
+    const Bounds d[] = {component(0, from, to), component(1, from, to), component(2, from, to)};
+    x = square(d[0]) + square(d[1]) + square(d[2]);
     x = rising({std::max(x.least, 0.0), x.most}, [](double y) { return std::sqrt(y); });
+    if (by_rate()) {
+      v = {0, 0};
+      for (int k = 0; k < 3; ++k) v = v + d[k] * rate_component(k, from, to);
+      v = v * reciprocal(x);
+    }
   }
   const double least = x.least - of_.zero, most = x.most - of_.zero;
   // At its ends the step may touch switches of time, which are not within it.
   const double instant = std::min(kSwitchInstant * (std::abs(t_) + h_), 0.25 * (to - from) * h_);
   const double begin = t_ + from * h_ + (from == 0 ? instant : 0), end = t_ + to * h_ - (to == 1 ? instant : 0);
-  return {{begin, end}, {least, most}, {v_, v_}};
+  return {{begin, end}, {least, most}, v};
+}
+
+// A quadratic, likewise.
+Bounds LawPath::rate_component(int k, double from, double to) const {
+  const double first = place(from).rate[k], last = place(to).rate[k];
+  const double between = first + 0.5 * (to - from) * (change_ + (1 - 2 * from) * bulge_)[k];
+  return {std::min({first, between, last}), std::max({first, between, last})};
 }
 
 // A cubic stays within its Bézier points.

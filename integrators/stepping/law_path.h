@@ -4,7 +4,7 @@
 // errs by no more than e ≈ h²/50 (|δ_n| + |δ_{n+1}|), δ what its second derivative and the true one differ by at an
 // end, no more than the turning of bodies and the change of ḋ account for: stiff forces make noise of accelerations.
 // With x(s) = |d(s)| − length (an angle less its zero for a torsion spring), F(s) = law(x(s), v, t), v that of the
-// middle.
+// middle, or v(s) where F does not depend on x.
 #pragma once
 
 #include <algorithm>
@@ -71,11 +71,12 @@ class LawPath {
   // The same with v as it is at s, of a law that varies with it.
   Jet2<double> moving_along(double s) const;
   bool moves() const { return of_.F->depends_on_rate(); }
+  bool by_rate() const { return moves() && !of_.F->depends_on_elongation(); }
   // What the law depends on at s, with the rate there: not the derivative of d, which in a short step is rounding.
   Arguments<double> moving(double s) const;
   Bounds force(double from, double to) const;
-  // The same, closer to it in short pieces without a switch where x occurs twice, as in x/√(x² + ε), which arithmetic
-  // on intervals alone makes far too wide; for more work.
+  // The same, closer to it in short pieces without a switch where x, or v, occurs twice, as in x/√(x² + ε), which
+  // arithmetic on intervals alone makes far too wide; for more work.
   Bounds close_force(double from, double to) const;
   double slope(double s) const;  // of F by x
   // Of a spring, d and ḋ at s as moving() has them.
@@ -89,6 +90,7 @@ class LawPath {
   Arguments<double> arguments(double s) const;
   Arguments<Bounds> reached(double from, double to) const;
   Bounds component(int k, double from, double to) const;
+  Bounds rate_component(int k, double from, double to) const;
 
   const SpringLaw& of_;
   const double t_, h_;

@@ -33,9 +33,12 @@ class LawSteps {
 
   double from() const { return from_; }  // s, of the step
   double to() const { return to_; }
-  // The way of a law over the step looked at, and as the motion goes on from its beginning up to a time.
-  LawPath path(std::size_t k) const { return {laws_[k].of, laws_[k].from, laws_[k].to, from_, to_}; }
-  LawPath ahead(std::size_t k, double to) const { return {laws_[k].of, laws_[k].from, from_, to}; }
+  // The way of a law over the step looked at, or of one of its terms, and as the motion goes on from its beginning up
+  // to a time.
+  LawPath path(std::size_t k) const { return path(k, laws_[k].of); }
+  LawPath path(std::size_t k, const SpringLaw& term) const { return {term, laws_[k].from, laws_[k].to, from_, to_}; }
+  LawPath ahead(std::size_t k, double to) const { return ahead(k, laws_[k].of, to); }
+  LawPath ahead(std::size_t k, const SpringLaw& term, double to) const { return {term, laws_[k].from, from_, to}; }
 
  private:
   const Model& model_;

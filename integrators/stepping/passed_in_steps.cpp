@@ -52,7 +52,7 @@ double length_of_part(const LawPath& path, double s) {
 
 PassedInSteps::PassedInSteps(const Model& model, double end, Tell tell)
     : model_(model), end_(end), tell_(std::move(tell)) {
-  for (const SpringLaw& of : spring_laws(model)) laws_.push_back({of, {}, false, {}});
+  for (const SpringLaw& of : spring_laws(model)) laws_.push_back({of, LawTerms(of), {}, false, {}});
   if (!laws_.empty()) bodies_.resize(model.bodies.size());
 }
 
@@ -118,16 +118,20 @@ bool PassedInSteps::find_box(Law& law, double t, double way, double h) const {
 
 // The step of h to t passes over nothing that counts, or not for certain.
 bool PassedInSteps::stays(Law& law, const LawPlace& to, double t, double h) const {
-  const LawPath path(law.of, law.from, to, t - h, t);
-  const LawEnds ends = path.ends();
-  law.largest = std::max({law.largest, std::abs(ends.from.f), std::abs(ends.to.f)});
   const double speed = std::max(law.from.rate.norm(), to.rate.norm());
-  const UnseenForce first = first_unseen(path, ends, nothing(law, speed, h));
-  if (first.s < 1 && first.known) {
-    tell_passed(law, path, first.s, t, h);
-    return false;
+  bool known = true;
+  for (const SpringLaw& term : law.terms.laws()) {
+    const LawPath path(term, law.from, to, t - h, t);
+    const LawEnds ends = path.ends();
+    law.largest = std::max({law.largest, std::abs(ends.from.f), std::abs(ends.to.f)});
+    const UnseenForce first = first_unseen(path, ends, nothing(law, speed, h));
+    if (first.s < 1 && first.known) {
+      tell_passed(law, path, first.s, t, h);
+      return false;
+    }
+    known = known && !(first.s < 1);
   }
-  law.unknown = first.s < 1 ? law.unknown + 1 : 0;
+  law.unknown = known ? 0 : law.unknown + 1;
   if (law.unknown < kMostUnknown) return true;
   tell_(
       fmt::format("from t = {:.6g} s on '{}' is not watched for what it does within less than a step, since it has no "

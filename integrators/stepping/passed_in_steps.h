@@ -12,7 +12,7 @@
 
 #include "integrators/integrator.h"
 #include "integrators/state.h"
-#include "integrators/stepping/law_path.h"
+#include "integrators/stepping/law_terms.h"
 #include "integrators/stepping/next_look.h"
 
 namespace poinsot {
@@ -41,6 +41,7 @@ class PassedInSteps {
   };
   struct Law {
     SpringLaw of;
+    LawTerms terms;
     LawPlace from;        // where the last look was
     bool watched = true;  // the step from there is to be looked at
     Box box;

@@ -9,9 +9,10 @@
 namespace poinsot {
 
 PassedLaws::PassedLaws(const LawSteps& steps, double end, double rtol, double atol, Tell tell)
-    : steps_(steps), end_(end), rtol_(rtol), atol_(atol), tell_(std::move(tell)), watches_(steps.size()) {
+    : steps_(steps), end_(end), rtol_(rtol), atol_(atol), tell_(std::move(tell)) {
   for (std::size_t k = 0; k < steps.size(); ++k) {
-    watches_[k].on = steps.law(k).of.F != nullptr;
+    const SpringLaw& of = steps.law(k).of;
+    watches_.push_back({LawTerms(of), of.F != nullptr});
     none_ = none_ && !watches_[k].on;
   }
 }
@@ -21,11 +22,13 @@ double PassedLaws::reach() {
   double reach = to;
   for (std::size_t k = 0; k < watches_.size(); ++k) {
     if (!watches_[k].on) continue;
-    const LawPath path = steps_.path(k);
-    const LawEnds ends = path.ends();
     const double tolerance = atol_ + rtol_ * steps_.law(k).from.rate.norm();
-    reach =
-        std::min({reach, cut(k, path, ends, to, first_unseen, atol_), cut(k, path, ends, to, first_steep, tolerance)});
+    for (const SpringLaw& term : watches_[k].terms.laws()) {
+      const LawPath path = steps_.path(k, term);
+      const LawEnds ends = path.ends();
+      reach = std::min(
+          {reach, cut(k, path, ends, to, first_unseen, atol_), cut(k, path, ends, to, first_steep, tolerance)});
+    }
   }
   if (reach < to) leave_unknown(reach);
   return reach;
@@ -35,10 +38,12 @@ double PassedLaws::ahead(double to) {
   double reach = to;
   for (std::size_t k = 0; k < watches_.size(); ++k) {
     if (!watches_[k].on) continue;
-    const LawPath path = steps_.ahead(k, to);
-    const LawEnds ends = path.ends();
-    reach =
-        std::min({reach, cut(k, path, ends, to, first_unseen, atol_), cut(k, path, ends, to, first_between, atol_)});
+    for (const SpringLaw& term : watches_[k].terms.laws()) {
+      const LawPath path = steps_.ahead(k, term, to);
+      const LawEnds ends = path.ends();
+      reach =
+          std::min({reach, cut(k, path, ends, to, first_unseen, atol_), cut(k, path, ends, to, first_between, atol_)});
+    }
   }
   if (reach < to) leave_unknown(reach);
   return reach;

@@ -14,6 +14,7 @@
 #include "integrators/integrator.h"
 #include "integrators/stepping/law_looks.h"
 #include "integrators/stepping/law_steps.h"
+#include "integrators/stepping/law_terms.h"
 
 namespace poinsot {
 
@@ -36,8 +37,9 @@ class PassedLaws {
   static constexpr int kMostUnknown = 400;   // steps
 
   struct Watch {
-    bool on = true;
-    double largest = 0;  // |F| so far
+    LawTerms terms;
+    bool on;
+    double largest = 0;  // |F| of a term so far
     int unknown = 0;     // steps on end that it cut for nothing
   };
 

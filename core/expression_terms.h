@@ -1,0 +1,19 @@
+// A tape as the sum that it is: what stands between its plus and minus signs, products of sums multiplied out.
+//
+// A feature is as plain in a term by itself as a smooth background makes it small in the whole.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/expression_tape.h"
+
+namespace poinsot {
+
+using Tape = std::vector<TapeInstruction>;
+
+// Terms whose sum is the tape's value but for a constant: polynomials of the variables as one, if there are any, and
+// the others; one, the tape, where it is no sum, or one of too many.
+std::vector<Tape> tape_terms(std::span<const TapeInstruction> tape);
+
+}  // namespace poinsot
