@@ -109,6 +109,12 @@ class Expression {
   }
   void switches(double t, std::span<double> values) const { switches({t, 0, 0}, values); }
 
+  // Whether it asks tables, and for which of their cubics: where these change f‴ jumps.
+  bool asks_tables() const { return !constant_ && !parsed_->tables.empty(); }
+  void cubics(const Arguments<double>& at, std::span<int> out) const {
+    if (!constant_) tape_cubics(parsed_->tape, at, out);
+  }
+
   // Whether f jumps at the switch k, or has a kink.
   bool switch_jumps(int k) const { return !constant_ && tape_switch_jumps(parsed_->tape, k); }
   // Bounds of the switch k over a stretch of time; see core/expression_range.h.

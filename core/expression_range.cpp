@@ -15,14 +15,12 @@ struct Taylor {
 };
 
 constexpr Taylor kUnbounded{Bounds::all(), Bounds::all(), Bounds::all()};
+constexpr Taylor kUnknown{Bounds::unknown(), Bounds::unknown(), Bounds::unknown()};
 
-// The cubic's value and slope in the middle, its second derivative throughout.
 Taylor of_table(const Spline& table, Bounds x) {
-  const double middle = x.least + (x.most - x.least) / 2, r = (x.most - x.least) / 2;
-  const Jet2<double> f = table.at(Jet2<double>{middle, 1, 0});
-  const Bounds M = table.second_derivative(x.least, x.most);
-  const double bend = std::max(std::abs(M.least), std::abs(M.most)), off = std::abs(f.fd) * r + bend * r * r / 2;
-  return {widened(f.f - off, f.f + off), widened(f.fd - bend * r, f.fd + bend * r), widened(M.least, M.most)};
+  if (!table.covers(std::clamp(0.5 * (table.first() + table.last()), x.least, x.most))) return kUnknown;
+  const Jet2<Bounds> f = table.range(std::max(x.least, table.first()), std::min(x.most, table.last()));
+  return {widened(f.f.least, f.f.most), widened(f.fd.least, f.fd.most), widened(f.fdd.least, f.fdd.most)};
 }
 
 Taylor of_arc(Bounds x, bool sine) {

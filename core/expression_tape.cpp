@@ -222,6 +222,13 @@ void tape_switches(std::span<const TapeInstruction> tape, const Arguments<double
   });
 }
 
+void tape_cubics(std::span<const TapeInstruction> tape, const Arguments<double>& at, std::span<int> out) {
+  std::size_t k = 0;
+  run<double>(tape, constants(at), [&](const TapeInstruction& instruction, double x, double) {
+    if (instruction.op == TapeOp::table && k < out.size()) out[k++] = instruction.table->cubic(x);
+  });
+}
+
 Uncovered first_uncovered(std::span<const TapeInstruction> tape, const Arguments<double>& at) {
   Uncovered found;
   run<double>(tape, constants(at), [&](const TapeInstruction& instruction, double x, double) {

@@ -64,6 +64,9 @@ Jet2<T> run_tape(std::span<const TapeInstruction> tape, const Arguments<Jet2<T>>
 // acos(cos(x)).
 void tape_switches(std::span<const TapeInstruction> tape, const Arguments<double>& at, std::span<double> out);
 
+// Which cubic each table is asked for, in the order of the tape; those beyond the room given are left out.
+void tape_cubics(std::span<const TapeInstruction> tape, const Arguments<double>& at, std::span<int> out);
+
 // A table asked for a value that it does not have.
 struct Uncovered {
   const Spline* table = nullptr;  // none where all arguments were covered

@@ -46,19 +46,31 @@ bool Spline::covers(double x) const {
   return x >= first() - slack && x <= last() + slack;
 }
 
-// Linear between the points.
-Bounds Spline::second_derivative(double from, double to) const {
-  const auto interval = [this](double x) {
-    return static_cast<std::size_t>(std::upper_bound(x_.begin() + 1, x_.end() - 1, x) - x_.begin()) - 1;
-  };
-  Bounds bounds{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (std::size_t k = interval(from), last = interval(to); k <= last; ++k) {
-    for (const double x : {std::max(from, x_[k]), std::min(to, x_[k + 1])}) {
-      const double M = 6 * intervals_[k].d * (x - x_[k]) + 2 * intervals_[k].c;
-      bounds = {std::min(bounds.least, M), std::max(bounds.most, M)};
-    }
+int Spline::cubic(double x) const {
+  return static_cast<int>(std::upper_bound(x_.begin() + 1, x_.end() - 1, x) - x_.begin()) - 1;
+}
+
+// A polynomial stays within its Bézier points.
+Jet2<Bounds> Spline::range(double from, double to) const {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  constexpr Bounds none{inf, -inf};
+  Jet2<Bounds> range{none, none, none};
+  const std::size_t first = static_cast<std::size_t>(cubic(from)), last = static_cast<std::size_t>(cubic(to));
+  for (std::size_t k = first; k <= last; ++k) {
+    const Interval& p = intervals_[k];
+    const double u = k == first ? from - x_[k] : 0;
+    const double h = (k == last ? to : x_[k + 1]) - x_[k] - u;
+    const double f = ((p.d * u + p.c) * u + p.b) * u + p.a, fd = (3 * p.d * u + 2 * p.c) * u + p.b;
+    const double fdd = 6 * p.d * u + 2 * p.c, fddd = 6 * p.d;
+    const auto hull_of = [](Bounds& held, std::initializer_list<double> points) {
+      held = {std::min(held.least, std::min(points)), std::max(held.most, std::max(points))};
+    };
+    hull_of(range.f,
+            {f, f + h * fd / 3, f + h * (2 * fd / 3 + h * fdd / 6), f + h * (fd + h * (fdd / 2 + h * fddd / 6))});
+    hull_of(range.fd, {fd, fd + h * fdd / 2, fd + h * (fdd + h * fddd / 2)});
+    hull_of(range.fdd, {fdd, fdd + h * fddd});
   }
-  return bounds;
+  return range;
 }
 
 template <class T>

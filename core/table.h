@@ -25,7 +25,10 @@ class Spline {
   double last() const { return x_.back(); }
   // To within rounding, as the times of a run are that end where the table does.
   bool covers(double x) const;
-  Bounds second_derivative(double from, double to) const;
+  // Of f and its derivatives over a stretch, as its cubics are written: without what rounding adds.
+  Jet2<Bounds> range(double from, double to) const;
+  // Which of its cubics holds at x, from 0 on; where it has no value, the first or the last.
+  int cubic(double x) const;
 
   template <class T>  // double, long double
   Jet2<T> at(const Jet2<T>& x) const;

@@ -76,7 +76,7 @@ class ControlledSteps {
     if (anew) return {};
     const bool leads = beyond_law < stop;
     const double wanted = leads ? from : from + (cut_ ? 1 : 1.01) * h_ >= stop ? stop : from + h_;
-    const double to = course_.pulses.reach(from, wanted);
+    const double to = course_.aim(from, wanted);
     if (to < wanted) creeping_.limited();
     return {from, to, stop, leads ? beyond_law : std::min(turn.after, end_), leads, leads || to == turn.before};
   }

@@ -23,6 +23,7 @@
 #include "integrators/stepping/sticking.h"
 #include "integrators/stepping/still_watch.h"
 #include "integrators/stepping/switch_times.h"
+#include "integrators/stepping/table_knots.h"
 #include "integrators/stepping/vectors.h"
 
 namespace poinsot {
@@ -40,6 +41,7 @@ class Course {
         times(run.settings.every, run.settings.end),
         switches(run.problem.model(), run.settings.end, run.tell),
         pulses(run.problem.model(), run.settings.end, run.settings.rtol, run.tell),
+        knots(run.problem.model(), run.settings.end, run.settings.rtol),
         driver_jumps(run.problem.model(), run.settings.end),
         driver_impulses(run),
         laws(run.problem.model()),
@@ -92,6 +94,11 @@ class Course {
     begin_laws(from);
     progress_.begins_anew();
   }
+  // How far a step from t towards `to` may go for what is known before it of the data.
+  double aim(double t, double to) {
+    const double seen = knots.reach(t, pulses.reach(t, to));
+    return laws.none() || !(t < seen) ? seen : passed_laws.to_knot(seen);
+  }
   // How far a step to `to`, where the problem stands, may go for what laws of springs do on its way.
   double seen(const State& to) {
     if (laws.none()) return to.t;
@@ -131,6 +138,7 @@ class Course {
   SampleTimes times;
   SwitchTimes switches;
   Pulses pulses;
+  TableKnots knots;
   DriverJumps driver_jumps;
   DriverImpulses driver_impulses;
   LawSteps laws;

@@ -10,24 +10,11 @@ namespace poinsot {
 
 // As the scene writes them; what a program computes is left out, nothing of it being known ahead. They live as long as
 // the model.
-inline std::vector<const Expression*> functions_of_time(const Model& model) {
-  std::vector<const Expression*> functions;
-  const auto add = [&](const Expression& f) {
-    if (!f.is_constant() && !f.is_function()) functions.push_back(&f);
-  };
-  for (const Row& row : model.rows) {
-    add(row.f);
-    if (row.alternate) add(row.alternate->f);
-  }
-  for (const PointForce& force : model.point_forces)
-    for (const Expression& f : force.force) add(f);
-  for (const Torque& torque : model.torques)
-    for (const Expression& f : torque.torque) add(f);
-  for (const Spring& spring : model.springs)
-    if (spring.law) add(*spring.law);
-  for (const TorsionElement& element : model.torsions)
-    if (element.spring.law) add(*element.spring.law);
-  return functions;
-}
+std::vector<const Expression*> functions_of_time(const Model& model);
+
+// As a function of time alone; a law of a spring at elongation 1 and rate 1.
+Jet2<double> value_at(const Expression& f, double t);
+// |f| at the most from 0 to `end`, by bounds, or by samples where it has none.
+double size_until(const Expression& f, double end);
 
 }  // namespace poinsot

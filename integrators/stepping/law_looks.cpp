@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/bounds.h"
+#include "integrators/stepping/table_knots.h"
 
 namespace poinsot {
 namespace {
@@ -126,6 +127,11 @@ UnseenForce first_steep(const LawPath& path, const LawEnds& still, double nothin
   if (std::ranges::none_of(kBetween, is_off)) return {};
   const UnseenForce far = first_off(force, ends, kPlaces, there, std::max(kFar * range, nothing));
   return {std::min(far.s, 0.5), true};
+}
+
+double first_table_knot(const LawPath& path, double nothing) {
+  return first_knot([&](double at, std::span<int> out) { path.cubics(at, out); },
+                    [&](double at) { return path.along(at).fd; }, nothing);
 }
 
 }  // namespace poinsot

@@ -21,5 +21,7 @@ UnseenForce first_between(const LawPath& path, const LawEnds& ends, double nothi
 // the error a matter of luck: it is off the polynomial of degree six through its values and slopes at the ends and its
 // values at three places between.
 UnseenForce first_steep(const LawPath& path, const LawEnds& ends, double nothing);
+// Where F goes on by another cubic of a table and that matters (table_knots.h); 1 if nowhere.
+double first_table_knot(const LawPath& path, double nothing);
 
 }  // namespace poinsot

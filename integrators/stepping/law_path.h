@@ -79,6 +79,8 @@ class LawPath {
   // arithmetic on intervals alone makes far too wide; for more work.
   Bounds close_force(double from, double to) const;
   double slope(double s) const;  // of F by x
+  bool asks_tables() const { return of_.F->asks_tables(); }
+  void cubics(double s, std::span<int> out) const { of_.F->cubics(by_rate() ? moving(s) : arguments(s), out); }
   // Of a spring, d and ḋ at s as moving() has them.
   LawPlace place(double s) const { return {at(s), rate_ + s * (change_ + (1 - s) * bulge_)}; }
 

@@ -26,8 +26,8 @@ double PassedLaws::reach() {
     for (const SpringLaw& term : watches_[k].terms.laws()) {
       const LawPath path = steps_.path(k, term);
       const LawEnds ends = path.ends();
-      reach = std::min(
-          {reach, cut(k, path, ends, to, first_unseen, atol_), cut(k, path, ends, to, first_steep, tolerance)});
+      reach = std::min({reach, cut(k, path, ends, to, first_unseen, atol_),
+                        cut(k, path, ends, to, first_steep, tolerance), knot(k, path, ends, to)});
     }
   }
   if (reach < to) leave_unknown(reach);
@@ -49,14 +49,37 @@ double PassedLaws::ahead(double to) {
   return reach;
 }
 
+double PassedLaws::to_knot(double to) {
+  double reach = to;
+  for (std::size_t k = 0; k < watches_.size(); ++k) {
+    if (!watches_[k].on || !steps_.law(k).of.F->asks_tables()) continue;
+    for (const SpringLaw& term : watches_[k].terms.laws()) {
+      const LawPath path = steps_.ahead(k, term, to);
+      reach = std::min(reach, knot(k, path, path.ends(), to));
+    }
+  }
+  return reach;
+}
+
+double PassedLaws::nothing(std::size_t k, const LawEnds& ends, double h, double tolerance) {
+  double& largest = watches_[k].largest;
+  largest = std::max({largest, std::abs(ends.from.f), std::abs(ends.to.f)});
+  return kUnseen * std::max(rtol_ * largest, tolerance * steps_.law(k).of.inertia / h);
+}
+
+double PassedLaws::knot(std::size_t k, const LawPath& path, const LawEnds& ends, double to) {
+  const double h = to - steps_.from();
+  if (!path.asks_tables() || h <= kResolved * end_) return to;
+  const double s = first_table_knot(path, nothing(k, ends, h, atol_ + rtol_ * steps_.law(k).from.rate.norm()));
+  return s < 1 ? steps_.from() + s * h : to;
+}
+
 double PassedLaws::cut(std::size_t k, const LawPath& path, const LawEnds& ends, double to, Look look,
                        double tolerance) {
   Watch& watch = watches_[k];
-  const double from = steps_.from(), h = to - from;
-  watch.largest = std::max({watch.largest, std::abs(ends.from.f), std::abs(ends.to.f)});
+  const double from = steps_.from(), h = to - from, nothing_that_counts = nothing(k, ends, h, tolerance);
   if (h <= kResolved * end_) return to;
-  const double nothing = kUnseen * std::max(rtol_ * watch.largest, tolerance * steps_.law(k).of.inertia / h);
-  const UnseenForce first = look(path, ends, nothing);
+  const UnseenForce first = look(path, ends, nothing_that_counts);
   if (!(first.s < 1)) return to;
   watch.unknown = first.known ? 0 : watch.unknown + 1;
   return from + h * (first.known || first.s > kPart ? first.s : 0.5);

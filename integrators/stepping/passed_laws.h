@@ -29,6 +29,8 @@ class PassedLaws {
   // As far as is known at its beginning, where the motion goes on as it does there up to a time `to`; of a method that
   // looks at forces where its steps end alone.
   double ahead(double to);
+  // Up to where a law asks another cubic of a table, as the motion goes on now, if that matters (table_knots.h).
+  double to_knot(double to);
 
  private:
   static constexpr double kUnseen = 0.1;     // of the tolerance
@@ -44,6 +46,8 @@ class PassedLaws {
   };
 
   using Look = UnseenForce (*)(const LawPath&, const LawEnds&, double);
+  double nothing(std::size_t k, const LawEnds& ends, double h, double tolerance);
+  double knot(std::size_t k, const LawPath& path, const LawEnds& ends, double to);
   double cut(std::size_t k, const LawPath& path, const LawEnds& ends, double to, Look look,
              double tolerance);  // m/s, rad/s
   void leave_unknown(double t);

@@ -24,22 +24,8 @@ constexpr int kMostUnknown = 400;    // stretches of a function
 constexpr int kMostStretches = 500;  // of one function
 constexpr double kNodes[] = {0, 0.11, 0.23, 0.36, 0.49, 0.63, 0.77, 0.89, 1};  // no period goes with them
 
-// A law of a spring at elongation 1 and rate 1.
-Jet2<double> value(const Expression& f, double t) {
-  return f.along(Arguments<Jet2<double>>{{t, 1, 0}, {1, 0, 0}, {1, 0, 0}});
-}
-
 Jet2<Bounds> bounds(const Expression& f, double from, double to) {
   return f.range({{from, to}, {1, 1}, {1, 1}});
-}
-
-double size(const Expression& f, double end) {
-  if (const double most = bounds(f, 0, end).f.size(); std::isfinite(most)) return most;
-  constexpr int kSamples = 64;
-  double largest = 0;
-  for (int k = 0; k <= kSamples; ++k)
-    if (const double x = std::abs(value(f, end * k / kSamples).f); std::isfinite(x)) largest = std::max(largest, x);
-  return largest;
 }
 
 // f̈ at the nodes of a stretch.
@@ -51,7 +37,7 @@ struct Bend {
     std::array<double, std::size(kNodes)> sizes;
     for (std::size_t k = 0; k < sizes.size(); ++k) {
       const double t = from + kNodes[k] * (to - from);
-      const double bend = std::abs(value(f, t).fdd);
+      const double bend = std::abs(value_at(f, t).fdd);
       sizes[k] = std::isnan(bend) ? 0 : bend;
       if (sizes[k] > largest) largest = sizes[k], at = t;
     }
@@ -78,9 +64,9 @@ bool shows(const Expression& f, double nothing, double from, double to) {
 // Half of what f changes by over eight steps about t.
 double change_about(const Expression& f, double t, double h, double end) {
   constexpr int kSamples = 64;
-  double least = value(f, t).f, most = least;
+  double least = value_at(f, t).f, most = least;
   for (int k = 0; k <= kSamples; ++k) {
-    const double x = value(f, std::clamp(t + (8.0 * k / kSamples - 4) * h, 0.0, end)).f;
+    const double x = value_at(f, std::clamp(t + (8.0 * k / kSamples - 4) * h, 0.0, end)).f;
     least = std::min(least, x), most = std::max(most, x);
   }
   return (most - least) / 2;
@@ -105,7 +91,7 @@ std::optional<double> first_pulse(const Expression& f, double from, double to, d
 }  // namespace
 
 Pulses::Pulses(const Model& model, double end, double rtol, Tell tell) : end_(end), tell_(std::move(tell)) {
-  for (const Expression* f : functions_of_time(model)) functions_.push_back({f, kHidden * rtol * size(*f, end)});
+  for (const Expression* f : functions_of_time(model)) functions_.push_back({f, kHidden * rtol * size_until(*f, end)});
 }
 
 double Pulses::search(double t, double to) {
@@ -147,7 +133,7 @@ std::optional<Pulse> pulse_within(const Model& model, double h, double end) {
   std::optional<Pulse> first;
   for (const Expression* f : functions_of_time(model)) {
     int budget = kMostStretches;
-    const auto t = first_pulse(*f, 0, end, h, end, kUntold * size(*f, end), budget);
+    const auto t = first_pulse(*f, 0, end, h, end, kUntold * size_until(*f, end), budget);
     if (t && (!first || *t < first->t)) first = Pulse{f->text(), *t};
   }
   return first;
