@@ -14,6 +14,11 @@ bool is_nothing(const Expression& f) {
 bool works(const Expression (&components)[3]) {
   return !std::ranges::all_of(components, is_nothing);
 }
+// Of a point, by its place: of a force that stays as it is in space.
+EnergyFate of_force(const PointForce& force) {
+  const bool stays = force.frame == Frame::global && std::ranges::all_of(force.force, &Expression::is_constant);
+  return stays || !works(force.force) ? EnergyFate::kept : EnergyFate::unknown;
+}
 
 bool works(const Row& row) {
   if (row.type == RowType::pfaffian) return !is_nothing(row.f);
@@ -43,8 +48,7 @@ std::vector<EnergyFate> energy_fates(const Model& model, std::span<const int> me
   const auto both = [&](int i, int j, EnergyFate by = EnergyFate::unknown) { moved(i == kGround ? j : i, by); };
   for (const Row& row : model.rows)
     if (works(row)) both(row.i, row.j);
-  for (const PointForce& force : model.point_forces)
-    if (works(force.force)) moved(force.body);
+  for (const PointForce& force : model.point_forces) moved(force.body, of_force(force));
   for (const Torque& torque : model.torques)
     if (works(torque.torque)) moved(torque.body);
   for (const Spring& spring : model.springs) both(spring.i, spring.j, of_spring(spring));
@@ -59,7 +63,8 @@ std::vector<EnergyFate> energy_fates(const Model& model, std::span<const int> me
 
 bool conserves_energy(const Model& model) {
   return std::ranges::all_of(energy_fates(model, mechanisms(model)),
-                             [](EnergyFate fate) { return fate == EnergyFate::kept; });
+                             [](EnergyFate fate) { return fate == EnergyFate::kept; }) &&
+         std::ranges::none_of(model.point_forces, [](const PointForce& force) { return works(force.force); });
 }
 
 }  // namespace poinsot

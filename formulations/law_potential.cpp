@@ -71,12 +71,16 @@ class LawIntegral {
     const double middle = 0.5 * (from + to);
     const Gauss left(law_, t_, from, middle), right(law_, t_, middle, to);
     const double sum = left.sum + right.sum, size = left.size + right.size;
-    const double enough = std::max(allowed, kRounding * size);
-    double off = std::abs(sum - whole.sum);
+    double enough = std::max(allowed, kRounding * size), off = std::abs(sum - whole.sum);
     // Where x is rounded to more than F is, what is left is small and does not become less.
     constexpr double kNearly = 1e-10, kLess = 0.25;
-    const bool rounded = !(off > enough) || (off <= kNearly * size && off > kLess * before);
-    const double hidden = most_hidden(from, to, std::max(left.largest, right.largest));
+    bool rounded = !(off > enough) || (off <= kNearly * size && off > kLess * before);
+    double hidden = most_hidden(from, to, std::max(left.largest, right.largest));
+    if (!rounded || hidden > enough) {  // where terms cancel, F is rounded as they are
+      enough = std::max(enough, rounding(middle) * std::abs(to - from));
+      rounded = rounded || off <= enough;
+      if (hidden <= kFar * enough) hidden = 0;
+    }
     if ((rounded && hidden <= enough) || middle == from || middle == to) {
       done_ += sum;
       return;
@@ -89,6 +93,12 @@ class LawIntegral {
   double most_hidden(double from, double to, double largest) const {
     const double most = law_.range({{t_, t_}, {std::min(from, to), std::max(from, to)}, {0, 0}}).f.size();
     return std::isnan(most) || most <= kFar * largest ? 0 : most * std::abs(to - from);
+  }
+
+  // What F is uncertain by at x.
+  double rounding(double x) const {
+    const Bounds F = law_.range({{t_, t_}, {x, x}, {0, 0}}).f;
+    return F.most - F.least > 0 ? F.most - F.least : 0;
   }
 
   const Expression& law_;

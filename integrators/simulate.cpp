@@ -173,7 +173,7 @@ Outcome run(const Scene& scene, const Settings& settings, const Observer& observ
   const Rotations::Limit& rotation = integrator.rotations.in(formulation.space);
   EnergyBalance energy(*problem);
   const Observer at_ends = [&](const Sample& sample) {
-    if (sample.t == 0) energy.begin(sample);
+    if (sample.t == 0) energy.begin(sample, integrator.order);
     if (sample.t >= settings.end) energy.end(sample);
     if (observe) observe(sample);
   };

@@ -105,6 +105,9 @@ TEST(SpringLaw, stores_the_integral_of_its_force) {
   EXPECT_NEAR(stored("0.02*sin(24*x)", 300), 0.02 / 24 * (1 - std::cos(7200.0)), 1e-14);
   EXPECT_NEAR(stored("sin(x + 1e7)", 50), std::cos(1e7) - std::cos(1e7 + 50), 1e-8);
   EXPECT_NEAR(stored("2*pi*sin(2*pi*x)/(1.0001 + cos(2*pi*x))", 40.5), std::log(2.0001 / 1e-4), 1e-8);
+  // Where terms cancel to less than their rounding, as beyond 2 here.
+  EXPECT_NEAR(stored("25.6*tanh((x - 1)/0.053) - 51.2*tanh(x/0.053) + 25.6*tanh((x + 1)/0.053)", 3.1),
+              -51.2 * (1 - 0.053 * std::log(2.0)), 1e-12);
   // From 0 these are infinite.
   EXPECT_NEAR(stored("0.001/x^2", 2), 0.0005, 1e-17);
   EXPECT_NEAR(stored("0.001/x^2", 1e-3), -0.999, 1e-13);

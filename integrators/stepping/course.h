@@ -76,7 +76,7 @@ class Course {
   Status follow(const State& at) {
     if (Status status = driver_jumps.look(at.t); !status.ok()) return status;
     still_.look(run_.problem, at);
-    if (run_.energy && run_.energy->due()) run_.energy->look(run_.problem, at.v);
+    if (run_.energy && run_.energy->due()) run_.energy->look(run_.problem, at.t, at.v);
     if (progress_.look(at.t)) {
       if (progress_.never_ends()) return never_beyond(run_.problem, at, progress_.limit());
       if (progress_.takes_long_for_a_rest())

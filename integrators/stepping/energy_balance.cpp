@@ -30,32 +30,52 @@ EnergyBalance::EnergyBalance(const Problem& problem) : parts_(problem), of_(part
   none_ = std::ranges::all_of(fates, [](EnergyFate fate) { return fate == EnergyFate::unknown; });
   if (none_) return;
   momentum_.resize(problem.nv());
+  no_accelerations_.setZero(problem.nv());
   bodies_.resize(problem.model().bodies.size());
   x_first_.reserve(problem.model().springs.size() + problem.model().torsions.size());
 }
 
-void EnergyBalance::begin(const Sample& start) {
-  if (!none_) add_energies(start, &Mechanism::first);
+void EnergyBalance::begin(const Sample& start, int order) {
+  if (none_) return;
+  order_ = order;
+  add_energies(start.problem, start.t, &Mechanism::first);
+  for (Mechanism& of : of_) of.least = of.first;
 }
 
 void EnergyBalance::end(const Sample& end) {
   if (none_) return;
-  add_energies(end, &Mechanism::last);
+  add_energies(end.problem, end.t, &Mechanism::last);
   ended_ = true;
 }
 
-void EnergyBalance::look(const Problem& problem, const Eigen::VectorXd& v) {
+void EnergyBalance::look(const Problem& problem, double t, const Eigen::VectorXd& v) {
   problem.momentum(span(v), span(momentum_));
-  for (std::size_t k = 0; k < of_.size(); ++k)
-    if (of_[k].fate != EnergyFate::unknown)
-      of_[k].most_kinetic = std::max(of_[k].most_kinetic, 0.5 * parts_.dot(k, v, momentum_));
+  for (std::size_t k = 0; k < of_.size(); ++k) {
+    if (of_[k].fate == EnergyFate::unknown) continue;
+    of_[k].kinetic = 0.5 * parts_.dot(k, v, momentum_);
+    of_[k].most_kinetic = std::max(of_[k].most_kinetic, of_[k].kinetic);
+  }
+  if (--until_ == 0) look_on_the_way(problem, t);
 }
 
-void EnergyBalance::add_energies(const Sample& at, double Mechanism::*sum) {
-  constexpr double kRounding = 1e3 * std::numeric_limits<double>::epsilon();
-  const Model& model = at.problem.model();
-  at.problem.to_bodies(at.a, bodies_);
-  for (Mechanism& of : of_) of.*sum = of.loads = 0;
+void EnergyBalance::look_on_the_way(const Problem& problem, double t) {
+  constexpr int kMost = 128;
+  if (++energies_ == kMost) apart_ *= 2, energies_ /= 2;
+  until_ = apart_;
+  add_energies(problem, t, &Mechanism::now);
+  const double late = order_ == 1 ? kLate / static_cast<double>(steps_) : 0;
+  for (Mechanism& of : of_) {
+    const double more = of.fate == EnergyFate::taken ? of.now - of.least : std::abs(of.now - of.first);
+    of.least = std::min(of.least, of.now);
+    if (const double off = more - late * of.kinetic; off > of.most_off) of.most_off = off, of.t_off = t;
+  }
+}
+
+void EnergyBalance::add_energies(const Problem& problem, double t, double Mechanism::*sum) {
+  constexpr double kRounding = 2e3 * std::numeric_limits<double>::epsilon();
+  const Model& model = problem.model();
+  problem.to_bodies(span(no_accelerations_), bodies_);
+  for (Mechanism& of : of_) of.*sum = of.loads = of.rounding = 0;
   const auto add = [&](Mechanism& of, double energy, double load) {
     of.*sum += energy;
     of.loads += std::abs(load);
@@ -76,7 +96,7 @@ void EnergyBalance::add_energies(const Sample& at, double Mechanism::*sum) {
     Mechanism& of = of_[parts_.of_body(spring.i == kGround ? spring.j : spring.i)];
     if (of.fate == EnergyFate::unknown) return;
     if (spring.law)
-      add(of, law_work(*spring.law, from, x, at.t), spring.law->law(Arguments<double>{at.t, x, 0}).F);
+      add(of, law_work(*spring.law, from, x, t), spring.law->law(Arguments<double>{t, x, 0}).F);
     else
       add(of, 0.5 * spring.stiffness * x * x, spring.stiffness * x);
   };
@@ -86,7 +106,13 @@ void EnergyBalance::add_energies(const Sample& at, double Mechanism::*sum) {
   }
   for (std::size_t k = 0; k < model.torsions.size(); ++k) {
     const TorsionSpring& spring = model.torsions[k].spring;
-    add_spring(spring, at.problem.twist(static_cast<int>(k)) - spring.angle);
+    add_spring(spring, problem.twist(static_cast<int>(k)) - spring.angle);
+  }
+  for (const PointForce& force : model.point_forces) {
+    Mechanism& of = of_[parts_.of_body(force.body)];
+    if (of.fate == EnergyFate::unknown) continue;
+    const Vector3 F(force.force[0].at(t).f, force.force[1].at(t).f, force.force[2].at(t).f);
+    add(of, -F.dot(place(bodies_, force.body, force.point)), F.norm());
   }
 }
 
@@ -100,27 +126,31 @@ std::string EnergyBalance::remedy(const Settings& settings, const IntegratorEntr
                      0.9 * settings.step * std::pow(shorter, 1.0 / integrator.order), 100 * kTold);
 }
 
+double EnergyBalance::noise(const Mechanism& of, const Run& run) const {
+  const double off = 10 * run.statistics.violation.position * std::max(1.0, longest_arm(run.problem.model()));
+  return of.rounding + off * of.loads;
+}
+
 void EnergyBalance::conclude(const Run& run, const IntegratorEntry& integrator) const {
-  // A step of first order is half of one late: under a constant force from rest this makes 1/n of the energy in n
-  // steps, which is not lost.
-  constexpr double kLate = 2.5;
-  if (!ended_) return;
-  const Model& model = run.problem.model();
-  const double off = 10 * run.statistics.violation.position * std::max(1.0, longest_arm(model));  // m, or rad
+  if (ended_ && !tell_at_end(run, integrator)) tell_on_the_way(run, integrator);
+}
+
+bool EnergyBalance::tell_at_end(const Run& run, const IntegratorEntry& integrator) const {
   double most = -1, most_of_all = -1;
   const Mechanism* told = nullptr;
   for (const Mechanism& of : of_) {
-    const double noise = of.rounding + off * of.loads, more = of.last - of.first;
-    if (of.fate == EnergyFate::unknown || !(of.most_kinetic > noise)) continue;
+    const double more = of.last - of.first;
+    if (of.fate == EnergyFate::unknown || !(of.most_kinetic > noise(of, run))) continue;
     const double share = std::abs(more) / of.most_kinetic;
     if (of.fate == EnergyFate::kept) most = std::max(most, share);
     if (!(share > most_of_all) || (of.fate == EnergyFate::taken && more <= 0)) continue;
     most_of_all = share;
-    told = std::abs(more) > noise ? &of : nullptr;
+    told = std::abs(more) > noise(of, run) ? &of : nullptr;
   }
   if (most >= 0) run.statistics.energy_change = most;
   const double late = integrator.order == 1 ? kLate / static_cast<double>(run.statistics.steps) : 0;
-  if (!told || most_of_all < kTold + late) return;
+  if (!told || most_of_all < kTold + late) return false;
+  const Model& model = run.problem.model();
   const std::string whose = of_mechanism(model, mechanisms(model), static_cast<int>(told - of_.data()));
   run.tell(fmt::format(
       "{} leaves the energy{} {:.3g} J {} at t = {:.6g} s than at the start, by {:.3g} % of {} largest "
@@ -130,6 +160,28 @@ void EnergyBalance::conclude(const Run& run, const IntegratorEntry& integrator) 
       told->fate == EnergyFate::kept ? "nothing drives or damps it, so it should stay as it is"
                                      : "dampers take of it and nothing gives",
       remedy(run.settings, integrator, most_of_all)));
+  return true;
+}
+
+void EnergyBalance::tell_on_the_way(const Run& run, const IntegratorEntry& integrator) const {
+  const Mechanism* told = nullptr;
+  double most = kTold;
+  for (const Mechanism& of : of_) {
+    if (of.fate == EnergyFate::unknown || !(std::min(of.most_kinetic, of.most_off) > noise(of, run))) continue;
+    if (const double share = of.most_off / of.most_kinetic; share > most) most = share, told = &of;
+  }
+  if (!told) return;
+  const Model& model = run.problem.model();
+  const std::string whose = of_mechanism(model, mechanisms(model), static_cast<int>(told - of_.data()));
+  run.tell(fmt::format(
+      "at t = {:.6g} s {} has the energy{} {:.3g} J off what it was {}, by {:.3g} % of {} largest kinetic energy, "
+      "though no more at the end: {}; {}",
+      told->t_off, run.settings.integrator, whose, told->most_off,
+      told->fate == EnergyFate::kept ? "at the start" : "at the least before", 100 * most,
+      whose.empty() ? "the" : "its",
+      told->fate == EnergyFate::kept ? "nothing drives or damps it, so it should stay as it is"
+                                     : "dampers take of it and nothing gives",
+      remedy(run.settings, integrator, most)));
 }
 
 }  // namespace poinsot

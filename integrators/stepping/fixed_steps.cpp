@@ -80,7 +80,7 @@ Status FixedSteps::march() {
     if (run_.statistics.steps > before + 1) ++run_.statistics.divided_steps;
     if (status.ok() && damps()) damping_.look(last_seen(), x_);
     if (status.ok() && coarse_) coarse_->look(last_seen(), x_);
-    if (status.ok() && run_.energy && run_.energy->due()) run_.energy->look(last_seen(), x_.v);
+    if (status.ok() && run_.energy && run_.energy->due()) run_.energy->look(last_seen(), x_.t, x_.v);
     if (n % kStillSteps == 0 && status.ok() && integrates()) still_.look(problem_, x_);
     if (status.ok() && integrates() && rests_.due()) status = rests_.look(problem_, settings_.linear(), x_);
     if (status.ok() && integrates() && gaps_.due(rotation_, x_.v, h_)) status = gaps_.look(last_seen(), x_);
