@@ -158,6 +158,19 @@ TEST_P(LawSwitchesTest, OfSpringsBesideNoLengthAreSeen) {
   EXPECT_LT(distance(motion(scene, settings(1e-10, 1, 1)), exact).r, 1e-7);
 }
 
+// What is left there of a law of 290 N that is written to six digits does not turn round.
+TEST(SpringLawAtNoLength, IsNotWhatDigitsAreRoundedTo) {
+  const auto left = [](double length, const char* law) {
+    const Model model = compile(on_spring(0.5, 1, length, 0, law));
+    const std::vector<SpringLaw> laws = spring_laws(model);
+    return laws.front().at_no_length(0);
+  };
+  EXPECT_EQ(left(0.24241051476403105, "25.08*(x + 0.242411)/((x + 0.242411)^2 + 0.0426^2)"), 0);
+  EXPECT_NEAR(left(0.24, "25.08*(x + 0.25)/((x + 0.25)^2 + 0.0426^2)"), 131, 1);
+  EXPECT_NEAR(left(0.3, "25*x + 0*t"), -7.5, 1e-14);
+  EXPECT_EQ(left(0, "5 + 0*x"), 5);
+}
+
 // Nor is one taken to turn round alone whose force has a peak there, of 1e-5 m.
 TEST_P(LawSwitchesTest, OfPeaksAtNoLengthAreSeen) {
   const Scene scene = on_spring(0.5, 1, 0, 0, "5 + 5000/(1 + (1e5*x)^2)");

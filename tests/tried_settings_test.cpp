@@ -48,6 +48,21 @@ TEST(TriedSettings, AreAStepThatIsKnownToServe) {
   EXPECT_TRUE(run(hinged_rod(), settings).outcome.status.ok());
 }
 
+// What another method does not have is to be left out with it.
+TEST(TriedSettings, AreWithoutParametersThatMeanNothingThere) {
+  Scene slider = hinged_rod();
+  slider.joints[0].type = JointType::translational, slider.joints[0].axis = {1, 0, 0};
+  slider.bodies[0].mass = 0.46, slider.bodies[0].velocity = {1.8, 0, 0};
+  Spring spring;
+  spring.name = "brake", spring.i = kGround, spring.j = 0, spring.s_i = {-10, 0, 0}, spring.length = 10;
+  spring.law = Expression::parse_law("9.945*x + 9.296*tanh(v/0.00137)");
+  slider.forces.push_back(spring);
+  Settings settings = dynamics("rA", 0.08, 0.8);
+  settings.integrator = "generalized_alpha_i2", settings.parameters["spectral_radius"] = 0.8;
+  EXPECT_THAT(told(slider, settings), EndsWith("; with --integrator auto and without --spectral-radius it goes on, as "
+                                               "was tried up to t = 0.8 s"));
+}
+
 TEST(TriedSettings, AreWhatHelpsOfMoreThanOne) {
   Settings settings = kinematics("rA", 0.1, 1);
   settings.max_iterations = 1;

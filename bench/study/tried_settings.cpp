@@ -24,6 +24,24 @@ struct Candidate {
   Settings settings;
 };
 
+// Without the parameters of the method before that this one does not have; their options, as "--spectral-radius".
+std::vector<std::string> drop_parameters(Settings& settings) {
+  std::vector<std::string> dropped;
+  const auto parameters = integrators().require(settings.integrator).parameters;
+  const auto has = [&](const std::string& name) {
+    return std::ranges::find(parameters, name, &MethodParameter::name) != parameters.end();
+  };
+  for (auto it = settings.parameters.begin(); it != settings.parameters.end();) {
+    if (has(it->first)) {
+      ++it;
+      continue;
+    }
+    dropped.push_back(option_name(*find_setting(it->first)));
+    it = settings.parameters.erase(it);
+  }
+  return dropped;
+}
+
 // A step not above `most`, and not below 2/5 of it, of which output times are multiples by a round number.
 double step_at_most(double most, const Settings& settings) {
   const double whole = settings.every > 0 ? settings.every : settings.end, steps = whole / most * (1 - 1e-12);
@@ -42,7 +60,13 @@ std::vector<Candidate> candidates(const Settings& given, const Status& status, b
     all.push_back({std::move(named), std::move(settings)});
   };
   const auto add_integrator = [&](const char* name) {
-    if (given.integrator != name) add(fmt::format("--integrator {}", name), [&](Settings& s) { s.integrator = name; });
+    if (given.integrator == name) return;
+    Settings settings = given;
+    settings.integrator = name;
+    const std::vector<std::string> without = drop_parameters(settings);
+    std::string named = fmt::format("--integrator {}", name);
+    if (!without.empty()) named += fmt::format(" and without {}", fmt::join(without, " and "));
+    all.push_back({std::move(named), std::move(settings)});
   };
   const auto add_tolerances = [&](double by) {
     const double rtol = by * given.rtol;

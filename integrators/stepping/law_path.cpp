@@ -77,8 +77,17 @@ double SpringLaw::at_rest(double length, double t) const {
   return F ? F->law(Arguments<double>{t, length - zero, 0}).F : without_length + stiffness * length;
 }
 
-double SpringLaw::turning(double length, double t) const {
+double SpringLaw::at_no_length(double t) const {
+  constexpr double kRounded = 1e-4;  // of what the law comes to at other lengths
   const double there = at_rest(0, t);
+  if (!F) return there;
+  double most = 0;
+  for (const double part : {0.02, 0.1, 0.3, 1.0, 2.0}) most = std::max(most, std::abs(at_rest(part * zero, t)));
+  return std::abs(there) < kRounded * most ? 0 : there;
+}
+
+double SpringLaw::turning(double length, double t) const {
+  const double there = at_no_length(t);
   return std::isfinite(there) && std::abs(at_rest(length, t) - there) <= 0.5 * std::abs(there) ? there : 0;
 }
 

@@ -38,6 +38,7 @@ struct SpringLaw {
   Arguments<double> arguments(const LawPlace& place, double t) const;
   double change(const LawPlace& place) const;     // of v with time
   double at_rest(double length, double t) const;  // N, the force of a spring
+  double at_no_length(double t) const;            // N; 0 where it is what digits of the law are rounded to
   // N, what turns round where a spring passes through no length: 0 where up to `length` the force does not stay alike.
   double turning(double length, double t) const;
   const std::string& name(const Model& model) const;

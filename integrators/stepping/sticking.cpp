@@ -145,7 +145,7 @@ std::string spring_without_length(const Problem& problem, const LinearChoice& ch
                                   double instant) {
   if (state.v.size() > kMostVelocities) return {};
   for (const SpringLaw& spring : springs_that_may_turn_round(problem.model())) {
-    const double F = spring.at_rest(0, state.t);
+    const double F = spring.at_no_length(state.t);
     if (!(F > 0) || !std::isfinite(F)) continue;
     BesideJump beside(problem, choice, state, spring);
     if (!beside.moves() || !rests_without_length(beside, spring, F, instant)) continue;
