@@ -36,7 +36,7 @@ class EnergyBalance {
   bool due() {
     constexpr int kApart = 4, kLooks = 4, kEach = 32;
     ++steps_;
-    if (steps_ <= kEach) return true;
+    if (steps_ <= kEach) return steps_ >= kApart;
     if (++since_ < kApart) return false;
     looks_ = (looks_ + 1) % kLooks;
     since_ = looks_ == 0 ? -1 : 0;
