@@ -2,8 +2,8 @@
 // little of. Steps end there, where it matters.
 //
 // A jump J of f‴, by the part s of a step, at a distance w from the next such place or end of the step to either side
-// leaves f off what a polynomial through it comes to by some |J| w³/48, which evens out, as (4 w)², where there are many
-// in a step: a table with points far closer than steps are long is smooth for them.
+// leaves f off what a polynomial through it comes to by some |J| w³/48, which evens out, as (4 w)², where there are
+// many in a step: a table with points far closer than steps are long is smooth for them.
 #pragma once
 
 #include <algorithm>
