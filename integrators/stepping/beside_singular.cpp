@@ -86,7 +86,8 @@ bool hardly_turned(const Parts& parts, std::size_t part, const Eigen::VectorXd& 
 // leave free there, though bodies have turned by little and did not lead to expect it; not those that turn on from step
 // to step, as of a ball that is drawn in on a thread.
 bool Consistent::turns_back(const State& at, std::size_t part) {
-  constexpr double kLittle = 0.1;  // rad
+  constexpr double kTrusted = 1e4;  // times as steep as usual, beyond which rounding makes accelerations
+  constexpr double kLittle = 0.1;   // rad
   constexpr double kExpected = 0.25;
   const Branch& of = branches_[part];
   if (!(of.amplification > 1 && of.amplification < kTrusted) || of.approach.rate < 0 || of.approach.turned > kLittle)
@@ -143,16 +144,6 @@ void Consistent::expect(double t, std::span<const double> a, double turned, cons
     branches_[part].approach = {true, t, turned, 0, true};
   }
   approach_a_ = last_a_ = Eigen::Map<const Eigen::VectorXd>(a.data(), static_cast<Eigen::Index>(a.size()));
-}
-
-void Consistent::follow_on(const Consistent& other) {
-  steepness_ = other.steepness_, usual_steepness_ = other.usual_steepness_, least_steepness_ = other.least_steepness_;
-  amplification_ = 1, steeper_ = other.steeper_;
-  not_looked_ = kSeldom - 1;
-  turned_ = other.turned_, followed_ = other.followed_;
-  branches_ = other.branches_;
-  for (Branch& of : branches_) of.amplification = 1;
-  calm_v_ = other.calm_v_, approach_a_ = other.approach_a_, last_a_ = other.last_a_;
 }
 
 void Consistent::forget_approach() {

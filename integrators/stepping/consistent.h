@@ -84,8 +84,6 @@ class Consistent {
   // a singular position a part of it, and none of what rounding moves at the steepness looked at, ε/σ and ω ε/σ²;
   // some times as much in a limit, which takes out what the steps towards it have gathered.
   double error_in(const State& at, std::span<const double> moved_by, double shift, bool settled = false) const;
-  // Not so near a singular position that rounding makes accelerations.
-  bool trusts_accelerations() const { return amplification_ < kTrusted; }
   bool beside_singular() { return std::exchange(beside_singular_, false); }
   void tell_singular() { beside_singular_ = true; }  // seen otherwise
   // Whether accelerations where the problem stands are far larger than they were, and than forces and γ account for, so
@@ -104,8 +102,6 @@ class Consistent {
   // Instead of what was followed: accelerations were a at a time t, bodies have turned since, and how steep the
   // constraints usually are another one knows.
   void expect(double t, std::span<const double> a, double turned, const Consistent& other);
-  // All that another one has followed, of the same problem.
-  void follow_on(const Consistent& other);
   // Coordinates or the data are others: accelerations of before are not to be compared with.
   void forget_approach();
   int forgotten() const { return forgotten_; }  // times
@@ -159,7 +155,6 @@ class Consistent {
   std::unique_ptr<PositionRows> position_rows_;  // once they are needed
   static constexpr int kSeldom = 4;              // steps, of which one is looked at where no singular position is near
   static constexpr double kSteep = 30;           // times the usual steepness: a singular position is near
-  static constexpr double kTrusted = 1e4;        // times it, beyond which rounding makes accelerations
   double steepness_ = 0, usual_steepness_ = 0, amplification_ = 1, steeper_ = 1;
   double least_steepness_ = HUGE_VAL;
   bool beside_singular_ = false;

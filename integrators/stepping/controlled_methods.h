@@ -112,10 +112,7 @@ class ControlledRadau : public RadauStepper {
       passing_ = make_passing_();
       if (Status status = passing_->prepare(); !status.ok()) return status;
     }
-    // How steep the constraints are as a rule tells where a singular position is near: which steps of its own so near
-    // to it do not say.
-    const bool knows = rejections > kDifficult && !at_start_ && consistent().trusts_accelerations();
-    if (Status status = knows ? passing_->start_from(*this) : passing_->start(state()); !status.ok()) return status;
+    if (Status status = passing_->start(state()); !status.ok()) return status;
     const Status status = passing_->attempt(to, ExplicitStepper::Stages::projected, error);
     passes_ = passing_->beside_singular() || at_start_;
     return passes_ ? status : RadauStepper::attempt(to, error);

@@ -43,15 +43,6 @@ class ExplicitStepper {
     consistent_.expect(t, a, turned, other);
   }
 
-  // From a state that another stepper of the same problem has come to.
-  template <class Stepper>
-  Status start_from(const Stepper& other) {
-    if (Status status = start(other.state()); !status.ok()) return status;
-    consistent_.follow_on(other.consistent());
-    gap_.follow_on(other.gap());
-    return {};
-  }
-
   // Hairer's automatic choice; one evaluation.
   Status first_step(double end, double& h);
   enum class Stages { as_they_come, projected };

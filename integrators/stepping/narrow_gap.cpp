@@ -65,14 +65,6 @@ void NarrowGap::follow(const State& at, bool settled) {
     known_ = near && orientation_ == 0 && find_first_way(at.t, w_, way_);
 }
 
-void NarrowGap::follow_on(const NarrowGap& other) {
-  const bool goes_on = other.forgotten_ == other.consistent_.forgotten();
-  forgotten_ = goes_on ? consistent_.forgotten() : -1;
-  known_ = goes_on && other.known_;
-  orientation_ = other.orientation_, from_limit_ = other.from_limit_, part_ = other.part_;
-  w_ = other.w_, way_ = other.way_;
-}
-
 bool NarrowGap::goes_over(const State& from, const State& to, bool settled) {
   bool looks = settled;
   const bool goes_on = forgotten_ == consistent_.forgotten();

@@ -35,8 +35,6 @@ class NarrowGap {
   // A step ends there that stands. The factorization at hand is that of `at`; `settled`: it is the limit of states
   // beside a singular position (passage.h), and of one of these.
   void follow(const State& at, bool settled);
-  // What another one, of the same problem, knows of the state that this one goes on from.
-  void follow_on(const NarrowGap& other);
   // The next step begins elsewhere.
   void forget() { forgotten_ = -1; }
   // Of a step that may stand. The problem stands at `to`, before and after; at hand is its factorization or, of a limit

@@ -77,8 +77,6 @@ class RadauStepper {
   // Whether steps of the same length are worth their kept matrix.
   bool converges_fast() const { return fast_; }
   bool beside_singular() { return consistent_.beside_singular(); }  // since asked last
-  const Consistent& consistent() const { return consistent_; }
-  const NarrowGap& gap() const { return gap_; }
   const State& state() const { return state_; }
   const State& interpolated() const { return sample_; }
 
