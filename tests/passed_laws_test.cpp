@@ -93,8 +93,8 @@ TEST_P(PassedLawsTest, WhatIsThinIsFeltBesideASpring) {
   for (const auto& [law, thin] : laws) {
     Scene scene = flying({0, 0, 0}, law, 10);
     scene.bodies[0].position = {1, 0, 0};
-    const auto energy = [&](const BodyState& at) {
-      return 0.5 * at.rd.squaredNorm() + 50 * at.r.x() * at.r.x() + thin(at.r.x());
+    const auto energy = [&V = thin](const BodyState& at) {
+      return 0.5 * at.rd.squaredNorm() + 50 * at.r.x() * at.r.x() + V(at.r.x());
     };
     const Recorded r = run(scene, settings(1e-8, 2, 0.01));
     ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;

@@ -16,14 +16,14 @@ TableKnots::TableKnots(const Model& model, double end, double rtol) {
 }
 
 double TableKnots::reach(double t, double to) const {
-  for (const auto& [f, nothing] : functions_) {
+  for (const Function& of : functions_) {
     if (!(t < to)) break;
     const double h = to - t;
     const double s = first_knot(
         [&](double at, std::span<int> out) {
-          f->cubics({t + at * h, 0, 0}, out);
+          of.f->cubics({t + at * h, 0, 0}, out);
         },
-        [&](double at) { return h * f->at(t + at * h).fd; }, nothing);
+        [&](double at) { return h * of.f->at(t + at * h).fd; }, of.nothing);
     if (s < 1) to = t + s * h;
   }
   return to;
