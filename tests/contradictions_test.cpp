@@ -268,5 +268,23 @@ TEST_P(Contradictions, AreNotVelocityRowsThatFollow) {
   }
 }
 
+// Nor one that is the lesser part of the rows that it follows from: of two that are a tenth of a radian apart ten
+// times.
+TEST(VelocityRows, AreSetAsideBeforePositionsThatLeanOnOneAnother) {
+  const Scene scene = contradicting(R"j("constraints": [
+      {"type": "CD", "bodies": ["ground", "rod"], "c": [1, 0, 0], "s_i": [0, 0, 0], "s_j": [-0.5, 0, 0]},
+      {"type": "CD", "bodies": ["ground", "rod"], "c": [1, 0.3, 0], "s_i": [0, 0, 0], "s_j": [-0.5, 0, 0]},
+      {"type": "CD", "bodies": ["ground", "rod"], "c": [0, 0, 1], "s_i": [0, 0, 0], "s_j": [-0.5, 0, 0]},
+      {"type": "DP1", "bodies": ["ground", "rod"], "a_i": [0, 0, 1], "a_j": [1, 0, 0]},
+      {"type": "DP1", "bodies": ["ground", "rod"], "a_i": [0, 0, 1], "a_j": [0, 1, 0]},
+      {"type": "pfaffian", "bodies": ["ground", "rod"], "a_j": [0, 1, 0], "s_i": [0, 0, 0], "s_j": [-0.5, 0, 0]}])j");
+  const auto model = std::make_shared<const Model>(compile(scene));
+  std::vector<BodyState> states(1);
+  states[0].r = scene.bodies[0].position, states[0].A = scene.bodies[0].orientation;
+  const RankAnalysis rank = analyze_rank(model, states, RankNames::none);
+  ASSERT_EQ(rank.aside.size(), 1u);
+  EXPECT_EQ(model->rows[static_cast<std::size_t>(rank.aside[0])].type, RowType::pfaffian);
+}
+
 }  // namespace
 }  // namespace poinsot::test
