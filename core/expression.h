@@ -93,9 +93,10 @@ class Expression {
     if (!parsed_->with_rate) return {F.f, F.fd, T(0)};
     return {F.f, F.fd, run_tape<T>(parsed_->tape, {t, {at.x, T(0), T(0)}, {at.v, T(1), T(0)}}).fd};
   }
-  // The terms it is the sum of but for a constant (core/expression_terms.h), each with the text of the whole: itself
-  // alone, mostly.
-  std::vector<Expression> terms() const;
+  // What a smooth background of polynomials may hide (core/expression_terms.h), each with the text of the whole: the
+  // sum of all terms that are none, and where these are more than one, each of them. None where there is no background
+  // and one term, or nothing else.
+  std::vector<Expression> hidden_terms() const;
   bool depends_on_elongation() const { return !constant_ && parsed_->with_elongation; }
   bool depends_on_rate() const { return !constant_ && parsed_->with_rate; }
   bool depends_on_time() const { return !constant_ && parsed_->with_time; }

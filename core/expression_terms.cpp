@@ -16,12 +16,7 @@ void append(Tape& tape, std::span<const TapeInstruction> more) {
 }
 
 Tape whole(const Sum& terms) {
-  Tape sum = terms.front();
-  for (std::size_t k = 1; k < terms.size(); ++k) {
-    append(sum, terms[k]);
-    sum.push_back({TapeOp::add, {0}});
-  }
-  return sum;
+  return sum_of(terms);
 }
 
 Tape applied(Tape x, const Tape& y, TapeOp op) {
@@ -61,11 +56,6 @@ bool is_polynomial(const Tape& tape) {
   });
 }
 
-bool is_constant(const Tape& tape) {
-  return std::ranges::none_of(tape,
-                              [](const TapeInstruction& i) { return arity(i.op) == 0 && i.op != TapeOp::constant; });
-}
-
 // Values on the stack at the most.
 std::size_t stack_of(const Tape& tape) {
   int now = 0, most = 0;
@@ -93,14 +83,20 @@ std::vector<Tape> tape_terms(std::span<const TapeInstruction> tape) {
       stack.back() = combined(std::move(stack.back()), y, i.op);
     }
   }
-  Sum polynomials, terms;
-  for (Tape& term : stack.back())
-    if (!is_constant(term)) (is_polynomial(term) ? polynomials : terms).push_back(std::move(term));
-  if (!polynomials.empty()) terms.push_back(whole(polynomials));
-  const auto too_deep = [](const Tape& term) { return stack_of(term) > kTapeStack; };
-  if (terms.size() < 2 || terms.size() > kMostTerms || std::ranges::any_of(terms, too_deep))
-    return {Tape(tape.begin(), tape.end())};
+  Sum terms = std::move(stack.back());
+  std::erase_if(terms, is_polynomial);
+  const auto too_deep = [](const Tape& term) { return stack_of(term) + 1 > kTapeStack; };
+  if (terms.size() > kMostTerms || std::ranges::any_of(terms, too_deep)) return {Tape(tape.begin(), tape.end())};
   return terms;
+}
+
+Tape sum_of(std::span<const Tape> terms) {
+  Tape sum = terms.front();
+  for (const Tape& term : terms.subspan(1)) {
+    append(sum, term);
+    sum.push_back({TapeOp::add, {0}});
+  }
+  return sum;
 }
 
 }  // namespace poinsot

@@ -12,8 +12,9 @@ namespace poinsot {
 
 using Tape = std::vector<TapeInstruction>;
 
-// Terms whose sum is the tape's value but for a constant: polynomials of the variables as one, if there are any, and
-// the others; one, the tape, where it is no sum, or one of too many.
+// Terms whose sum is the tape's value but for a polynomial of the variables: none where that is all of it; one, the
+// tape, where it is no sum, or one of too many.
 std::vector<Tape> tape_terms(std::span<const TapeInstruction> tape);
+Tape sum_of(std::span<const Tape> terms);
 
 }  // namespace poinsot

@@ -40,11 +40,11 @@ struct Gauss {
 // on. Where there is more to do than can be done, what is farthest off goes first.
 class LawIntegral {
  public:
-  LawIntegral(const Expression& law, double t) : law_(law), t_(t) {}
+  LawIntegral(const Expression& law, double t, double part) : law_(law), t_(t), part_(std::max(part, kRounding)) {}
 
   double over(double from, double to) {
     const Gauss whole(law_, t_, from, to);
-    add(from, to, whole, kRounding * whole.size, HUGE_VAL);
+    add(from, to, whole, part_ * whole.size, HUGE_VAL);
     for (int pieces = 1; !open_.empty() && pieces < kMostPieces; ++pieces) {
       std::ranges::pop_heap(open_, {}, &Piece::off);
       const Piece piece = std::move(open_.back());
@@ -71,7 +71,7 @@ class LawIntegral {
     const double middle = 0.5 * (from + to);
     const Gauss left(law_, t_, from, middle), right(law_, t_, middle, to);
     const double sum = left.sum + right.sum, size = left.size + right.size;
-    double enough = std::max(allowed, kRounding * size), off = std::abs(sum - whole.sum);
+    double enough = std::max(allowed, part_ * size), off = std::abs(sum - whole.sum);
     // Where x is rounded to more than F is, what is left is small and does not become less.
     constexpr double kNearly = 1e-10, kLess = 0.25;
     bool rounded = !(off > enough) || (off <= kNearly * size && off > kLess * before);
@@ -102,7 +102,7 @@ class LawIntegral {
   }
 
   const Expression& law_;
-  const double t_;
+  const double t_, part_;
   std::vector<Piece> open_;  // a heap
   double done_ = 0;
 };
@@ -120,8 +120,8 @@ double with_bits(double x, int bits) {
 
 }  // namespace
 
-double law_work(const Expression& law, double from, double to, double t) {
-  return LawIntegral(law, t).over(from, to);
+double law_work(const Expression& law, double from, double to, double t, double part) {
+  return LawIntegral(law, t, part).over(from, to);
 }
 
 double LawPotential::at(double x, double t) {

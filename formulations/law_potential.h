@@ -13,8 +13,8 @@
 
 namespace poinsot {
 
-// ∫ F(s, 0, t) ds between two x, to rounding.
-double law_work(const Expression& law, double from, double to, double t);
+// ∫ F(s, 0, t) ds between two x, to rounding or to a part of ∫ |F| ds.
+double law_work(const Expression& law, double from, double to, double t, double part = 0);
 
 class LawPotential {
  public:

@@ -292,6 +292,24 @@ TEST(EnergyBalance, what_is_invented_on_the_way_is_told) {
   EXPECT_THAT(notices(damped), Not(Contains(HasSubstr("off what it was"))));
 }
 
+// Of what rests rounding is all the energy there is.
+TEST(EnergyBalance, rest_where_nothing_pulls_is_no_motion) {
+  Scene scene;
+  Body rod;
+  rod.name = "rod", rod.mass = 1, rod.inertia = 0.1 * Matrix3::Identity(), rod.position = {0.5, 0, 0};
+  scene.bodies.push_back(rod);
+  Joint hinge;
+  hinge.i = kGround, hinge.j = 0, hinge.axis = {0, 0, 1};
+  scene.joints.push_back(hinge);
+  TorsionSpring spring;
+  spring.i = kGround, spring.j = 0, spring.axis = {0, 0, 1}, spring.law = Expression::parse_law("9.7*x + 16*x^3");
+  scene.forces.push_back(spring);
+  in_every_way(1e-2, 2, [&](const Settings& settings) {
+    const Outcome run = simulate(scene, settings, [](const Sample&) {});
+    EXPECT_THAT(run.notices, Not(Contains(HasSubstr("energy")))) << settings.integrator << settings.formulation;
+  });
+}
+
 // A force that stays as it is in space has a potential.
 TEST(EnergyBalance, constant_forces_do_not_hide_what_is_invented) {
   Scene pushed = truss(0.8450713991808606, 9347.884381740016, 0, 0.6008130395768837, -0.9847133314606027);

@@ -31,6 +31,8 @@ EnergyBalance::EnergyBalance(const Problem& problem) : parts_(problem), of_(part
   if (none_) return;
   momentum_.resize(problem.nv());
   no_accelerations_.setZero(problem.nv());
+  for (std::size_t b = 0; b < problem.model().bodies.size(); ++b)
+    of_[parts_.of_body(static_cast<int>(b))].mass += problem.model().bodies[b].mass;
   bodies_.resize(problem.model().bodies.size());
   x_first_.reserve(problem.model().springs.size() + problem.model().torsions.size());
 }
@@ -62,7 +64,8 @@ void EnergyBalance::look_on_the_way(const Problem& problem, double t) {
   constexpr int kMost = 128;
   if (++energies_ == kMost) apart_ *= 2, energies_ /= 2;
   until_ = apart_;
-  add_energies(problem, t, &Mechanism::now);
+  constexpr double kPart = 1e-3;  // of the work of a law
+  add_energies(problem, t, &Mechanism::now, kPart);
   const double late = order_ == 1 ? kLate / static_cast<double>(steps_) : 0;
   for (Mechanism& of : of_) {
     const double more = of.fate == EnergyFate::taken ? of.now - of.least : std::abs(of.now - of.first);
@@ -71,7 +74,7 @@ void EnergyBalance::look_on_the_way(const Problem& problem, double t) {
   }
 }
 
-void EnergyBalance::add_energies(const Problem& problem, double t, double Mechanism::*sum) {
+void EnergyBalance::add_energies(const Problem& problem, double t, double Mechanism::*sum, double part) {
   constexpr double kRounding = 2e3 * std::numeric_limits<double>::epsilon();
   const Model& model = problem.model();
   problem.to_bodies(span(no_accelerations_), bodies_);
@@ -96,7 +99,7 @@ void EnergyBalance::add_energies(const Problem& problem, double t, double Mechan
     Mechanism& of = of_[parts_.of_body(spring.i == kGround ? spring.j : spring.i)];
     if (of.fate == EnergyFate::unknown) return;
     if (spring.law)
-      add(of, law_work(*spring.law, from, x, t), spring.law->law(Arguments<double>{t, x, 0}).F);
+      add(of, law_work(*spring.law, from, x, t, part), spring.law->law(Arguments<double>{t, x, 0}).F);
     else
       add(of, 0.5 * spring.stiffness * x * x, spring.stiffness * x);
   };
@@ -127,8 +130,10 @@ std::string EnergyBalance::remedy(const Settings& settings, const IntegratorEntr
 }
 
 double EnergyBalance::noise(const Mechanism& of, const Run& run) const {
-  const double off = 10 * run.statistics.violation.position * std::max(1.0, longest_arm(run.problem.model()));
-  return of.rounding + off * of.loads;
+  constexpr double kStill = 1e-10;  // of an arm, in all of the run: it rests
+  const double arm = longest_arm(run.problem.model()), speed = kStill * arm / run.settings.end;
+  const double off = 10 * run.statistics.violation.position * std::max(1.0, arm);
+  return of.rounding + off * of.loads + 0.5 * of.mass * speed * speed;
 }
 
 void EnergyBalance::conclude(const Run& run, const IntegratorEntry& integrator) const {

@@ -60,13 +60,14 @@ class EnergyBalance {
     double most_kinetic = 0;     // J
     double loads = 0;            // N, of gravity and springs; or N m
     double rounding = 0;         // J, of the energies' parts
+    double mass = 0;             // kg
   };
   static constexpr double kTold = 0.06;  // of the kinetic energy
   // A step of first order is half of one late: under a constant force from rest this makes 1/n of the energy in n
   // steps, which is not lost.
   static constexpr double kLate = 2.5;
 
-  void add_energies(const Problem& problem, double t, double Mechanism::*sum);
+  void add_energies(const Problem& problem, double t, double Mechanism::*sum, double part = 0);
   void look_on_the_way(const Problem& problem, double t);
   double noise(const Mechanism& of, const Run& run) const;
   bool tell_at_end(const Run& run, const IntegratorEntry& integrator) const;

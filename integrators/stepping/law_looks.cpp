@@ -12,7 +12,7 @@ namespace poinsot {
 namespace {
 
 constexpr int kLawPartings = 12;                                                  // of a step
-constexpr int kLawPieces = 300;                                                   // of one look
+constexpr int kLawPieces = 300, kFewPieces = 30;                                  // of one look
 constexpr int kTowardsEntry = 8;                                                  // towards where F comes to more
 constexpr double kBeyondSeen = 2;                                                 // of the range that is seen
 constexpr int kShownPlaces = 4;                                                   // that stages do not miss
@@ -87,15 +87,27 @@ double look_at(const Force& force, const LawEnds& ends, const double (&places)[n
 
 }  // namespace
 
-UnseenForce first_unseen(const LawPath& path, const LawEnds& ends, double nothing) {
+namespace {
+
+UnseenForce look_for_unseen(const LawPath& path, const LawEnds& ends, double nothing, int pieces) {
   SeenForce seen(ends.range(), nothing);
   if (seen.holds(path.force(0, 1))) return {};
   std::array<double, std::size(kLookedAt)> there;
   std::ranges::transform(kLookedAt, there.begin(), [&](double s) { return path.force(s); });
   std::ranges::sort(there);
   seen.add(there[kShownPlaces - 1]), seen.add(there[there.size() - kShownPlaces]);
-  int pieces = kLawPieces;
   return first_in_part(path, seen, 0, 1, kLawPartings, pieces);
+}
+
+}  // namespace
+
+UnseenForce first_unseen(const LawPath& path, const LawEnds& ends, double nothing) {
+  return look_for_unseen(path, ends, nothing, kLawPieces);
+}
+
+UnseenForce first_known(const LawPath& path, const LawEnds& ends, double nothing) {
+  const UnseenForce first = look_for_unseen(path, ends, nothing, kFewPieces);
+  return first.known ? first : UnseenForce{};
 }
 
 UnseenForce first_between(const LawPath& path, const LawEnds& ends, double nothing) {

@@ -4,7 +4,7 @@
 // errs by no more than e ≈ h²/50 (|δ_n| + |δ_{n+1}|), δ what its second derivative and the true one differ by at an
 // end, no more than the turning of bodies and the change of ḋ account for: stiff forces make noise of accelerations.
 // With x(s) = |d(s)| − length (an angle less its zero for a torsion spring), F(s) = law(x(s), v, t), v that of the
-// middle, or v(s) where F does not depend on x.
+// middle, or v(s) of a law that is looked at by its rate.
 #pragma once
 
 #include <algorithm>
@@ -32,6 +32,7 @@ struct SpringLaw {
   double zero;                               // m, rad
   double inertia;                            // kg, kg m², of the lighter body
   double without_length = 0, stiffness = 0;  // N, N/m, where F is null: its force there, and how that grows
+  bool by_rate = false;                      // v is what it varies with on its way
 
   // As it is where the problem, and the bodies, stand.
   LawPlace place(const Model& model, const Problem& problem, std::span<const BodyState> bodies) const;
@@ -72,7 +73,7 @@ class LawPath {
   // The same with v as it is at s, of a law that varies with it.
   Jet2<double> moving_along(double s) const;
   bool moves() const { return of_.F->depends_on_rate(); }
-  bool by_rate() const { return moves() && !of_.F->depends_on_elongation(); }
+  bool by_rate() const { return of_.by_rate; }
   // What the law depends on at s, with the rate there: not the derivative of d, which in a short step is rounding.
   Arguments<double> moving(double s) const;
   Bounds force(double from, double to) const;

@@ -120,11 +120,11 @@ bool PassedInSteps::find_box(Law& law, double t, double way, double h) const {
 bool PassedInSteps::stays(Law& law, const LawPlace& to, double t, double h) const {
   const double speed = std::max(law.from.rate.norm(), to.rate.norm());
   bool known = true;
-  for (const SpringLaw& term : law.terms.laws()) {
-    const LawPath path(term, law.from, to, t - h, t);
+  for (const LawTerms::Part& part : law.terms.parts()) {
+    const LawPath path(part.law, law.from, to, t - h, t);
     const LawEnds ends = path.ends();
     law.largest = std::max({law.largest, std::abs(ends.from.f), std::abs(ends.to.f)});
-    const UnseenForce first = first_unseen(path, ends, nothing(law, speed, h));
+    const UnseenForce first = (part.whole ? first_unseen : first_known)(path, ends, nothing(law, speed, h));
     if (first.s < 1 && first.known) {
       tell_passed(law, path, first.s, t, h);
       return false;

@@ -23,11 +23,12 @@ double PassedLaws::reach() {
   for (std::size_t k = 0; k < watches_.size(); ++k) {
     if (!watches_[k].on) continue;
     const double tolerance = atol_ + rtol_ * steps_.law(k).from.rate.norm();
-    for (const SpringLaw& term : watches_[k].terms.laws()) {
-      const LawPath path = steps_.path(k, term);
+    for (const LawTerms::Part& part : watches_[k].terms.parts()) {
+      const LawPath path = steps_.path(k, part.law);
       const LawEnds ends = path.ends();
-      reach = std::min({reach, cut(k, path, ends, to, first_unseen, atol_),
-                        cut(k, path, ends, to, first_steep, tolerance), knot(k, path, ends, to)});
+      reach = std::min(reach, cut(k, path, ends, to, part.whole ? first_unseen : first_known, atol_));
+      if (part.steep) reach = std::min(reach, cut(k, path, ends, to, first_steep, tolerance));
+      if (part.whole) reach = std::min(reach, knot(k, path, ends, to));
     }
   }
   if (reach < to) leave_unknown(reach);
@@ -38,11 +39,11 @@ double PassedLaws::ahead(double to) {
   double reach = to;
   for (std::size_t k = 0; k < watches_.size(); ++k) {
     if (!watches_[k].on) continue;
-    for (const SpringLaw& term : watches_[k].terms.laws()) {
-      const LawPath path = steps_.ahead(k, term, to);
+    for (const LawTerms::Part& part : watches_[k].terms.parts()) {
+      const LawPath path = steps_.ahead(k, part.law, to);
       const LawEnds ends = path.ends();
-      reach =
-          std::min({reach, cut(k, path, ends, to, first_unseen, atol_), cut(k, path, ends, to, first_between, atol_)});
+      reach = std::min(reach, cut(k, path, ends, to, part.whole ? first_unseen : first_known, atol_));
+      if (part.steep) reach = std::min(reach, cut(k, path, ends, to, first_between, atol_));
     }
   }
   if (reach < to) leave_unknown(reach);
@@ -53,10 +54,8 @@ double PassedLaws::to_knot(double to) {
   double reach = to;
   for (std::size_t k = 0; k < watches_.size(); ++k) {
     if (!watches_[k].on || !steps_.law(k).of.F->asks_tables()) continue;
-    for (const SpringLaw& term : watches_[k].terms.laws()) {
-      const LawPath path = steps_.ahead(k, term, to);
-      reach = std::min(reach, knot(k, path, path.ends(), to));
-    }
+    const LawPath path = steps_.ahead(k, to);
+    reach = std::min(reach, knot(k, path, path.ends(), to));
   }
   return reach;
 }
