@@ -5,8 +5,9 @@
 // stay below, from where error control sees it; one over which F varies too steeply, to where that begins or to its
 // half. What is below the tolerance, as a velocity of the lighter body, does not matter.
 //
-// That F varies with v is left to error control, and with time alone to pulses.h. A scene without laws costs nothing,
-// and one whose laws show in a step two bounds and five values of each.
+// That F varies with v beside x is left to error control, and with time alone to pulses.h; where it goes on by another
+// cubic of a table, steps end, if it matters (table_knots.h). A scene without laws costs nothing, and one whose laws
+// show in a step two bounds and five values of each, and of what they hide (law_terms.h).
 #pragma once
 
 #include <vector>
@@ -41,7 +42,7 @@ class PassedLaws {
   struct Watch {
     LawTerms terms;
     bool on;
-    double largest = 0;  // |F| of a term so far
+    double largest = 0;  // |F| so far
     int unknown = 0;     // steps on end that it cut for nothing
   };
 
