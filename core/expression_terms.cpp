@@ -15,10 +15,6 @@ void append(Tape& tape, std::span<const TapeInstruction> more) {
   tape.insert(tape.end(), more.begin(), more.end());
 }
 
-Tape whole(const Sum& terms) {
-  return sum_of(terms);
-}
-
 Tape applied(Tape x, const Tape& y, TapeOp op) {
   append(x, y);
   x.push_back({op, {0}});
@@ -26,7 +22,7 @@ Tape applied(Tape x, const Tape& y, TapeOp op) {
 }
 
 Sum multiplied(const Sum& x, const Sum& y) {
-  if (x.size() * y.size() > kMostTerms) return {applied(whole(x), whole(y), TapeOp::multiply)};
+  if (x.size() * y.size() > kMostTerms) return {applied(sum_of(x), sum_of(y), TapeOp::multiply)};
   Sum product;
   for (const Tape& a : x)
     for (const Tape& b : y) product.push_back(applied(a, b, TapeOp::multiply));
@@ -36,11 +32,11 @@ Sum multiplied(const Sum& x, const Sum& y) {
 Sum combined(Sum x, const Sum& y, TapeOp op) {
   if (op == TapeOp::multiply) return multiplied(x, y);
   if (op == TapeOp::divide) {
-    const Tape by = whole(y);
+    const Tape by = sum_of(y);
     for (Tape& term : x) term = applied(std::move(term), by, op);
     return x;
   }
-  if (op != TapeOp::add && op != TapeOp::subtract) return {applied(whole(x), whole(y), op)};
+  if (op != TapeOp::add && op != TapeOp::subtract) return {applied(sum_of(x), sum_of(y), op)};
   for (const Tape& term : y) {
     x.push_back(term);
     if (op == TapeOp::subtract) x.back().push_back({TapeOp::negate, {0}});
@@ -75,7 +71,7 @@ std::vector<Tape> tape_terms(std::span<const TapeInstruction> tape) {
       stack.push_back(Sum{Tape{i}});
     } else if (arity(i.op) == 1) {
       Sum& x = stack.back();
-      if (i.op != TapeOp::negate) x = Sum{whole(x)};
+      if (i.op != TapeOp::negate) x = Sum{sum_of(x)};
       for (Tape& term : x) term.push_back(i);
     } else {
       const Sum y = std::move(stack.back());
