@@ -43,8 +43,6 @@ std::vector<Expression> Expression::hidden_terms() const {
   if (constant_ || is_function()) return {};
   std::vector<Tape> tapes = tape_terms(parsed_->tape);
   if (tapes.empty()) return {};
-  const bool all = tapes.size() == 1 && tapes[0].size() == parsed_->tape.size();
-  if (all) return {};
   if (tapes.size() > 1) tapes.insert(tapes.begin(), sum_of(tapes));
   std::vector<Expression> terms(tapes.size(), *this);
   for (std::size_t k = 0; k < terms.size(); ++k) {

@@ -22,21 +22,13 @@ Tape applied(Tape x, const Tape& y, TapeOp op) {
 }
 
 Sum multiplied(const Sum& x, const Sum& y) {
-  if (x.size() * y.size() > kMostTerms) return {applied(sum_of(x), sum_of(y), TapeOp::multiply)};
   Sum product;
   for (const Tape& a : x)
     for (const Tape& b : y) product.push_back(applied(a, b, TapeOp::multiply));
   return product;
 }
 
-Sum combined(Sum x, const Sum& y, TapeOp op) {
-  if (op == TapeOp::multiply) return multiplied(x, y);
-  if (op == TapeOp::divide) {
-    const Tape by = sum_of(y);
-    for (Tape& term : x) term = applied(std::move(term), by, op);
-    return x;
-  }
-  if (op != TapeOp::add && op != TapeOp::subtract) return {applied(sum_of(x), sum_of(y), op)};
+Sum added(Sum x, const Sum& y, TapeOp op) {
   for (const Tape& term : y) {
     x.push_back(term);
     if (op == TapeOp::subtract) x.back().push_back({TapeOp::negate, {0}});
@@ -65,24 +57,47 @@ std::size_t stack_of(const Tape& tape) {
 }  // namespace
 
 std::vector<Tape> tape_terms(std::span<const TapeInstruction> tape) {
-  std::vector<Sum> stack;
-  for (const TapeInstruction& i : tape) {
+  struct Value {
+    std::size_t begin;  // in the tape
+    Sum sum;
+  };
+  std::vector<Value> stack;
+  for (std::size_t k = 0; k < tape.size(); ++k) {
+    const TapeInstruction& i = tape[k];
     if (arity(i.op) == 0) {
-      stack.push_back(Sum{Tape{i}});
-    } else if (arity(i.op) == 1) {
-      Sum& x = stack.back();
-      if (i.op != TapeOp::negate) x = Sum{sum_of(x)};
-      for (Tape& term : x) term.push_back(i);
+      stack.push_back({k, {Tape{i}}});
+      continue;
+    }
+    const auto written = [&](std::size_t from, std::size_t end) {
+      return Tape(tape.begin() + static_cast<std::ptrdiff_t>(from), tape.begin() + static_cast<std::ptrdiff_t>(end));
+    };
+    if (arity(i.op) == 1) {
+      Value& x = stack.back();
+      if (i.op != TapeOp::negate)
+        x.sum = {written(x.begin, k + 1)};
+      else
+        for (Tape& term : x.sum) term.push_back(i);
+      continue;
+    }
+    const Value y = std::move(stack.back());
+    stack.pop_back();
+    Value& x = stack.back();
+    if (i.op == TapeOp::add || i.op == TapeOp::subtract) {
+      x.sum = added(std::move(x.sum), y.sum, i.op);
+    } else if (i.op == TapeOp::multiply && x.sum.size() * y.sum.size() <= kMostTerms) {
+      x.sum = multiplied(x.sum, y.sum);
+    } else if (i.op == TapeOp::divide) {
+      const Tape by = written(y.begin, k);
+      for (Tape& term : x.sum) term = applied(std::move(term), by, i.op);
     } else {
-      const Sum y = std::move(stack.back());
-      stack.pop_back();
-      stack.back() = combined(std::move(stack.back()), y, i.op);
+      x.sum = {written(x.begin, k + 1)};
     }
   }
-  Sum terms = std::move(stack.back());
+  Sum terms = std::move(stack.back().sum);
+  if (terms.size() == 1 || terms.size() > kMostTerms) return {};
   std::erase_if(terms, is_polynomial);
   const auto too_deep = [](const Tape& term) { return stack_of(term) + 1 > kTapeStack; };
-  if (terms.size() > kMostTerms || std::ranges::any_of(terms, too_deep)) return {Tape(tape.begin(), tape.end())};
+  if (std::ranges::any_of(terms, too_deep)) return {};
   return terms;
 }
 

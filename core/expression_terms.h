@@ -12,8 +12,8 @@ namespace poinsot {
 
 using Tape = std::vector<TapeInstruction>;
 
-// Terms whose sum is the tape's value but for a polynomial of the variables: none where that is all of it; one, the
-// tape, where it is no sum, or one of too many.
+// Terms whose sum is the tape's value but for a polynomial of the variables: none where that is all of it, or the tape
+// is no sum, or one of too many.
 std::vector<Tape> tape_terms(std::span<const TapeInstruction> tape);
 Tape sum_of(std::span<const Tape> terms);
 

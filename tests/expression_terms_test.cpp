@@ -44,6 +44,8 @@ TEST(ExpressionTerms, AddUpToTheWholeButForAPolynomial) {
 TEST(ExpressionTerms, AreThoseThatAreNoPolynomials) {
   const std::pair<const char*, std::size_t> cases[] = {{"100*x - 3*x^3 + 2*v + t", 0},
                                                        {"100*x - 95*exp(-x^2)", 1},
+                                                       {"100*x - 95*exp(-((x - (-0.3))/0.01)^2)", 1},
+                                                       {"-exp(x - (-0.3))", 0},
                                                        {"x + x^3 + exp(x) - tanh(v) + 5", 3},
                                                        {"x*(1 + exp(-x^2))", 1},
                                                        {"exp(x + v)", 0},

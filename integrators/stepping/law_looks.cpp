@@ -12,7 +12,7 @@ namespace poinsot {
 namespace {
 
 constexpr int kLawPartings = 12;                                                  // of a step
-constexpr int kLawPieces = 300, kFewPieces = 30;                                  // of one look
+constexpr int kLawPieces = 300, kFewPieces = 30;                                  // of one look, parted
 constexpr int kTowardsEntry = 8;                                                  // towards where F comes to more
 constexpr double kBeyondSeen = 2;                                                 // of the range that is seen
 constexpr int kShownPlaces = 4;                                                   // that stages do not miss
@@ -44,16 +44,43 @@ double entry_into(const Force& force, Seen&& seen, double from, double to) {
   return to;
 }
 
+// Where F at `middle` is not seen.
+UnseenForce unseen_at(const LawPath& path, const SeenForce& seen, double from, double middle) {
+  const auto holds = [&](double, double F) { return seen.holds({F, F}); };
+  const auto force = [&](double s) { return path.force(s); };
+  if (holds(middle, force(middle))) return {};
+  return {entry_into(force, holds, from, middle), true};
+}
+
+// The step is halved where bounds are not close, what comes first before what comes later.
 UnseenForce first_in_part(const LawPath& path, const SeenForce& seen, double from, double to, int partings,
                           int& pieces) {
   if (seen.holds(path.close_force(from, to))) return {};
   const double middle = from + 0.5 * (to - from);
-  const auto holds = [&](double, double F) { return seen.holds({F, F}); };
-  const auto force = [&](double s) { return path.force(s); };
-  if (!holds(middle, force(middle))) return {entry_into(force, holds, from, middle), true};
+  if (const UnseenForce here = unseen_at(path, seen, from, middle); here.known) return here;
   if (partings == 0 || --pieces < 0) return {from, false};
   const UnseenForce sooner = first_in_part(path, seen, from, middle, partings - 1, pieces);
   return sooner.s < 1 ? sooner : first_in_part(path, seen, middle, to, partings - 1, pieces);
+}
+
+// What is long before what is short: bounds that are close nowhere do not keep the rest from being looked at.
+UnseenForce known_in_parts(const LawPath& path, const SeenForce& seen) {
+  struct Part {
+    double from, to;
+  };
+  std::array<Part, 2 * kFewPieces + 1> parts;
+  std::size_t end = 0;
+  parts[end++] = {0, 1};
+  for (std::size_t k = 0; k < end; ++k) {
+    const auto [from, to] = parts[k];
+    if (seen.holds(path.close_force(from, to))) continue;
+    const double middle = from + 0.5 * (to - from);
+    if (const UnseenForce here = unseen_at(path, seen, from, middle); here.known) return here;
+    if (end + 2 > parts.size()) continue;
+    parts[end++] = {from, middle};
+    parts[end++] = {middle, to};
+  }
+  return {};
 }
 
 }  // namespace
@@ -89,25 +116,29 @@ double look_at(const Force& force, const LawEnds& ends, const double (&places)[n
 
 namespace {
 
-UnseenForce look_for_unseen(const LawPath& path, const LawEnds& ends, double nothing, int pieces) {
+// By look(seen), where F as a whole may come to more.
+template <class Look>
+UnseenForce look_for_unseen(const LawPath& path, const LawEnds& ends, double nothing, Look&& look) {
   SeenForce seen(ends.range(), nothing);
   if (seen.holds(path.force(0, 1))) return {};
   std::array<double, std::size(kLookedAt)> there;
   std::ranges::transform(kLookedAt, there.begin(), [&](double s) { return path.force(s); });
   std::ranges::sort(there);
   seen.add(there[kShownPlaces - 1]), seen.add(there[there.size() - kShownPlaces]);
-  return first_in_part(path, seen, 0, 1, kLawPartings, pieces);
+  return look(seen);
 }
 
 }  // namespace
 
 UnseenForce first_unseen(const LawPath& path, const LawEnds& ends, double nothing) {
-  return look_for_unseen(path, ends, nothing, kLawPieces);
+  return look_for_unseen(path, ends, nothing, [&](const SeenForce& seen) {
+    int pieces = kLawPieces;
+    return first_in_part(path, seen, 0, 1, kLawPartings, pieces);
+  });
 }
 
 UnseenForce first_known(const LawPath& path, const LawEnds& ends, double nothing) {
-  const UnseenForce first = look_for_unseen(path, ends, nothing, kFewPieces);
-  return first.known ? first : UnseenForce{};
+  return look_for_unseen(path, ends, nothing, [&](const SeenForce& seen) { return known_in_parts(path, seen); });
 }
 
 UnseenForce first_between(const LawPath& path, const LawEnds& ends, double nothing) {

@@ -14,7 +14,7 @@ struct UnseenForce {
   bool known = false;
 };
 UnseenForce first_unseen(const LawPath& path, const LawEnds& ends, double nothing);
-// The same where it is known that F does, in less work.
+// Some place where it is known that F does, in less work.
 UnseenForce first_known(const LawPath& path, const LawEnds& ends, double nothing);
 // The same for a method that looks at forces where its steps end, and nowhere between: where F leaves what its ends,
 // and the slopes there, lead to.
