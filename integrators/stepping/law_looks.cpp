@@ -12,7 +12,7 @@ namespace poinsot {
 namespace {
 
 constexpr int kLawPartings = 12;                                                  // of a step
-constexpr int kLawPieces = 300, kFewPieces = 30;                                  // of one look, parted
+constexpr int kLawPieces = 300, kFewPieces = 30;                                  // of one look
 constexpr int kTowardsEntry = 8;                                                  // towards where F comes to more
 constexpr double kBeyondSeen = 2;                                                 // of the range that is seen
 constexpr int kShownPlaces = 4;                                                   // that stages do not miss
@@ -68,7 +68,7 @@ UnseenForce known_in_parts(const LawPath& path, const SeenForce& seen) {
   struct Part {
     double from, to;
   };
-  std::array<Part, 2 * kFewPieces + 1> parts;
+  std::array<Part, kFewPieces + 1> parts;
   std::size_t end = 0;
   parts[end++] = {0, 1};
   for (std::size_t k = 0; k < end; ++k) {
