@@ -9,12 +9,12 @@
 
 #include "core/interruption.h"
 #include "integrators/methods/dop853.h"
+#include "integrators/methods/ida_marks.h"
 #include "integrators/methods/ida_system.h"
 #include "integrators/stepping/accept.h"
 #include "integrators/stepping/controlled_methods.h"
 #include "integrators/stepping/controlled_run.h"
 #include "integrators/stepping/narrow_gap.h"
-#include "integrators/stepping/rest_watch.h"
 #include "integrators/stepping/turning.h"
 
 namespace poinsot {
@@ -23,8 +23,6 @@ namespace {
 constexpr int kPasses = 4;        // one soon after the other that see no singular position: then none is the cause
 constexpr double kNear = 0.5;     // rad: so soon after one failure another has the same cause
 constexpr double kOnward = 1e-4;  // and so little of the run later
-constexpr double kMark = 0.01;    // rad, between two points that are remembered
-constexpr double kTurned = 0.1;   // rad: beyond, accelerations may be others
 constexpr double kStands = 0.5;   // rad: so far on the motion is made the state, whoever asks for it
 
 class Session {
@@ -35,15 +33,13 @@ class Session {
         settings_(run.settings),
         statistics_(run.statistics),
         ida_(run, clock_),
-        parts_(problem_),
         consistent_(problem_, run.systems.add(), statistics_, clock_),
         passage_(problem_, consistent_),
         gap_(problem_, consistent_),
+        marks_(problem_, consistent_),
         at_(run.state),
         next_(problem_),
-        course_(run, clock_) {
-    before_.a = last_.a.setZero(problem_.nv());
-  }
+        course_(run, clock_) {}
 
   Status integrate() {
     if (Status status = ida_.begin(at_); !status.ok()) return status;
@@ -51,7 +47,7 @@ class Session {
     clock_.start();
     consistent_.stand(at_);
     if (run_.singular_for == 0 && consistent_.factor(at_.t).ok()) consistent_.follow(at_);
-    last_.a = at_.z.head(problem_.nv()), last_.known = true;
+    marks_.begin(at_);
     ida_.turn_at_most(problem_.counted_turn().rate);
     course_.give_out(at_);
     Status status = run_.singular_for > 0 ? pass() : Status{};
@@ -90,7 +86,7 @@ class Session {
         (void)stand_at(t);  // for what is said of it
         return status;
       }
-      if (Status status = remember(t, course_.turned(h)); !status.ok()) return status;
+      if (Status status = marks_.pass(next_, course_.turned(h)); !status.ok()) return status;
       const double rate = problem_.counted_turn().rate;
       ida_.turn_at_most(rate);
       // That limit holds for steps that grow alone.
@@ -121,27 +117,6 @@ class Session {
       if (!status.ok()) {
         if (status = detour(status); !status.ok()) return status;
       }
-    }
-    return {};
-  }
-
-  // Accelerations of next_, at t, by which the branch is known beyond a singular position in which the motion came to
-  // rest.
-  Status remember(double t, double turned) {
-    way_ += turned;
-    if (way_ < kMark) return {};
-    std::swap(before_, last_);
-    last_.t = t, last_.a = next_.z.head(problem_.nv()), last_.way = way_, last_.known = true;
-    way_ = 0;
-    if (!before_.known || last_.way > kTurned) return {};
-    for (std::size_t part = 0; part < parts_.count(); ++part) {
-      if (!turned_round(parts_, part, before_.a, last_.a)) continue;
-      if (parts_.rests(parts_.largest(part, span(last_.a)), largest(span(last_.a)))) continue;
-      consistent_.stand(next_);
-      if (!consistent_.factor(t).ok()) return {};
-      consistent_.look(consistent_.steepness(t));
-      if (consistent_.amplification(part) > 1 && consistent_.lies_free(t, last_.a - before_.a, part))
-        return other_branch_after_rest(t, before_.t);
     }
     return {};
   }
@@ -199,7 +174,7 @@ class Session {
     course_.driver_impulses.expect(at_, t);
     if (Status status = consistent_.cross(at_, t); !status.ok()) return status;
     course_.driver_impulses.look(at_);
-    before_.known = last_.known = false;
+    marks_.forget();
     bool other_rows = false;
     if (Status status = poinsot::accept(problem_, at_, other_rows); !status.ok()) return status;
     if (other_rows) return renew();
@@ -249,7 +224,7 @@ class Session {
       if (Status status = passing_->prepare(); !status.ok()) return status;
     }
     if (Status status = passing_->start(at_); !status.ok()) return status;
-    if (before_.known && before_.t < at_.t) passing_->expect(before_.t, span(before_.a), last_.way + way_, consistent_);
+    marks_.expect(*passing_, at_.t);
     const double from = at_.t;
     by_singular_ = false;
     int steps = 0;
@@ -298,7 +273,7 @@ class Session {
     ida_.begin_again(at_);
     counted_ = 0;
     at_t_ = at_.t;
-    for (Mark* mark : {&before_, &last_}) mark->known = mark->known && mark->t <= at_.t;
+    marks_.go_back_to(at_.t);
   }
 
   const Run& run_;
@@ -307,10 +282,10 @@ class Session {
   Statistics& statistics_;
   PhaseClock clock_;
   IdaSystem ida_;
-  const Parts parts_;
   Consistent consistent_;
   Passage passage_;
   NarrowGap gap_;
+  IdaMarks marks_;
   State at_, next_;     // the last point given out, and the next one while it is made
   double at_t_ = 0;     // IDA's time
   double counted_ = 0;  // rad/s, of the fastest counted angle where IDA's last step ended
@@ -322,12 +297,6 @@ class Session {
   bool by_singular_ = false;      // the last pass came by one
   double since_pass_ = HUGE_VAL;  // rad
   double since_stood_ = 0;        // rad
-  struct Mark {
-    bool known = false;
-    double t = 0, way = 0;  // rad, since the one before
-    Eigen::VectorXd a;
-  } before_, last_;
-  double way_ = 0;  // since the last one
 };
 
 class Ida final : public Integrator {
