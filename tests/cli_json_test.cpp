@@ -51,14 +51,15 @@ TEST_F(JsonOutput, List) {
 
 const char* const kCheck = R"({
   "type": "object", "additionalProperties": false,
-  "required": ["scene", "bodies", "rows", "degrees_of_freedom", "singular_position", "singular", "redundant",
-               "conflicting", "undetermined_reactions", "undetermined_components", "violation",
+  "required": ["scene", "bodies", "rows", "degrees_of_freedom", "singular_position", "singular", "touching",
+               "redundant", "conflicting", "undetermined_reactions", "undetermined_components", "violation",
                "notices", "derivatives", "sound", "message"],
   "properties": {
     "scene": {"type": "string"}, "bodies": {"type": "integer"}, "rows": {"type": "integer"},
     "mass": {"type": "number"}, "extent": {"type": "array"}, "gravity": {"type": "array"}, "joints": {"type": "array"},
     "degrees_of_freedom": {"type": "integer"}, "singular_position": {"type": "boolean"},
-    "singular": {"$ref": "#/$defs/rows"}, "redundant": {"$ref": "#/$defs/rows"}, "conflicting": {"$ref": "#/$defs/rows"},
+    "singular": {"$ref": "#/$defs/rows"}, "touching": {"$ref": "#/$defs/rows"},
+    "redundant": {"$ref": "#/$defs/rows"}, "conflicting": {"$ref": "#/$defs/rows"},
     "undetermined_reactions": {"type": "array", "items": {"type": "string"}},
     "undetermined_components": {"type": "array", "items": {"type": "array", "items": {"type": "string"}}},
     "violation": {"type": "object", "required": ["position", "velocity"]},

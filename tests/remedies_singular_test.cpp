@@ -131,19 +131,21 @@ TEST_P(SingularRemedies, OfVelocitiesOnNoBranchAreThoseOfOneOrAStartBeside) {
   expect_helped(posts(1, 0.01, kSpin, false), settings);
 }
 
-// Two pendulums in parallel planes, which turn at a rate, and what holds their ends together.
+// Two pendulums in parallel planes, which turn at a rate, and what holds their ends together. The right one's mass lies
+// nearer to its hinge, so that alone it would swing faster.
 Scene held_together(Constraint by, double rate) {
   Scene scene;
   scene.gravity = {5, 0, -9.81};
   for (const int k : {0, 1}) {
     Body& body = scene.bodies.emplace_back();
     body.name = k == 0 ? "left" : "right", body.mass = 1, body.inertia = 0.1 * Matrix3::Identity();
-    body.position = {0, 0.2 * k, -0.5};
-    body.velocity = {-0.5 * rate, 0, 0}, body.angular_velocity = {0, rate, 0};
+    const double arm = k == 0 ? 0.5 : 0.4;
+    body.position = {0, 0.2 * k, -arm};
+    body.velocity = {-arm * rate, 0, 0}, body.angular_velocity = {0, rate, 0};
     Joint& hinge = scene.joints.emplace_back();
     hinge.type = JointType::revolute, hinge.j = k, hinge.point = {0, 0.2 * k, 0}, hinge.axis = Vector3::UnitY();
   }
-  by.name = "together", by.i = 0, by.j = 1, by.s_i = by.s_j = {0, 0, -0.5};
+  by.name = "together", by.i = 0, by.j = 1, by.s_i = {0, 0, -0.5}, by.s_j = {0, 0, -0.6};
   scene.constraints.push_back(by);
   return scene;
 }

@@ -90,6 +90,7 @@ SceneCheck checked(const Scene& scene) {
   try {
     const bool as_given = result.violation.position <= kSatisfied;
     result.start = find_initial_state(result.model, Settings{}, as_given ? &result.rank : nullptr);
+    if (as_given && !result.start.rank.touching.empty()) result.rank = result.start.rank;
   } catch (const InputError& refused) {
     result.refusal = refused.what();
     return result;

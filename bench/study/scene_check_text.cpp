@@ -70,6 +70,9 @@ void add_constraints(std::string& text, const SceneCheck& found) {
   for (const Dependency& d : analysis.singular)
     text += fmt::format("  {} is singular here: {}\n", describe_row(model, d.row),
                         d.others.empty() ? "its gradient vanishes" : "it follows from " + groups_text(model, d.others));
+  for (const Dependency& d : analysis.touching)
+    text += fmt::format("  {} follows from {} along the motion that begins here, to the first order of it\n",
+                        describe_row(model, d.row), groups_text(model, d.others));
   const std::size_t redundant = analysis.dependent.size() - conflicts.size();
   text += fmt::format("redundant constraints: {}\n", redundant == 0 ? "none" : counted(redundant, "row"));
   if (!analysis.named)
@@ -206,6 +209,7 @@ nlohmann::ordered_json check_json(const SceneCheck& found) {
           {"degrees_of_freedom", rank.degrees_of_freedom()},
           {"singular_position", rank.singular_position()},
           {"singular", dependencies(rank.singular, false)},
+          {"touching", dependencies(rank.touching, false)},
           {"redundant", dependencies(rank.dependent, false)},
           {"conflicting", dependencies(rank.dependent, true)},
           {"undetermined_reactions", groups_of(model, undetermined_rows(found))},

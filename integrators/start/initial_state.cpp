@@ -20,6 +20,7 @@
 #include "integrators/start/rank.h"
 #include "integrators/start/rank_told.h"
 #include "integrators/start/rough_pose.h"
+#include "integrators/start/touching_rows.h"
 #include "integrators/start/what_moved.h"
 #include "integrators/stepping/consistent.h"
 
@@ -47,6 +48,7 @@ class Assembler {
     result_.bodies = given_;
     result_.rank = known_ && !moved_ ? *known_ : analyze_rank(model_, given_, RankNames::none);
     refuse_conflicts(*model_, given_, result_.rank);
+    leave_out_touching();
     tell_rank(*model_, result_.rank, result_.notices);
     if (result_.status = refuse_singular_position(model_, given_, result_.rank, settings_.analysis);
         !result_.status.ok())
@@ -118,6 +120,13 @@ class Assembler {
     if (!pose.closed || pose.from_beside) return;
     moved_ = true;
     given_ = std::move(pose.states);
+  }
+
+  void leave_out_touching() {
+    const bool stuck = result_.rank.singular_position() && !result_.rank.moves_on;
+    if (stuck && settings_.analysis == Analysis::dynamics &&
+        keeps_touching_rows(model_, given_, result_.rank, settings_))
+      set_aside_touching(model_, given_, result_.rank);
   }
 
   std::string far_message(int group, const Gap& gap, double limit) const {

@@ -91,6 +91,11 @@ void tell_rank(const Model& model, const RankAnalysis& rank, std::vector<std::st
         fmt::format("{} of {} constraint rows are redundant, they follow from the others; set "
                     "aside, to begin with: {}",
                     rank.aside.size(), model.rows.size(), names(model, rank.aside)));
+  if (!rank.touching.empty())
+    notices.push_back(fmt::format(
+        "along the motion that begins here {} from others to the first order only, and what is forbidden beyond that "
+        "shows in no gradient: the run goes on while the motion keeps to it by itself, and stops where it does not",
+        names(model, rank.touching) + (rank.touching.size() == 1 ? " follows" : " follow")));
   if (rank.singular_position() && rank.moves_on)
     notices.push_back(
         fmt::format("the initial pose is a singular position of the mechanism: singular here: {}; the run follows "
