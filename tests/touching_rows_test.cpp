@@ -13,37 +13,37 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr double kRod = 2;
+constexpr double kRopeLength = 2;
 
-struct Rods {
+struct ParallelRods {
   std::vector<Vector3> at{{0.1, 0.25, 0}, {0.1, -0.25, 0}, {-0.1, 0.25, 0}, {-0.1, -0.25, 0}};  // on the platform
   double swung = 0, rate = 0;  // rad, of the rods about y, and its rate
 };
 
-Scene platform(const Rods& rods) {
+Scene platform(const ParallelRods& rods) {
   Scene scene;
   scene.gravity = {0, 0, -9.81};
   Body& seat = scene.bodies.emplace_back();
   seat.name = "seat", seat.mass = 30, seat.inertia = Vector3(0.5, 2, 2).asDiagonal();
   const double s = std::sin(rods.swung), c = std::cos(rods.swung);
-  seat.position = kRod * Vector3(s, 0, -c), seat.velocity = kRod * rods.rate * Vector3(c, 0, s);
+  seat.position = kRopeLength * Vector3(s, 0, -c), seat.velocity = kRopeLength * rods.rate * Vector3(c, 0, s);
   for (const Vector3& at : rods.at) {
     Constraint& rod = scene.constraints.emplace_back();
-    rod.type = ConstraintType::D, rod.j = 0, rod.s_i = rod.s_j = at, rod.f = Expression(kRod * kRod);
+    rod.type = ConstraintType::D, rod.j = 0, rod.s_i = rod.s_j = at, rod.f = Expression(kRopeLength * kRopeLength);
     rod.name = "rod" + std::to_string(scene.constraints.size());
   }
   return scene;
 }
 
-// Of the swing, a pendulum of a point: kRod ẍ = −g sin x.
+// Of the swing, a pendulum of a point: kRopeLength ẍ = −g sin x.
 double swings(double from, double rate, double t) {
   constexpr int kSteps = 20000;
   double x = from, w = rate;
   const double h = t / kSteps;
   for (int k = 0; k < kSteps; ++k) {  // Störmer and Verlet's
-    w -= 0.5 * h * 9.81 / kRod * std::sin(x);
+    w -= 0.5 * h * 9.81 / kRopeLength * std::sin(x);
     x += h * w;
-    w -= 0.5 * h * 9.81 / kRod * std::sin(x);
+    w -= 0.5 * h * 9.81 / kRopeLength * std::sin(x);
   }
   return x;
 }
@@ -54,9 +54,10 @@ INSTANTIATE_TEST_SUITE_P(All, TouchingRows, ::testing::ValuesIn(formulation_name
 
 // From rest and not, hanging and swung, on four rods and on six, by all methods.
 TEST_P(TouchingRows, APlatformOnParallelRodsSwingsWithoutTurning) {
-  Rods six{.swung = 0.5};
+  ParallelRods six{.swung = 0.5};
   for (const double x : {-0.3, 0.3}) six.at.push_back({x, 0.2, 0});
-  for (const Rods& rods : {Rods{}, Rods{.rate = 0.75}, Rods{.swung = 0.5}, Rods{.swung = 1, .rate = -0.4}, six}) {
+  for (const ParallelRods& rods : {ParallelRods{}, ParallelRods{.rate = 0.75}, ParallelRods{.swung = 0.5},
+                                   ParallelRods{.swung = 1, .rate = -0.4}, six}) {
     const double until = 1, x = swings(rods.swung, rods.rate, until);
     for (const IntegratorEntry& integrator : integrators()) {
       if (integrator.analysis != Analysis::dynamics || refusal_of(integrator, GetParam())) continue;
@@ -71,7 +72,7 @@ TEST_P(TouchingRows, APlatformOnParallelRodsSwingsWithoutTurning) {
       EXPECT_EQ(r.outcome.undetermined_reactions.size(), rods.at.size());
       const auto& seat = r.samples.back().bodies[0];
       const double allowed = integrator.controls_error ? 1e-6 : integrator.order == 1 ? 1e-2 : 1e-5;
-      EXPECT_LT((seat.r - kRod * Vector3(std::sin(x), 0, -std::cos(x))).norm(), allowed);
+      EXPECT_LT((seat.r - kRopeLength * Vector3(std::sin(x), 0, -std::cos(x))).norm(), allowed);
       EXPECT_LT((seat.A - Matrix3::Identity()).norm(), 1e-6);
     }
   }

@@ -26,8 +26,9 @@ constexpr double kSooner = 1.6, kStays = 2.5;
 constexpr double kLeastTurn = 0.05;  // rad, between two looks
 constexpr std::size_t kMostCoefficients = 4'000'000;
 constexpr double kMostProducts = 2e7;
-constexpr double kBalanced = 1e-5;  // of a null vector: what steps leave of rows set aside, and no more
-constexpr double kGain = 2;         // times better is a choice of clearest rows that is worth an exchange
+constexpr double kBalanced = 1e-5;        // of a null vector: what steps leave of rows set aside, and no more
+constexpr std::size_t kMostJudged = 400;  // rows kept
+constexpr double kGain = 2;               // times better is a choice of clearest rows that is worth an exchange
 constexpr double kSteady = 0.02, kTurnsLeast = 0.5;  // rate at the last two looks, and to reckon with below
 constexpr double kForgotten = 0.8;                   // of how fast a choice has worn before
 constexpr double kGrowth = 1.5;  // of a worn choice that is the best one found: then others are looked for again
@@ -109,9 +110,28 @@ std::vector<SparseEntries> BlockChoice::unit_null_vectors(int refinements) const
   return vectors;
 }
 
+// Where rows kept are all but dependent their coefficients are the rounding of the Gram matrix: as much of a
+// combination that vanishes may be in them as one likes, which in a singular position says nothing of other rows.
+bool BlockChoice::clear() const {
+  if (kept_.size() > kMostJudged) return true;  // long mechanisms have such rows wherever they stand
+  return (small() ? small_.least_pivot() : sparse_->least_pivot()) > kIndependent * kIndependent;
+}
+
+// Off the constraints, as where a step may lead, rows set aside are no combinations of the others, and what they lack
+// is in the coefficients, the more the nearer kept rows are to dependent ones.
+bool BlockChoice::trusted(const std::vector<SparseEntries>& vectors) const {
+  constexpr double kClear = 1e-4, kPart = 0.03;
+  const double pivot = small() ? small_.least_pivot() : sparse_->least_pivot();
+  if (kept_.size() > kMostJudged || pivot > kClear) return true;
+  return std::ranges::all_of(vectors, [&](const SparseEntries& z) { return left_by(z) <= kPart * std::sqrt(pivot); });
+}
+
 double BlockChoice::worst() {
-  if (!small()) return estimate(rows_, *sparse_, left_out_);
-  return find_small(0) ? C_.cwiseAbs().maxCoeff() : HUGE_VAL;
+  if (!small()) {
+    const double about = estimate(rows_, *sparse_, left_out_);
+    return std::isfinite(about) && clear() ? about : HUGE_VAL;
+  }
+  return find_small(0) && clear() ? C_.cwiseAbs().maxCoeff() : HUGE_VAL;
 }
 
 double BlockChoice::turn_until_worst(double rate) const {
@@ -151,7 +171,7 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead, bool
   const double lasts = std::min(angle(limit) + kStays * soon, angle(kFlat));
   const double most = std::min(1 / std::tan(lasts), kGathered);
   const bool exchanged =
-      has_coefficients() && std::isfinite(worst_) ? exchange(most, limit, asked) : choose_clearest(space);
+      has_coefficients() && std::isfinite(worst_) ? exchange(space, most, limit, asked) : choose_clearest(space);
   given_ = std::isfinite(worst_) ? kGrowth * worst_ : 0;
   worn_ = std::max(limit, given_);
   good_for_ = turn_until_worst(kTurnsMost);
@@ -159,9 +179,10 @@ bool BlockChoice::renew(const RowSpace& space, double turned, double ahead, bool
   return exchanged;
 }
 
-bool BlockChoice::exchange(double most, double limit, bool asked) {
+bool BlockChoice::exchange(const RowSpace& space, double most, double limit, bool asked) {
   std::vector<SparseEntries> vectors = unit_null_vectors(0);
   if (vectors.empty()) return false;
+  if (!trusted(vectors)) return choose_clearest(space);
   std::vector<int> chosen = left_out_;
   for (SparseEntries& z : vectors) drop_nothing(z);  // what rounding leaves of coefficients far away
   if (asked)
@@ -221,9 +242,12 @@ bool BlockChoice::has_null_vectors() const {
 
 // Coefficients are those of least squares, whether or not the row left out is a combination of those kept.
 bool BlockChoice::balances(const SparseEntries& z) const {
+  return left_by(z) <= kBalanced * largest(z);
+}
+double BlockChoice::left_by(const SparseEntries& z) const {
   Eigen::VectorXd load = Eigen::VectorXd::Zero(rows_.variables());
   for (const auto& [k, value] : z) rows_.add(value, k, load);
-  return load.cwiseAbs().maxCoeff() <= kBalanced * largest(z);
+  return load.cwiseAbs().maxCoeff();
 }
 
 void BlockChoice::add_null_vectors(const RowSpace& space, std::vector<SparseEntries>& vectors) {

@@ -74,17 +74,20 @@ class BlockChoice {
   int row_of(const RowSpace& space, int k) const;  // of the model
   bool small() const;
   bool has_coefficients() const;
+  bool clear() const;
   double worst();
   double turn_until_worst(double rate) const;
   double turn_until_worn() const;
   bool find_small(int refinements);
   Eigen::VectorXd small_shares(const Eigen::VectorXd& f, const Eigen::VectorXd& forces);
   void keep_others(const std::vector<int>& left_out);
-  bool exchange(double most, double limit, bool asked);
+  bool trusted(const std::vector<SparseEntries>& vectors) const;
+  bool exchange(const RowSpace& space, double most, double limit, bool asked);
   bool choose_clearest(const RowSpace& space);
   bool take(const std::vector<int>& chosen, double limit);
   std::vector<SparseEntries> unit_null_vectors(int refinements) const;
   bool balances(const SparseEntries& z) const;
+  double left_by(const SparseEntries& z) const;
 
   BlockRows rows_;  // all that follow by their places here
   bool watched_;

@@ -75,6 +75,7 @@ bool SmallCoefficients::find(const BlockRows& rows, Eigen::MatrixXd& C) {
 // Row by row: the entries of G_K G_Kᵀ and, below, of G_K g_d stand where those of L are to be.
 bool SmallCoefficients::decompose() {
   double* inverse = inverses();
+  least_pivot_ = HUGE_VAL;
   for (int i = 0; i < static_cast<int>(first_.size()); ++i) {
     double* x = row(i);
     const int first = first_[index(i)], end = std::min(i, kept_);
@@ -92,6 +93,7 @@ bool SmallCoefficients::decompose() {
     double& pivot = inverse[i];
     pivot -= dot_within(x, x, first_[index(i)], i);
     if (!(pivot > 0)) return false;
+    least_pivot_ = std::min(least_pivot_, pivot);
     pivot = 1 / std::sqrt(pivot);
   }
   return true;

@@ -22,6 +22,8 @@ class SmallCoefficients {
   void arrange(const BlockRows& rows, const std::vector<int>& kept, const std::vector<int>& left_out);
   // C, kept × left out, where `rows` stand; false where the rows kept are not independent.
   bool find(const BlockRows& rows, Eigen::MatrixXd& C);
+  // The least pivot of that: the square of what is left of a row beside those before it.
+  double least_pivot() const { return least_pivot_; }
   // Takes the rounding out of c, what f is in terms of the rows kept, for which coefficients were found last: what is
   // needed where multipliers are made of it.
   void refine(const BlockRows& rows, const std::vector<int>& kept, const Eigen::VectorXd& f,
@@ -38,6 +40,7 @@ class SmallCoefficients {
   static constexpr int kTogether = 3;  // columns that are solved for together: what a planar loop has left out
 
   int kept_ = 0;
+  double least_pivot_ = 0;
   // Rows kept, then those left out: L of G_K G_Kᵀ = L Lᵀ by rows without its diagonal, and below it (L⁻¹ G_K g_d)ᵀ by
   // row left out, zero elsewhere; then the inverses of the diagonal, and a number for products that nothing needs.
   int stride_ = 0;             // a row's length, of whole vectors

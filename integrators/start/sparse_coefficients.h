@@ -21,6 +21,7 @@ class SparseCoefficients {
 
   // Where `rows` stand: false where the rows kept are not independent.
   bool factor(const BlockRows& rows);
+  double least_pivot() const { return factored_.vectorD().minCoeff(); }  // small_coefficients.h
   // Coefficients of the rows kept, a column for each column of F: argmin ‖G_Kᵀ c − f‖, refined as often as asked for.
   Eigen::MatrixXd find(const BlockRows& rows, const Eigen::MatrixXd& F, int refinements) const;
   // A null vector of Gᵀ for each row left out, on unit vectors, where that is 1, by row of the block; none where the

@@ -5,10 +5,13 @@
 //                   for that alone methods are divided, too, that otherwise are not
 //   as it is        the step whose branch was in doubt, where parts did no better: it stands, and the doubt is told
 //   the beginning   is made the limit of states beside it, where it is a singular position; then all of this once more
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "integrators/stepping/fixed_steps.h"
+#include "integrators/stepping/singular_position.h"
 
 namespace poinsot {
 namespace {
@@ -82,6 +85,7 @@ Status FixedSteps::redo_whole(double t, double half, bool sampled, Status as_one
     begin_from(beginning);
     status = std::move(as_one);
   }
+  if (status.ok()) tell_parts_beside_singular(beginning.x, t);
   if (status.ok() || !doubted) return status;
   begin_from(beginning);
   shortest_ = beginning.shortest;
@@ -89,6 +93,22 @@ Status FixedSteps::redo_whole(double t, double half, bool sampled, Status as_one
   if (!take_back().ok()) return status;
   on_branch_ = OnBranch::granted;
   return reach(t, sampled);
+}
+
+// Parts creep up to a singular position, where branches cross: the way back onto one is not seen in any of them.
+void FixedSteps::tell_parts_beside_singular(const State& from, double t) {
+  constexpr std::size_t kMostBodies = 100;
+  if (branch_told_ || problem_.model().bodies.size() > kMostBodies) return;
+  const std::unique_ptr<Problem> own = last_seen().clone();
+  Vector ahead = (t - from.t) * from.v, q(from.q.size());
+  own->retract(span(from.q), span(ahead), span(q));
+  const int rows = static_cast<int>(own->model_rows().size());
+  if (near_singular_position(*own, rows, span(run_.state.q), t, span(q)).sentence.empty()) return;
+  branch_told_ = true;
+  run_.tell(
+      fmt::format("the step to t = {:.6g} s, beside a singular position of the constraints, failed as a whole and was "
+                  "done in parts: that it ends on the branch it came by is not certain; try another step or dop853",
+                  t));
 }
 
 // Where an implicit step to t has no solution, because the force of either side of a jump leads to the other.

@@ -138,6 +138,7 @@ class FixedSteps {
   Status reach_or_redo(double t, bool sampled, int halvings);
   Status redo_whole(double t, double half, bool sampled, Status as_one);
   Status reach_in_halves(double t, double half, bool sampled, int halvings);
+  void tell_parts_beside_singular(const State& from, double t);
   void begin_from(const Beginning& beginning);
   Status take_back();
   bool goes_over_jump(const Status& failed, double t);
@@ -196,11 +197,12 @@ class FixedSteps {
   std::optional<State> led_;    // where the step under way leads, by accelerations as they are
   std::optional<State> given_;  // a sample in a singular position
   OpenMultipliers open_multipliers_;
-  bool settles_ = false;  // ends in singular positions are
-  bool divides_ = false;  // steps that fail are done in parts
-  bool repeats_ = false;  // and may be done as they were after that
-  bool doubted_ = false;  // of a branch, and told
-  bool told_ = false;     // of a singular end
+  bool settles_ = false;      // ends in singular positions are
+  bool divides_ = false;      // steps that fail are done in parts
+  bool repeats_ = false;      // and may be done as they were after that
+  bool doubted_ = false;      // of a branch, and told
+  bool told_ = false;         // of a singular end
+  bool branch_told_ = false;  // of a step in parts beside one
   Index1Output output_;
 };
 

@@ -58,7 +58,7 @@ class NewtonLoop {
     for (int k = 0; k < settings_.max_iterations; ++k) {
       residual(delta_);
       off = delta_.tail(problem_.nc()).template lpNorm<Eigen::Infinity>();
-      if ((stalled_ || k >= kLong) && balanced(position, z, q)) return {};
+      if (stalled_ && balanced(position, z, q)) return {};
       delta_ = -delta_;
       if (due(refresh_, k, slow_ || !system_.ready())) {
         if (Status status = matrix(Ahead{span(delta_), refresh_ == Refresh::every_iteration}); !status.ok())
@@ -93,7 +93,6 @@ class NewtonLoop {
  private:
   // A kept matrix is made anew where corrections shrink by less than this: four more iterations would cost more.
   static constexpr double kSlow = 0.25;
-  static constexpr int kLong = 5;  // iterations
   // A correction that moves a body by more of the longest arm is none to end with, whatever it is compared with, nor is
   // one of positions that were so far off the constraints: where a step has no solution accelerations may grow until
   // corrections are small beside them, and a matrix that is nearly singular answers by λ alone.

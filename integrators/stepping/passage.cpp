@@ -12,6 +12,8 @@ namespace {
 constexpr double kTurn = 0.015;  // rad, τ: rounding 50 ε/τ³ and 576 (τ/R)⁸ are about as large, R being half a radian
 // Of a sample other τ, where one of ±τ, ... ±4τ hits another position.
 constexpr std::array kOtherTurns{0.8 * kTurn, 1.3 * kTurn};
+// Of the end of a step, where what is singular goes by slowly while other bodies turn: nearer than that is rounding.
+constexpr std::array kEndTurns{kTurn, 2.5 * kTurn, 5 * kTurn};
 // Times the least steepness seen: from there on states beside are looked at, where a step has failed or none has.
 constexpr double kSteep = 2, kSteeper = 10;
 constexpr std::array kWeights{1.6, -0.8, 8.0 / 35, -1.0 / 35};
@@ -125,7 +127,8 @@ bool Passage::settle_end(State& at, const Eigen::VectorXd& v_n) {
   const double rate = problem_.fastest_turn();
   consistent_.stand(at);
   const double here = rate > 0 && consistent_.factor(at.t).ok() ? consistent_.steepness(at.t) : HUGE_VAL;
-  const bool settled = rate > 0 && is_steep(here) && limit(at, v_n, kTurn / rate, here);
+  const bool settled = rate > 0 && is_steep(here) &&
+                       std::ranges::any_of(kEndTurns, [&](double turn) { return limit(at, v_n, turn / rate, here); });
   if (settled) {
     least_ = std::min(least_, work_->beside.back()[0].steepness);
     give_multipliers(at);
