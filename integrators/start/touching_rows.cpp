@@ -20,9 +20,10 @@
 namespace poinsot {
 namespace {
 
-constexpr double kWay = 1e-2;    // of the bodies' sizes, or rad
+constexpr double kWay = 0.1;     // of the bodies' sizes, or rad
+constexpr int kParts = 10;       // that it is done in
 constexpr double kRests = 1e-6;  // likewise, over the run
-constexpr double kHeld = 1e-9;   // of a body's size; what is forbidden to the second order is off by kWay² and so
+constexpr double kHeld = 1e-12;  // of a body's size; what is forbidden to the fourth order is off by kWay⁴ and so
 
 // The largest component, in sizes of bodies and rad. In the intrinsic formulation.
 double extent(const Eigen::VectorXd& x, const std::vector<double>& sizes) {
@@ -30,6 +31,21 @@ double extent(const Eigen::VectorXd& x, const std::vector<double>& sizes) {
   for (std::size_t k = 0; k < index(x.size()); ++k)
     most = std::max(most, std::abs(x[static_cast<Eigen::Index>(k)]) / (k % 6 < 3 ? sizes[k / 6] : 1.0));
   return most;
+}
+
+// By one step of second order: what is symmetric in the motion stays so.
+Status go_on(Problem& problem, Consistent& consistent, State& at, double h) {
+  const auto a = at.z.head(at.v.size());
+  Eigen::VectorXd way = h * at.v + (0.5 * h * h) * a, q = at.q;
+  problem.retract(span(at.q), span(way), span(q));
+  at.t += h;
+  at.q = q;
+  at.v += h * a;
+  if (Status status = consistent.project_position(at.t, span(at.q)); !status.ok()) return status;
+  consistent.stand(at);
+  if (Status status = consistent.project_velocity(at.t, span(at.v)); !status.ok()) return status;
+  consistent.stand(at);
+  return consistent.accelerations(at.t, span(at.z));
 }
 
 // Whether rows hold at a place beside the states.
@@ -61,15 +77,14 @@ bool keeps_touching_rows(const std::shared_ptr<const Model>& model, std::span<co
   consistent.stand(state);
   if (!consistent.accelerations(0, span(state.z)).ok()) return false;
   const std::vector<double> sizes = body_sizes(*model);
-  const Eigen::VectorXd a = state.z.head(problem->nv());
-  const double speed = extent(state.v, sizes), change = extent(a, sizes);
+  const double speed = extent(state.v, sizes), change = extent(state.z.head(problem->nv()), sizes);
   const double end = settings.end;
   if (!(end * (speed + 0.5 * end * change) > kRests)) return !has_regular_positions_beside(model, states);
-  const double t = std::min(kWay / speed, std::sqrt(2 * kWay / change));
-  Eigen::VectorXd way = t * state.v + (0.5 * t * t) * a, q = state.q;
-  problem->retract(span(state.q), span(way), span(q));
-  return consistent.project_position(t, span(q)).ok() && hold(RowSpace(model, rank.aside_here), states, t, span(q)) &&
-         follow(RowSpace(model, rank.loops), states, t, span(q), rank.aside_here.size());
+  const double h = std::min(kWay / speed, std::sqrt(2 * kWay / change)) / kParts;
+  for (int k = 0; k < kParts; ++k)
+    if (!go_on(*problem, consistent, state, h).ok()) return false;
+  return hold(RowSpace(model, rank.aside_here), states, state.t, span(state.q)) &&
+         follow(RowSpace(model, rank.loops), states, state.t, span(state.q), rank.aside_here.size());
 }
 
 void set_aside_touching(const std::shared_ptr<const Model>& model, std::span<const BodyState> states,
