@@ -37,7 +37,7 @@ struct RankAnalysis {
   int rank_here = 0;                  // of G at the given position
   std::vector<Dependency> dependent;  // redundant rows, by row: each follows from rows before it; see RankNames
   std::vector<Dependency> singular;   // rows that are no more than combinations of others here
-  std::vector<Dependency> touching;   // singular here and beside, and set aside all the same (touching_rows.h)
+  std::vector<Dependency> touching;   // singular along the motion, too, and set aside (touching_rows.h)
   std::vector<int> loops;             // rows among which all of these are (loop_rows.h)
   // As many rows as are redundant, ascending, chosen so that the others are as independent as can be.
   std::vector<int> aside;

@@ -16,8 +16,8 @@
 
 namespace poinsot {
 
-// Of a singular position: whether the motion that begins there without the singular rows keeps them, to the second
-// order of its way, and they are singular along it. What rests keeps them where all positions beside are singular.
+// Of a singular position: whether the motion that begins there without the singular rows keeps them for a tenth of the
+// bodies' sizes, and they are singular where that leads. What rests keeps them where all positions beside are singular.
 bool keeps_touching_rows(const std::shared_ptr<const Model>& model, std::span<const BodyState> states,
                          const RankAnalysis& rank, const Settings& settings);
 
