@@ -61,9 +61,9 @@ RankAnalysis rank_at_start(const Scene& scene) {
   return analyze_rank(model, given_state(*model), RankNames::all);
 }
 
-enum class Motion { open, keeps_to_them };
+enum class Follows { to_first_order, keeps_to_them };
 
-void expect_told(const Scene& scene, int degrees_of_freedom, Motion motion = Motion::open) {
+void expect_told(const Scene& scene, int degrees_of_freedom, Follows follows = Follows::to_first_order) {
   const RankAnalysis rank = rank_at_start(scene);
   EXPECT_TRUE(rank.singular_position());
   EXPECT_TRUE(rank.to_first_order);
@@ -74,7 +74,7 @@ void expect_told(const Scene& scene, int degrees_of_freedom, Motion motion = Mot
     Settings settings = dynamics("rA", 1e-3, 0.1);
     settings.integrator = integrator;
     const Course course = move(scene, settings);
-    if (motion == Motion::keeps_to_them) {
+    if (follows == Follows::keeps_to_them) {
       EXPECT_TRUE(course.outcome.status.ok()) << course.outcome.status.message;
       EXPECT_THAT(course.outcome.notices, Contains(HasSubstr("from others to the first order only")));
       continue;
@@ -88,8 +88,8 @@ TEST(RowsThatFollowToTheFirstOrder, OfFourCablesAreToldWhicheverComesFirst) {
   for (const int first : {0, 1, 2, 3}) {
     SCOPED_TRACE(first);
     expect_told(cables(first, Vector3::UnitX(), 1), 2);
-    expect_told(cables(first, Vector3::UnitX(), 0), 2, Motion::keeps_to_them);
-    expect_told(cables(first, Vector3::Zero(), 0), 2, Motion::keeps_to_them);
+    expect_told(cables(first, Vector3::UnitX(), 0), 2, Follows::keeps_to_them);
+    expect_told(cables(first, Vector3::Zero(), 0), 2, Follows::keeps_to_them);
   }
 }
 
@@ -97,7 +97,7 @@ TEST(RowsThatFollowToTheFirstOrder, OfSpatialLoopsAreTold) {
   for (const Frames frames : {Frames::drawn, Frames::quarter_turns, Frames::random}) {
     SCOPED_TRACE(static_cast<int>(frames));
     expect_told(crosswise(eight(), frames), 2);
-    expect_told(crosswise(legs(), frames), 4, Motion::keeps_to_them);
+    expect_told(crosswise(legs(), frames), 4, Follows::keeps_to_them);
   }
 }
 
