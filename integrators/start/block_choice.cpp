@@ -110,19 +110,27 @@ std::vector<SparseEntries> BlockChoice::unit_null_vectors(int refinements) const
   return vectors;
 }
 
+double BlockChoice::least_pivot() const {
+  return small() ? small_.least_pivot() : sparse_->least_pivot();
+}
+
 // Where rows kept are all but dependent their coefficients are the rounding of the Gram matrix: as much of a
 // combination that vanishes may be in them as one likes, which in a singular position says nothing of other rows.
-bool BlockChoice::clear() const {
-  if (kept_.size() > kMostJudged) return true;  // long mechanisms have such rows wherever they stand
-  return (small() ? small_.least_pivot() : sparse_->least_pivot()) > kIndependent * kIndependent;
+// Mechanisms have such rows wherever they stand that are long, or kept as independent but for their digits.
+bool BlockChoice::clear() {
+  constexpr double kLeast = kIndependent * kIndependent;
+  if (kept_.size() > kMostJudged) return true;
+  const bool now = least_pivot() > kLeast;
+  if (!judged_) judged_ = now;
+  return now || !*judged_;
 }
 
 // Off the constraints, as where a step may lead, rows set aside are no combinations of the others, and what they lack
 // is in the coefficients, the more the nearer kept rows are to dependent ones.
 bool BlockChoice::trusted(const std::vector<SparseEntries>& vectors) const {
   constexpr double kClear = 1e-4, kPart = 0.03;
-  const double pivot = small() ? small_.least_pivot() : sparse_->least_pivot();
-  if (kept_.size() > kMostJudged || pivot > kClear) return true;
+  const double pivot = least_pivot();
+  if (kept_.size() > kMostJudged || pivot > kClear || !judged_.value_or(true)) return true;
   return std::ranges::all_of(vectors, [&](const SparseEntries& z) { return left_by(z) <= kPart * std::sqrt(pivot); });
 }
 

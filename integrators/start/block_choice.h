@@ -22,6 +22,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -74,7 +75,8 @@ class BlockChoice {
   int row_of(const RowSpace& space, int k) const;  // of the model
   bool small() const;
   bool has_coefficients() const;
-  bool clear() const;
+  double least_pivot() const;
+  bool clear();
   double worst();
   double turn_until_worst(double rate) const;
   double turn_until_worn() const;
@@ -97,9 +99,10 @@ class BlockChoice {
   SmallCoefficients small_;
   std::unique_ptr<SparseCoefficients> sparse_;  // of blocks that are not small
   Eigen::MatrixXd C_;                           // of blocks that are, kept × left out
-  double worst_ = 0;                            // the largest coefficient where last looked at, or what stands for it
-  double worn_;                                 // from here on a choice is worn out
-  double given_ = 0;                            // what it is allowed to be, where others were no better
+  std::optional<bool> judged_;  // kept rows were clear where first looked at, and are asked whether they are
+  double worst_ = 0;            // the largest coefficient where last looked at, or what stands for it
+  double worn_;                 // from here on a choice is worn out
+  double given_ = 0;            // what it is allowed to be, where others were no better
   double good_for_ = 0;
   double change_ = 1;     // of the angle of the largest coefficient, by a turn, at the last look
   double fastest_ = 0.3;  // that the angle of the largest coefficient has changed by a turn; to begin with a guess
