@@ -84,7 +84,7 @@ class ControlledSteps {
   // `anew`: it was not done, and the next is to be aimed.
   Status step(const Aim& aim, bool& anew) {
     h_ = aim.to - aim.from;
-    if (creeping_.tries(aim.from, h_)) return step_too_small(aim.from, h_, {});
+    if (creeping_.tries(aim.from, h_)) return too_small(aim, {});
     double error = 0;
     Status status = method_.attempt(aim.to, rejections_, error);
     if (status.ok() && error <= 1) status = method_.complete(error);
@@ -126,13 +126,14 @@ class ControlledSteps {
       return {};
     }
     h_ = status.ok() && std::isfinite(error) ? controller_.rejected(h_, error) : controller_.failed(h_);
-    if (h_ < smallest_) return course_.too_small(aim.from, aim.to, h_, status);
+    if (h_ < smallest_) return too_small(aim, status);
     h_ = method_.retry(h_, ++rejections_, usual_);
     return {};
   }
 
   // Samples between the ends of the step that was done. `anew`: it went over a place where no state can be found, as of
-  // angles that are singular, and is taken back.
+  // angles that are singular, and is taken back. Beside a singular position the next ones go over it, too: an output
+  // time that comes to it at too shallow an angle has none by any step.
   Status give_out_passed(const Aim& aim, bool& anew) {
     Status status;
     for (; !course_.every_step && course_.times.next() < aim.to; course_.times.pass()) {
@@ -140,14 +141,28 @@ class ControlledSteps {
       course_.give_out(method_.interpolated());
     }
     if (status.ok() || status.failure == Failure::refused) return status;
-    if (status.failure == Failure::singular_position) return course_.singular_sample(method_.interpolated());
+    if (status.failure == Failure::singular_position ||
+        (method_.near_singular() && often_without(course_.times.next())))
+      return course_.singular_sample(method_.interpolated());
     anew = true;
     method_.take_back();
     course_.take_back_laws();
     --course_.statistics().steps;
     ++course_.statistics().rejected_steps;
     h_ = method_.retry(controller_.failed(aim.to - aim.from), ++rejections_, 0);
-    return h_ < smallest_ ? step_too_small(aim.from, h_, status) : Status{};
+    return h_ < smallest_ ? too_small(aim, status) : Status{};
+  }
+
+  // The sample at t, beside a singular position, could not be made once more; whether that is too often.
+  bool often_without(double t) {
+    taken_back_ = std::exchange(no_sample_at_, t) == t ? taken_back_ + 1 : 1;
+    return taken_back_ > kMostTakenBack;
+  }
+
+  // Steps have become too short, `cause` is what the last one failed of.
+  Status too_small(const Aim& aim, const Status& cause) {
+    if (no_sample_at_ == course_.times.next()) return course_.singular_sample(method_.state());
+    return course_.too_small(aim.from, aim.to, h_, cause);
   }
 
   // At the end of the step, and beyond the switch there. `anew`: that took the place of all else.
@@ -208,6 +223,7 @@ class ControlledSteps {
 
   static constexpr double kForgotten = 0.8, kBeside = 2e-3;  // kBeside: rad
   static constexpr int kAsksForRows = 4;  // rejections: of redundant rows the kept ones may soon depend on one another
+  static constexpr int kMostTakenBack = 12;
 
   Method& method_;
   const StepRule& rule_;
@@ -219,7 +235,9 @@ class ControlledSteps {
   double usual_ = 0;    // length of the steps so far, those long ago forgotten
   int rejections_ = 0;  // in a row
   double asked_at_ = -1;
-  bool cut_ = false;  // h is what laws leave of a step
+  double no_sample_at_ = -1;  // an output time beside a singular position
+  int taken_back_ = 0;        // steps for that
+  bool cut_ = false;          // h is what laws leave of a step
 };
 
 // The method stands at the run's state.
