@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "core/scene_reader.h"
 #include "tests/support/simulation.h"
 
 namespace poinsot::test {
@@ -80,6 +83,51 @@ TEST(ToAndFro, dampers_that_steps_follow_are_not_told) {
       ASSERT_TRUE(r.outcome.status.ok()) << r.outcome.status.message;
       EXPECT_THAT(r.outcome.notices, Each(Not(HasSubstr("to and fro"))));
     }
+}
+
+constexpr const char* kMadeOfErrors = "small errors of positions and velocities make large forces";
+
+double largest_acceleration_apart(const Recorded& a, const Recorded& b) {
+  double most = 0;
+  for (std::size_t k = 0; k < a.samples.back().bodies.size(); ++k)
+    most = std::max(most, (a.samples.back().bodies[k].rdd - b.samples.back().bodies[k].rdd).norm());
+  return most;
+}
+
+// Two balls swing out, held by dampers that nothing moves within a step: velocities are right to 1e-3, what the dampers
+// pull with is made of their error, ten times the truth.
+TEST(ToAndFro, AccelerationsMadeOfErrorsAreTold) {
+  const Scene scene = read_scene(fmt::format("{}/models/flyball_governor.json", POINSOT_SOURCE_DIR));
+  for (const std::string& formulation : formulation_names()) {
+    SCOPED_TRACE(formulation);
+    Settings s = fixed_steps("rattle", formulation, 1e-3);
+    s.end = 0.9, s.every = 0.1;
+    const Recorded coarse = run(scene, s);
+    EXPECT_THAT(coarse.outcome.notices, Contains(HasSubstr(kMadeOfErrors)));
+    s.integrator = "dop853";
+    const Recorded truth = run(scene, s);
+    EXPECT_GT(largest_acceleration_apart(coarse, truth), 100);
+    for (const char* remedy : {"radau5", "generalized_alpha"}) {
+      s.integrator = remedy;
+      EXPECT_LT(largest_acceleration_apart(run(scene, s), truth), 0.1) << remedy;
+    }
+  }
+}
+
+TEST(ToAndFro, AccelerationsThatVelocitiesFollowAreNotTold) {
+  for (const auto& [name, step] : {std::pair("double_pendulum_joints", 1e-2),
+                                   {"heavy_top", 1e-2},
+                                   {"gyroscope", 1e-2},
+                                   {"four_link_joints", 1e-2},
+                                   {"andrews", 1e-5}}) {
+    for (const std::string& formulation : formulation_names()) {
+      SCOPED_TRACE(fmt::format("{} {}", name, formulation));
+      Settings s = fixed_steps("rattle", formulation, step);
+      s.end = 100 * step, s.every = 10 * step;
+      const Recorded r = run(read_scene(fmt::format("{}/models/{}.json", POINSOT_SOURCE_DIR, name)), s);
+      EXPECT_THAT(r.outcome.notices, Each(Not(HasSubstr(kMadeOfErrors))));
+    }
+  }
 }
 
 }  // namespace

@@ -97,6 +97,7 @@ class Session {
       }
       Status status;
       for (; !course_.every_step && times.next() < t; times.pass()) {
+        if (interruption_requested) return interrupted(times.next());
         if (status = stand_at(times.next()); !status.ok()) break;
         course_.give_out(at_);
       }

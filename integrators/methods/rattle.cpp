@@ -35,7 +35,7 @@ class Rattle final : public FixedSteps {
   Status forget() override {  // the factorization may be that of the end
     place(ends_.begin().problem);
     if (Status status = factor(ends_.begin(), x_.t); !status.ok()) return status;
-    if (Status status = complete(); !status.ok()) return status;
+    if (Status status = solve_at_end(); !status.ok()) return status;
     start_from(x_.z);
     return {};
   }
@@ -84,8 +84,18 @@ class Rattle final : public FixedSteps {
     return factor(ends_.begin(), x_.t);
   }
 
-  // (a, λ) at the accepted (q, v).
   Status complete() override {
+    const Status status = solve_at_end();
+    if (status.ok() && h_ * ends_.begin().problem.fastest_turn() < kTurn)
+      to_and_fro_.look(run_, x_.a(), x_.t, x_.t >= settings_.end);
+    return status;
+  }
+
+ private:
+  static constexpr double kTurn = 0.3;  // rad, in a step: from there on accelerations in a body's frame turn with it
+
+  // (a, λ) at the accepted (q, v).
+  Status solve_at_end() {
     StepEnds::End& here = ends_.begin();
     here.problem.equations_of_motion(span(zeros_, 0, nv_), {}, x_.a());
     x_.z.head(nv_) = -x_.z.head(nv_);
@@ -93,7 +103,6 @@ class Rattle final : public FixedSteps {
     return here.system.solve(x_.t, span(x_.z));
   }
 
- private:
   void start_from(const Vector& z) {
     z_ = z;
     extrapolation_.restart(z_);

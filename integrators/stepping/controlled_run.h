@@ -137,6 +137,7 @@ class ControlledSteps {
   Status give_out_passed(const Aim& aim, bool& anew) {
     Status status;
     for (; !course_.every_step && course_.times.next() < aim.to; course_.times.pass()) {
+      if (interruption_requested) return interrupted(course_.times.next());
       if (status = method_.interpolate(course_.times.next()); !status.ok()) break;
       course_.give_out(method_.interpolated());
     }
