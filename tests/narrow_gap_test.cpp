@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/scene_reader.h"
 #include "tests/support/controlled_ways.h"
@@ -109,11 +110,10 @@ TEST_P(NarrowGaps, ASliderCrankOfAllButEqualLengths) {
 
 // The rod is too short for the crank to pass.
 TEST_P(NarrowGaps, NoMethodPassesWhatCannotBeReached) {
-  for (const double longer : {-1e-6, -1e-8, -1e-9})
-    for (const double rtol : {1e-6, 1e-10}) {
-      SCOPED_TRACE(fmt::format("{} {}", longer, rtol));
-      EXPECT_FALSE(ended(slider_crank(longer), rtol, 0.5).status.ok());
-    }
+  for (const auto& [longer, rtol] : {std::pair(-1e-6, 1e-10), {-1e-8, 1e-6}, {-1e-9, 1e-10}}) {
+    SCOPED_TRACE(fmt::format("{} {}", longer, rtol));
+    EXPECT_FALSE(ended(slider_crank(longer), rtol, 0.5).status.ok());
+  }
 }
 
 // With a degree of freedom det G does not tell: the crank turns by itself, and the slider belongs to its angle.
