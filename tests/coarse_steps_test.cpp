@@ -7,6 +7,7 @@
 #include <optional>
 #include <regex>
 
+#include "core/scene_reader.h"
 #include "tests/support/remedies.h"
 #include "tests/support/simulation.h"
 #include "tests/support/sprung_wheel.h"
@@ -14,6 +15,7 @@
 namespace poinsot::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
@@ -134,6 +136,23 @@ TEST(CoarseSteps, of_what_is_driven_are_told_with_a_doubt) {
     ASSERT_TRUE(told(r.outcome));
     EXPECT_THAT(r.outcome.notices, Contains(HasSubstr("where functions of time do not keep them")));
   }
+}
+
+// A slider that a free crank moves to and fro is the crank's, which loses less.
+TEST(CoarseSteps, OfABodyThatTurnsOnAreToldAsABound) {
+  const Scene engine = parse_scene(R"j({"scene": 1, "bodies": [
+      {"name": "crank", "mass": 1, "inertia": [0.1, 0.1, 0.1], "position": [0, 0, 0], "angular_velocity": [0, 0, 150]},
+      {"name": "slider", "mass": 0.5, "inertia": [1, 1, 1], "position": [0.1, 0, 0]}],
+      "joints": [
+      {"type": "revolute", "bodies": ["ground", "crank"], "point": [0, 0, 0], "axis": [0, 0, 1]},
+      {"type": "translational", "bodies": ["ground", "slider"], "point": [0.1, 0, 0], "axis": [1, 0, 0]}],
+      "constraints": [{"type": "CD", "bodies": ["crank", "slider"], "c": [1, 0, 0], "s_i": [0.1, 0, 0], "s_j": [0, 0, 0]}]
+      })j",
+                                   "engine");
+  Settings settings = dynamics("rA", 1e-3, 5);
+  settings.integrator = "generalized_alpha";
+  const Outcome outcome = run(engine, settings).outcome;
+  EXPECT_THAT(outcome.notices, Contains(AllOf(HasSubstr("they are up to 0."), HasSubstr("a body that turns on"))));
 }
 
 // A wheel that turns evenly: its angle in rp, by the turns that a torsion spring without stiffness counts.

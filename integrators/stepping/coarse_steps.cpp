@@ -155,15 +155,20 @@ void CoarseSteps::say(const Run& run, double h) {
 }
 
 void CoarseSteps::say_of_vibrations(const Run& run, double h, double scale) {
+  constexpr double kTurnsOn = 0.6;  // of what vibrates: as of a slider that a crank moves, whose phase is the crank's
   const Mechanism& of = *std::ranges::max_element(mechanisms_, {}, &Mechanism::phase);
   const double off = error_.vibration * of.phase * scale, lost = std::abs(off);
   if (!(lost > kTold) || of.vibrated < 2 * std::numbers::pi) return;
   const std::string whose = of_mechanism(run.problem.model(), mechanism_, static_cast<int>(&of - mechanisms_.data()));
+  const double turned = h * std::cbrt(of.turned / static_cast<double>(steps_)) * static_cast<double>(steps_);  // rad
+  const bool turns_on = turned > kTurnsOn * of.vibrated;
   run.tell(fmt::format(
-      "steps of {:.3g} s follow the vibrations{} coarsely: in {} they are about {:.2g} rad {} the motion's own by "
-      "the end{}, and what vibrates is off by as much of its amplitude; a step below {:.2g} s, or error control, keeps "
+      "steps of {:.3g} s follow the vibrations{} coarsely: in {} they are {} {:.2g} rad {} the motion's own by "
+      "the end{}{}, and what vibrates is off by as much of its amplitude; a step below {:.2g} s, or error control, "
+      "keeps "
       "that below {:g} rad",
-      h, whose, run.settings.integrator, lost, off > 0 ? "ahead of" : "behind",
+      h, whose, run.settings.integrator, turns_on ? "up to" : "about", lost, off > 0 ? "ahead of" : "behind",
+      turns_on ? ", less where they are those of a body that turns on" : "",
       of.driven ? ", where functions of time do not keep them" : "", 0.9 * h * std::sqrt(kTold / lost), kTold));
 }
 
