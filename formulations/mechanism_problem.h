@@ -17,6 +17,7 @@
 #include "formulations/blocks.h"
 #include "formulations/counted_turn.h"
 #include "formulations/faults.h"
+#include "formulations/largest_residual.h"
 #include "formulations/mechanism.h"
 #include "formulations/mechanism_matrix.h"
 #include "formulations/registry.h"
@@ -117,6 +118,7 @@ class MechanismProblem final : public Problem {
     expect(r, nc_);
     mechanism_.velocity_residual(r.data());
   }
+  LargestResidual largest_residual() const override { return largest_residual_of(mechanism_); }
   void nu(std::span<double> out) const override {
     expect(out, nc_);
     mechanism_.nu(out.data());

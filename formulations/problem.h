@@ -52,6 +52,11 @@ struct CountedTurn {
   double across = 1;  // of its direction on body j, what lies across the axis; at 0 there is no angle
 };
 
+// Largest |Φ| and |G v − ν| of rows.
+struct LargestResidual {
+  double position = 0, velocity = 0;
+};
+
 class Problem {
  public:
   virtual ~Problem() = default;
@@ -134,12 +139,9 @@ class Problem {
     set_velocity(v);
     return false;
   }
-  // Largest |Φ| and |G v − ν| of rows that are left out because they follow from the others, where the problem
-  // stands.
-  struct LeftOut {
-    double position = 0, velocity = 0;
-  };
-  virtual LeftOut left_out() const { return {}; }
+  // Of the scene's rows where the problem stands, those left out because they follow from others as well: of the bodies
+  // of to_bodies().
+  virtual LargestResidual largest_residual() const = 0;
 
   // Force (N, global) and moment about point_j of the group (N m, global) on body j by the rows of a group.
   virtual void reaction(int group, std::span<const double> lambda, Vector3& force, Vector3& moment) const = 0;

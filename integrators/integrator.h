@@ -50,9 +50,7 @@ struct Statistics {
     std::int64_t count = 0;
     double rate() const { return count > 0 ? sum / static_cast<double>(count) : 0; }
   } convergence;
-  struct {
-    double position = 0, velocity = 0;  // largest |Φ| and |G v − ν| over the run
-  } violation;
+  LargestResidual violation;                            // the largest over the run
   std::optional<AccelerationError> acceleration_error;  // of methods that solve at index 3
   // |T + V at the end − at the start| over the largest T, of mechanisms that nothing drives or damps: the largest. None
   // where there are none, or they rest.

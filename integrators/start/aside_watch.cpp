@@ -49,7 +49,7 @@ AsideWatch::AsideWatch(Problem& kept, const RowChoice& choice, bool to_tolerance
   if (measures_rates_) kept_rates_.resize(index(kept.nc()));
 }
 
-Problem::LeftOut AsideWatch::left_out(double t) {
+LargestResidual AsideWatch::left_out(double t) {
   if (!aside_) return {};
   if (most_ < 0) most_ = largest(aside_->position_residual(t, kept_));
   kept_.to_bodies(no_accelerations_, now_);

@@ -36,7 +36,7 @@ class AsideWatch {
   bool measures_rates() const { return measures_rates_; }
   void kept_has_moved() { most_ = -1; }
   // |Φ| and |G v − ν| where the kept problem stands, at the most.
-  Problem::LeftOut left_out(double t);
+  LargestResidual left_out(double t);
   // Whether |Φ| is what is allowed there; of all that are measured.
   bool hold(double t);
   // Says which row does not hold any more. The kept problem stands at the end of a step; `a`: accelerations there.

@@ -69,8 +69,9 @@ void OverConstrained::watch() {
   watch_.emplace(*kept_, choice_->rows, to_tolerance_, choice_->apart);
 }
 
-Problem::LeftOut OverConstrained::left_out() const {
-  return watch_->left_out(t_);
+LargestResidual OverConstrained::largest_residual() const {
+  const LargestResidual kept = kept_->largest_residual(), aside = watch_->left_out(t_);
+  return {std::max(kept.position, aside.position), std::max(kept.velocity, aside.velocity)};
 }
 
 void OverConstrained::set_position(double t, std::span<const double> q) {

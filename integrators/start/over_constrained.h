@@ -96,7 +96,7 @@ class OverConstrained final : public Problem {
   bool accepts_as_is(double t, std::span<const double> a) override;
   bool choose_rows_here(double t, std::span<const double> q, std::span<const double> v,
                         std::span<double> lambda) override;
-  LeftOut left_out() const override;
+  LargestResidual largest_residual() const override;
 
  private:
   // Shared by the clones of one run: all of them keep the same rows.

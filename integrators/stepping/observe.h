@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
-#include <vector>
 
 #include "core/phase_clock.h"
 #include "integrators/integrator.h"
@@ -16,15 +14,9 @@ namespace poinsot {
 
 // The problem stands at `at`; t: the output time it is given out for, where that is not at.t to the last digit.
 inline void sample(const Observer& observe, const Problem& problem, const State& at, Statistics& statistics, double t) {
-  static thread_local std::vector<double> r;  // kept: with a sample at every step, steps still allocate nothing
-  r.resize(static_cast<std::size_t>(problem.nc()));
-  problem.position_residual(r);
-  for (double x : r) statistics.violation.position = std::max(statistics.violation.position, std::abs(x));
-  problem.velocity_residual(r);
-  for (double x : r) statistics.violation.velocity = std::max(statistics.violation.velocity, std::abs(x));
-  const Problem::LeftOut left_out = problem.left_out();
-  statistics.violation.position = std::max(statistics.violation.position, left_out.position);
-  statistics.violation.velocity = std::max(statistics.violation.velocity, left_out.velocity);
+  const LargestResidual here = problem.largest_residual();
+  statistics.violation.position = std::max(statistics.violation.position, here.position);
+  statistics.violation.velocity = std::max(statistics.violation.velocity, here.velocity);
   if (observe) observe({t, at.t, problem, span(at.q), span(at.v), at.a(), at.lambda()});
 }
 
