@@ -141,6 +141,11 @@ struct Torque {
   Frame frame = Frame::body;
 };
 
+// Whether one of the three components is a function of time, no constant.
+inline bool any_moves(const Expression (&components)[3]) {
+  return !components[0].is_constant() || !components[1].is_constant() || !components[2].is_constant();
+}
+
 // Pulls the points together with stiffness x + damping v, or law(x, v, t), where x = |d| − length and v = d|d|/dt.
 struct Spring {
   std::string name;

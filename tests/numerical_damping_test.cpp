@@ -169,6 +169,47 @@ TEST(NumericalDamping, is_told_by_mechanism) {
     EXPECT_THAT(notice(driven, implicit_euler(formulation, 1e-3, 2)), Not(HasSubstr("by itself"))) << formulation;
 }
 
+// Forces and torques that are functions of time give what they give, whatever the way.
+TEST(NumericalDamping, IsNotWhatFunctionsOfTimeDo) {
+  for (const char* push : {"10*sin(20*t)", "1000*(step(t - 0.3) - step(t - 0.301))", "10*step(0.1 - t)"}) {
+    for (const Frame frame : {Frame::global, Frame::body}) {
+      Scene slide, wheel;
+      add_pendulum(slide, "slider", 1, 0);
+      slide.gravity = {0, 0, 0};
+      slide.joints[0].type = JointType::translational, slide.joints[0].axis = {0.48, 0.6, 0.64};
+      PointForce force;
+      force.body = 0, force.frame = frame;
+      for (int k = 0; k < 3; ++k)
+        force.force[k] = Expression::parse(fmt::format("{}*({})", slide.joints[0].axis[k], push));
+      slide.forces.push_back(force);
+      add_pendulum(wheel, "wheel", 0.1, 0);
+      wheel.gravity = {0, 0, 0}, wheel.joints[0].point = wheel.bodies[0].position, wheel.bodies[0].inertia *= 100;
+      Torque torque;
+      torque.body = 0, torque.frame = frame, torque.torque[1] = Expression::parse(push);
+      wheel.forces.push_back(torque);
+      for (const Scene& scene : {slide, wheel})
+        for (const std::string& formulation : formulation_names())
+          for (const double step : {1e-3, 1e-2})
+            EXPECT_THAT(notice(scene, implicit_euler(formulation, step, 2)), Not(HasSubstr("by itself")))
+                << push << ' ' << scene.bodies[0].name << ' ' << formulation << ' ' << step;
+    }
+  }
+}
+
+// What a pendulum loses is told as without a push beside it.
+TEST(NumericalDamping, IsToldBesideFunctionsOfTime) {
+  for (const std::string& formulation : formulation_names()) {
+    Scene scene = point_on_rod();
+    const Lost alone = lost(hardly_damped(scene), implicit_euler(formulation, 5e-2, 2));
+    ASSERT_GT(alone.told, 1);
+    PointForce force;
+    force.body = 0, force.force[2] = Expression::parse("1e-3*sin(30*t)"),
+    force.force[0] = Expression::parse("1e-3*cos(30*t)");
+    scene.forces.push_back(force);
+    EXPECT_NEAR(lost(scene, implicit_euler(formulation, 5e-2, 2)).told, alone.told, 0.2);
+  }
+}
+
 // Drivers alone say how these move; other methods take nothing.
 TEST(NumericalDamping, is_not_told_where_there_is_none) {
   EXPECT_EQ(lost(scene_of("four_link"), implicit_euler("rA", 1e-2, 2)).told, 0);

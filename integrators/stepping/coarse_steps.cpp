@@ -19,10 +19,6 @@ namespace {
 constexpr int kWindow = 32;    // looks
 constexpr double kTold = 0.1;  // rad
 
-bool is_still(const Expression (&components)[3]) {
-  return std::ranges::all_of(components, [](const Expression& f) { return f.is_constant(); });
-}
-
 // Whether a function of time has a part in the motion of each.
 std::vector<bool> driven(const Model& model, std::span<const int> mechanism) {
   std::vector<bool> driven(mechanism_count(mechanism));
@@ -32,8 +28,8 @@ std::vector<bool> driven(const Model& model, std::span<const int> mechanism) {
   };
   for (const Row& row : model.rows)
     drives(!row.f.is_constant() || (row.alternate && !row.alternate->f.is_constant()), row.i, row.j);
-  for (const PointForce& force : model.point_forces) drives(!is_still(force.force), force.body, kGround);
-  for (const Torque& torque : model.torques) drives(!is_still(torque.torque), torque.body, kGround);
+  for (const PointForce& force : model.point_forces) drives(any_moves(force.force), force.body, kGround);
+  for (const Torque& torque : model.torques) drives(any_moves(torque.torque), torque.body, kGround);
   const auto of_law = [&](const auto& spring) {
     drives(spring.law && spring.law->depends_on_time(), spring.i, spring.j);
   };

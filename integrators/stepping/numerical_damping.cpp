@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/index.h"
 #include "core/mechanisms.h"
@@ -31,6 +32,37 @@ NumericalDamping::NumericalDamping(const Run& run)
   bodies_.resize(model.bodies.size());
   problem.to_bodies(run.state.a(), bodies_);
   for (std::size_t b = 0; b < bodies_.size(); ++b) then_.push_back(motion(model.bodies[b], bodies_[b]));
+  list_pushes(model);
+  if (!pushes_.empty()) impulses_.resize(bodies_.size());
+  pushed_until_ = run.state.t;
+}
+
+void NumericalDamping::list_pushes(const Model& model) {
+  for (const PointForce& force : model.point_forces)
+    if (any_moves(force.force)) pushes_.push_back({force.body, &force, nullptr});
+  for (const Torque& torque : model.torques)
+    if (any_moves(torque.torque)) pushes_.push_back({torque.body, nullptr, &torque});
+}
+
+// What a step to x gives: a function of time as it is at its end.
+void NumericalDamping::push(const Problem& problem, const State& x) {
+  problem.to_bodies(x.a(), bodies_);
+  const double h = x.t - std::exchange(pushed_until_, x.t);
+  for (const Push& push : pushes_) {
+    const Matrix3& A = bodies_[index(push.body)].A;
+    const auto given = [&](const Expression(&of)[3], Frame frame) {
+      const Vector3 f(of[0].at(x.t).f, of[1].at(x.t).f, of[2].at(x.t).f);
+      return Vector3(h * (frame == Frame::body ? A * f : f));
+    };
+    Impulse& all = impulses_[index(push.body)];
+    if (push.torque) {
+      all.moment += given(push.torque->torque, push.torque->frame);
+    } else {
+      const Vector3 J = given(push.force->force, push.force->frame);
+      all.force += J;
+      all.moment += (A * push.force->point).cross(J);
+    }
+  }
 }
 
 NumericalDamping::Motion NumericalDamping::motion(const Body& body, const BodyState& at) {
@@ -50,6 +82,10 @@ void NumericalDamping::add(const Problem& problem, const State& x) {
     const double turning = std::max(0.0, (now.L - then.L).dot(now.w - then.w));
     Mechanism& of = mechanisms_[index(mechanism_[b])];
     of.taken += (body.mass * (now.rd - then.rd).squaredNorm() + turning) / kApart;
+    if (!impulses_.empty()) {
+      const Impulse J = std::exchange(impulses_[b], {});
+      of.taken -= (J.force.dot(now.rd - then.rd) + J.moment.dot(now.w - then.w)) / kApart;
+    }
     const Eigen::Index first = static_cast<Eigen::Index>(b) * per_body;
     of.kinetic += 0.5 * x.v.segment(first, per_body).dot(momentum_.segment(first, per_body));
     then_[b] = now;

@@ -8,9 +8,11 @@
 //
 // of energy from the motion, L being a body's angular momentum about its centre of mass and ω its rate, both in space:
 // of a point that turns by φ in a step the part φ of its speed for each radian. It goes with the step's length;
-// constant forces leave less. Mechanisms without degrees of freedom keep their motion whatever is lost. What rotation
-// loses that no moment changes differs between the formulations (Rotations), and is not in it. Each mechanism of a
-// scene (core/mechanisms.h) is looked at by itself: the motion of a large one says nothing of a small one's.
+// constant forces leave less. Forces and torques that are functions of time give a body h F(t), whatever the way: by
+// these Δv makes no loss, and J · Δṙ + J' · Δω of their impulses J and J' is taken off. Mechanisms without degrees of
+// freedom keep their motion whatever is lost. What rotation loses that no moment changes differs between the
+// formulations (Rotations), and is not in it. Each mechanism of a scene (core/mechanisms.h) is looked at by itself: the
+// motion of a large one says nothing of a small one's.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,6 +31,7 @@ class NumericalDamping {
 
   // After each step, which ended at x; the problem stands there.
   void look(const Problem& problem, const State& x) {
+    if (!pushes_.empty()) push(problem, x);
     if (++since_ == kApart) add(problem, x);
   }
   // At the end of a run in steps of length h.
@@ -40,12 +43,22 @@ class NumericalDamping {
   struct Motion {
     Vector3 rd, L, w;  // in space
   };
+  struct Push {  // a force or torque that is a function of time, of a body
+    int body;
+    const PointForce* force;  // or a torque, on which
+    const Torque* torque;
+  };
+  struct Impulse {
+    Vector3 force = Vector3::Zero(), moment = Vector3::Zero();  // N s, N m s about the centre of mass, in space
+  };
   struct Mechanism {
     int freedoms = 0;                                 // it moves freely, if only in part
     double kinetic = 0, taken = 0, most_kinetic = 0;  // J; at the last look, and since the start
     double noise = 0;                                 // J, of which rounding can make as much
   };
   static Motion motion(const Body& body, const BodyState& at);
+  void list_pushes(const Model& model);
+  void push(const Problem& problem, const State& x);
   void add(const Problem& problem, const State& x);
 
   const std::vector<int> mechanism_;  // of each body
@@ -53,6 +66,9 @@ class NumericalDamping {
   bool moves_ = false;        // one of them does
   int since_ = 0;             // steps since the last look
   std::vector<Motion> then_;  // at that look, of each body
+  std::vector<Push> pushes_;
+  std::vector<Impulse> impulses_;  // since then, of each body; empty where nothing pushes
+  double pushed_until_ = 0;        // s
   std::vector<BodyState> bodies_;
   std::int64_t steps_ = 0;
   Eigen::VectorXd momentum_;
