@@ -149,7 +149,7 @@ int chart(const ChartOptions& options) {
       told.skipped = before + here.skipped / here.all;
       progress.at(told);
     });
-    charts.push_back({stem.filename(), file.rows(), r.agreement});
+    charts.push_back({stem.filename(), file.rows(), r.agreement, without_freedom(scenes[k])});
     plots.push_back({file.path(), stem});
   }
   progress.clear();

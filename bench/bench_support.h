@@ -70,15 +70,15 @@ class Standing {
   std::shared_ptr<const Model> model_;
 };
 
-// Microseconds and instructions for each body and iteration of the benchmark's loop.
+// Time and instructions for each body and iteration of the benchmark's loop.
 class PerBody {
  public:
   PerBody(benchmark::State& state, int bodies) : state_(state), bodies_(bodies), before_(counter_.read()) {}
   ~PerBody() {
     const double units = static_cast<double>(state_.iterations()) * bodies_;
     if (units == 0) return;
-    state_.counters["us_per_body"] =
-        benchmark::Counter(units * 1e-6, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state_.counters["time_per_body"] =  // shown with its unit
+        benchmark::Counter(units, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
     if (const auto now = counter_.read(); now && before_) {
       state_.counters["instructions_per_body"] = static_cast<double>(*now - *before_) / units;
     }

@@ -78,7 +78,7 @@ void validate_bodies(const std::vector<Body>& bodies) {
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const Place at{"bodies", k};
     const Body& b = bodies[k];
-    if (b.name.empty()) at.fail("name", "found \"\", expected a name without control characters");
+    if (b.name.empty()) at.fail("name", "found \"\", expected a name of one character or more");
     name(at, b.name);
     if (b.name == "ground") {
       at.fail("name", "found \"ground\", which is body 0 and never listed, expected another name");

@@ -50,7 +50,7 @@ Matrix3 turn(double angle, const Vector3& axis) {
 }  // namespace
 
 std::string read_name(const JsonValue& value) {
-  constexpr std::string_view kAllowed = "a name without control characters";
+  constexpr std::string_view kAllowed = "a name of one character or more";
   const std::string& name = value.string(kAllowed);
   if (name.empty()) value.expected(kAllowed);
   return name;

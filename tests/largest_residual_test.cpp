@@ -50,7 +50,9 @@ TEST_P(LargestResiduals, AreThoseOfTheBodiesGivenOut) {
     const LargestResidual said = r.outcome.statistics.violation;
     EXPECT_NEAR(said.position, given.position, 0.02 * given.position + 1e-12);
     EXPECT_NEAR(said.velocity, given.velocity, 0.02 * given.velocity + 1e-12);
-    if (integrator.name == "implicit_euler" || integrator.name == "half_implicit") EXPECT_GT(said.velocity, 0.05);
+    if (integrator.name == "implicit_euler" || integrator.name == "half_implicit") {
+      EXPECT_GT(said.velocity, 0.05);
+    }
   }
 }
 

@@ -72,7 +72,8 @@ std::vector<double> Watch::values(const Statistics& s, const study::Reference* r
     values.insert(values.end(), error.begin(), error.end());
   }
   if (kept_.violation) values.insert(values.end(), {s.violation.position, s.violation.velocity});
-  if (kept_.energy_drift) values.push_back(conservative_ && kinetic_ > 0 ? drift_ / kinetic_ : kMissing);
+  if (kept_.energy_drift)
+    values.push_back(conservative_ && s.energy_change ? drift_ / kinetic_ : kMissing);  // none at rest
   if (kept_.counts)
     for (const std::int64_t n : {s.steps, s.newton_iterations, s.factorizations})
       values.push_back(static_cast<double>(n));

@@ -53,7 +53,7 @@ FigureResult solution_deltas(const FigureRequest& request) {
   const Scene scene = request.scene("double_pendulum");
   FigureResult result;
   Settings settings;
-  settings.end = request.quick ? 1 : 5;
+  settings.end = request.quick ? 2 : 5;
   settings.every = kBetweenPoints;
   settings.rtol = 1e-13;
   settings.atol = 1e-14;

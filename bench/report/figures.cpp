@@ -11,6 +11,7 @@
 #include "bench/study/chart_file.h"
 #include "bench/study/cost_curve.h"
 #include "bench/study/panels.h"
+#include "core/index.h"
 #include "formulations/registry.h"
 #include "integrators/integrator.h"
 
@@ -28,13 +29,25 @@ int place(std::vector<std::string>& names, const std::string& name) {
   return static_cast<int>(names.size()) - 1;
 }
 
+// The colours of curves by their names: integrators have one each, the same in all pictures of a page.
+std::vector<int> colours_of(const std::vector<std::string>& names) {
+  std::vector<std::string> all = integrators().names();
+  const bool are_integrators =
+      std::ranges::all_of(names, [](const std::string& name) { return integrators().find(name) != nullptr; });
+  if (!are_integrators) all = names;
+  std::vector<int> colours;
+  for (const std::string& name : names) colours.push_back(place(all, name));
+  return colours;
+}
+
 // What colours and markers mean: a list, but for its end.
-std::string key_items(const std::vector<std::string>& colours, const std::vector<std::string>& markers) {
+std::string key_items(const std::vector<std::string>& names, const std::vector<std::string>& markers) {
   constexpr const char* shapes[] = {"●", "■", "▲", "◆"};
   std::string html = "<ul class=\"key\" aria-label=\"Key\">";
-  for (std::size_t k = 0; k < colours.size(); ++k)
-    html += fmt::format("<li><span class=\"chip c{}\" aria-hidden=\"true\"></span>{}</li>", k % kColours,
-                        escape(colours[k]));
+  const std::vector<int> colours = colours_of(names);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    html += fmt::format("<li><span class=\"chip c{}\" aria-hidden=\"true\"></span>{}</li>", colours[k] % kColours,
+                        escape(names[k]));
   for (std::size_t k = 0; k < markers.size(); ++k)
     html += fmt::format("<li><span aria-hidden=\"true\">{}</span> {}</li>", shapes[k % 4], escape(markers[k]));
   return html;
@@ -108,13 +121,16 @@ std::string panels_html(const CsvTable& points, const std::string& title) {
     }
   }
   std::string html = "<div class=\"panels\">\n";
+  const std::vector<int> of_series = colours_of(colours);
   for (const std::string& name : order) {
     SvgPanel& own = panels[name];
-    for (SvgCurve& curve : own.curves)
+    for (SvgCurve& curve : own.curves) {
+      if (curve.colour != kGrey) curve.colour = of_series[index(curve.colour)];
       if (points.note("joined") == "no")
         curve.joined = false;
       else if (curve.points.size() > kCourse)
         curve.marker = kLine;
+    }
     own.title = name;
     own.x = points.note("x"), own.y = points.note("y");
     own.log_x = points.note("x scale") == "log", own.log_y = points.note("y scale") == "log";
@@ -134,6 +150,7 @@ std::string chart_html(const CsvTable& chart) {
   std::vector<std::string> colours, markers = formulations().names();
   for (const ChartRow& row : rows)
     if (!row.is_reference()) place(colours, row.integrator);
+  const std::vector<int> of_integrators = colours_of(colours);
   std::string html = "<div class=\"panels two\">\n";
   for (std::size_t quantity = 0; quantity < kQuantities.size(); ++quantity) {
     const CostCurves curves(rows, quantity, agreement[quantity]);
@@ -154,7 +171,7 @@ std::string chart_html(const CsvTable& chart) {
       const ChartRow& first = rows[curve.knots.front().row];
       const bool named = names_method(said, curve.method);
       SvgCurve drawn{.name = curve.method,
-                     .colour = named ? place(colours, first.integrator) : kGrey,
+                     .colour = named ? of_integrators[index(place(colours, first.integrator))] : kGrey,
                      .marker = place(markers, first.formulation),
                      .labelled = named};
       for (std::size_t k = 0; k < rows.size(); ++k) {

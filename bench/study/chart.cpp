@@ -5,6 +5,7 @@
 
 #include "bench/study/cache.h"
 #include "bench/study/report.h"
+#include "bench/study/scene_check.h"
 #include "core/printable.h"
 
 namespace poinsot::study {
@@ -40,7 +41,8 @@ std::string too_long(const Case& one, const std::vector<std::vector<Case>>& leve
 std::vector<std::string> chart_notes(const Scene& scene, double end, const Reference& r, const SweepPlan& plan,
                                      int core) {
   std::vector<std::string> lines{
-      fmt::format("scene: {}, content {:016x}", printable(scene.name), content_hash(scene.source))};
+      fmt::format("scene: {}, content {:016x}", printable(scene.name), content_hash(scene.source)),
+      fmt::format("motion: {}", without_freedom(scene) ? kPrescribed : kFree)};
   for (const std::string& line : origin_lines(core)) lines.push_back(line);
   lines.push_back(fmt::format("settings: to t = {:g} s; {}; {}; linear solver {}; steps {}; rtol {}, atol rtol/100{}",
                               end, fmt::join(plan.formulations, " "), fmt::join(plan.integrators, " "),

@@ -12,12 +12,16 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bench/study/csv.h"
 #include "bench/study/sweep.h"
 
 namespace poinsot::study {
+
+// What the note "motion" says of the scene.
+inline constexpr std::string_view kPrescribed = "drivers prescribe all positions", kFree = "free";
 
 struct ChartRow {
   std::string formulation, integrator, linear_solver, parameter;

@@ -7,23 +7,18 @@
 
 #include "bench/study/cost_curve.h"
 #include "bench/study/fronts.h"
-#include "integrators/integrator.h"
 
 namespace poinsot::study {
 namespace {
 
 constexpr std::array kAccuracies{1e-2, 1e-4, 1e-6, 1e-8};
 
-// What a chart tells of its scene: whether kinematics computes its motion, whether its energy is kept.
-constexpr std::array<std::string_view, 3> kSceneKinds{"drivers prescribe all positions", "free, energy is kept",
+// What a chart tells of its scene: whether drivers leave it no freedom, whether its energy is kept.
+constexpr std::array<std::string_view, 3> kSceneKinds{kPrescribed, "free, energy is kept",
                                                       "free, energy comes or goes"};
 
 std::size_t kind_of(const SceneChart& chart) {
-  const auto of_kinematics = [](const ChartRow& row) {
-    const IntegratorEntry* entry = integrators().find(row.integrator);
-    return entry && entry->analysis == Analysis::kinematics;
-  };
-  if (std::ranges::any_of(chart.rows, of_kinematics)) return 0;
+  if (chart.prescribed) return 0;
   const auto keeps = [](const ChartRow& row) { return row.measured.ok() && std::isfinite(row.measured.energy_drift); };
   return std::ranges::any_of(chart.rows, keeps) ? 1 : 2;
 }

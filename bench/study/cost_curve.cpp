@@ -143,8 +143,9 @@ std::string CostCurves::conclusion() const {
     std::string text = s.from == s.to ? power(s.from) : fmt::format("{} to {}", power(s.from), power(s.to));
     if (said.empty()) text += fmt::format(" in {}", kQuantities[quantity_]);
     text += fmt::format(": {}", s.first);
-    text += s.next.empty() ? ", which nothing else reaches"
-                           : fmt::format(", {} times as fast as the next, {}", times(s.margin), s.next);
+    if (curves_.size() > 1)
+      text += s.next.empty() ? ", which nothing else reaches"
+                             : fmt::format(", {} times as fast as the next, {}", times(s.margin), s.next);
     said.push_back(std::move(text));
   }
   return said.empty() ? "no case comes below an error of 0.01" : fmt::format("{}", fmt::join(said, "; "));

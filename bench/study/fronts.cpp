@@ -93,7 +93,10 @@ std::vector<SceneChart> charts_before(const fs::path& folder, const std::vector<
         throw InputError(fmt::format("{}: incomplete: {}", file.string(), why));
       std::vector<ChartRow> rows = chart_rows(table);
       const PerQuantity agreement = chart_agreement(rows);
-      charts.push_back({file.stem().string(), std::move(rows), agreement});
+      const std::string motion = table.note("motion");
+      if (motion.empty())
+        throw InputError(fmt::format("{}: it does not say whether drivers prescribe the motion", file.string()));
+      charts.push_back({file.stem().string(), std::move(rows), agreement, motion == kPrescribed});
     } catch (const InputError& torn) {
       notices.push_back(fmt::format("left out of fronts.md: {}", torn.what()));
     }

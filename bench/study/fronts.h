@@ -15,6 +15,7 @@ struct SceneChart {
   std::string scene;
   std::vector<ChartRow> rows;  // with their fronts
   PerQuantity agreement{};     // of the reference
+  bool prescribed = false;     // drivers prescribe all positions
 };
 
 // The charts of all other scenes that lie in the folder, of sweeps before. What is torn or was interrupted is left out,

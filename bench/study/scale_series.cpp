@@ -129,6 +129,7 @@ Table growth_table(const std::vector<Series>& all) {
     row.push_back(fmt::format("{:.2f}", fitted.back().y / fitted.front().y));
     table.rows.push_back(std::move(row));
   }
+  if (table.rows.empty()) table.text = "No series has two sizes from 100 bodies on, which an exponent takes.";
   return table;
 }
 

@@ -128,7 +128,8 @@ Measured Sweep::compare(const Case& one) const {
   if (model_.rows.empty()) measured.error.back() = std::numeric_limits<double>::quiet_NaN();
   measured.violation_position = s.violation.position;
   measured.violation_velocity = s.violation.velocity;
-  measured.energy_drift = conservative_ ? run.energy_drift / kinetic_energy_ : std::numeric_limits<double>::quiet_NaN();
+  measured.energy_drift =
+      conservative_ && s.energy_change ? run.energy_drift / kinetic_energy_ : std::numeric_limits<double>::quiet_NaN();
   return measured;
 }
 

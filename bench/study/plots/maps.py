@@ -4,6 +4,7 @@ place along x and y, which are as far apart as there are places and not by their
 from plotting import main, matplotlib, note
 
 SIDE, GAP = 1.55, 0.28  # inches of a panel, and between two
+LEAST, FOOT, LINE = 8.5, 0.45, 0.19  # inches: width, below the legend, of a line of it
 # A colour and a sign: told apart by those who see few colours, and on paper.
 LOOKS = {
     "accurate": ("#0072B2", "", "accurate: as order and tolerance promise"),
@@ -58,7 +59,11 @@ def draw_panel(axes, rows):
 def draw(rows, notes):
     formulations, integrators = names(rows, "formulation"), names(rows, "integrator")
     across, down = len(integrators), len(formulations)
-    width, height = across * (SIDE + GAP) + 1.2, down * (SIDE + GAP) + 2.1
+    of_panels = across * (SIDE + GAP) + 1.2
+    width = max(of_panels, LEAST)  # the legend's words need as much
+    beside = min(len(LOOKS), max(2, int(width / 3)))
+    legend = FOOT + LINE * -(-len(LOOKS) // beside)  # its upper end
+    height = down * (SIDE + GAP) + 1.2 + legend
     figure, axes = matplotlib.pyplot.subplots(down, across, figsize=(width, height), squeeze=False)
     for line, formulation in enumerate(formulations):
         for column, integrator in enumerate(integrators):
@@ -81,10 +86,12 @@ def draw(rows, notes):
                                         label=f"{text} {', '.join(stops) or 'none'}" if text.endswith(":")
                                         else f"{text} {sign}".strip()) for colour, sign, text in LOOKS.values()]
     figure.suptitle(note(notes, "title"), fontsize=12)
-    figure.tight_layout(rect=(0.02, 0.95 / height, 1, 1 - 0.15 / height))
-    figure.text(0.5, 0.75 / height, f"across: {note(notes, 'x')}; upwards: {note(notes, 'y')}", ha="center", fontsize=9.5)
-    figure.legend(handles=patches, loc="lower center", ncol=min(5, max(2, int(width / 3))), fontsize=8.5,
-                  bbox_to_anchor=(0.5, 0.3 / height))
+    margin = (1 - of_panels / width) / 2
+    figure.tight_layout(rect=(margin + 0.02, (legend + 0.35) / height, 1 - margin, 1 - 0.15 / height))
+    figure.text(0.5, (legend + 0.1) / height, f"across: {note(notes, 'x')}; upwards: {note(notes, 'y')}", ha="center",
+                fontsize=9.5)
+    figure.legend(handles=patches, loc="lower center", ncol=beside, fontsize=8.5, borderpad=0, labelspacing=0.3,
+                  bbox_to_anchor=(0.5, FOOT / height))
     return figure
 
 

@@ -16,15 +16,29 @@ def names(rows, column):
     return list(dict.fromkeys(row[column] for row in rows))
 
 
+def place_of_name(own, others, logarithms):
+    """Number of the point of a guide at which its name stands: where it is farthest from the others, or in the middle."""
+    size = (lambda y: math.log(y) if y > 0 else -math.inf) if logarithms else float
+    def nearest(k):
+        return min((abs(size(own[k]) - size(other[k])) for other in others if k < len(other)), default=0)
+    middle = len(own) // 2
+    return max(range(len(own)), key=lambda k: (round(nearest(k), 9), -abs(k - middle)))
+
+
 def draw_panel(axes, rows, colours, markers, joined):
+    guides = {}
+    for row in rows:
+        if row["variant"] == "guide":
+            guides.setdefault(row["series"], []).append(number(row["y"]))
     for series, variant in dict.fromkeys((row["series"], row["variant"]) for row in rows):
         points = [row for row in rows if row["series"] == series and row["variant"] == variant]
         x = [number(row["x"]) for row in points]
         y = [number(row["y"]) for row in points]
         if variant == "guide":
             axes.plot(x, y, color="#555555", linestyle="--", linewidth=1, zorder=1)
-            axes.annotate(series, (x[len(x) // 2], y[len(x) // 2]), (5, -4), textcoords="offset points", fontsize=8,
-                          color="#555555", va="top")
+            at = place_of_name(y, [other for name, other in guides.items() if name != series],
+                               axes.get_yscale() == "log")
+            axes.annotate(series, (x[at], y[at]), (5, -4), textcoords="offset points", fontsize=8, color="#555555", va="top")
             continue
         colour = colours[series]
         if points[0]["low"]:
