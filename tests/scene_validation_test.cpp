@@ -62,8 +62,8 @@ const std::vector<Case>& refused_cases() {
       {[](Scene& s) { s.bodies.clear(); }, "/bodies: found an array of 0 values, expected at least one body", "/bodies",
        Json::array()},
 
-      {[](Scene& s) { s.bodies[1].name = ""; },
-       "/bodies/1/name: found \"\", expected a name of one character or more", "/bodies/1/name", ""},
+      {[](Scene& s) { s.bodies[1].name = ""; }, "/bodies/1/name: found \"\", expected a name of one character or more",
+       "/bodies/1/name", ""},
       {[](Scene& s) { s.bodies[1].name = "a\nb"; },
        "/bodies/1/name: found \"a\\nb\", expected a name without control characters", "/bodies/1/name", "a\nb"},
       {[](Scene& s) { s.bodies[1].name = "\xff"; }, "/bodies/1/name: found \"\xef\xbf\xbd\", expected a name in UTF-8"},

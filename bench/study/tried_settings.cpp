@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kMostWork = 3e5;   // steps of a body in one trial, a second or some
 constexpr double kMostSeconds = 4;  // beside a singular position a step can take as long as hundreds
+constexpr double kMostInAll = 10;   // s, after which no other trial is begun
 
 struct Candidate {
   std::string named;  // as on the command line
@@ -132,7 +133,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 struct Trial {
-  enum class Result { leads_on, stops, given_up } result;
+  enum class Result { leads_on, leads_on_with_doubts, stops, given_up } result;
   double until = 0;  // s, of one that leads on
   double steps = 0;
   bool stops_there = false;  // beyond where the run stopped
@@ -140,7 +141,7 @@ struct Trial {
 
 // Steps of a fixed length go over much that error control stops at, as where a force grows without bound, and so does
 // an iteration without end: where they have more to tell than the run that stopped had (`told`, where it is given),
-// nobody knows where they lead.
+// nobody knows where they lead, and they are not what is offered.
 Trial try_until(const Scene& scene, Settings settings, double end, double most_steps,
                 const std::vector<std::string>* told) {
   using enum Trial::Result;
@@ -160,8 +161,9 @@ Trial try_until(const Scene& scene, Settings settings, double end, double most_s
     });
     if (outcome.status.failure == Failure::interrupted) return {given_up};
     const auto was_told = [&](const std::string& notice) { return std::ranges::find(*told, notice) != told->end(); };
-    if (fixed && told && !std::ranges::all_of(outcome.notices, was_told)) return {stops};
-    return {outcome.status.ok() ? leads_on : stops, end, taken};
+    if (!outcome.status.ok()) return {stops, end, taken};
+    const bool doubts = fixed && told && !std::ranges::all_of(outcome.notices, was_told);
+    return {doubts ? leads_on_with_doubts : leads_on, end, taken};
   } catch (const InputError&) {  // as a method refuses a formulation
     return {stops};
   } catch (const TooLong&) {
@@ -193,15 +195,27 @@ Trial try_candidate(const Scene& scene, const Settings& settings, double beyond,
 struct Trials {
   std::string best;  // empty where none leads on
   Trial of_best{};
-  std::vector<std::string> stopped;
+  std::vector<std::string> stopped, doubted;
   bool all = true;
+  // What came of those that are not offered, with commas between.
+  std::string listed() const {
+    std::string text = stopped.empty() ? "" : fmt::format("without success: {}", fmt::join(stopped, ", "));
+    if (!doubted.empty())
+      text += fmt::format("{}with notices of its own: {}", text.empty() ? "" : "; ", fmt::join(doubted, ", "));
+    return text;
+  }
 };
 Trials try_candidates(const Scene& scene, const Settings& settings, const Outcome& outcome) {
   using enum Trial::Result;
   const double beyond = well_beyond(settings, outcome.status);
   const double most_steps = kMostWork / static_cast<double>(std::max<std::size_t>(1, scene.bodies.size()));
   Trials trials;
+  const auto start = std::chrono::steady_clock::now();
   for (Candidate& candidate : candidates(settings, outcome.status, !scene.drivers.empty())) {
+    if (seconds_since(start) > kMostInAll) {
+      trials.all = false;
+      break;
+    }
     const Settings& other = candidate.settings;
     const bool same_steps = other.step == settings.step && other.integrator == settings.integrator;
     const bool no_more = chooses_steps(settings) || same_steps;
@@ -213,6 +227,7 @@ Trials try_candidates(const Scene& scene, const Settings& settings, const Outcom
       if (!trial.stops_there) break;
     }
     if (trial.result == stops) trials.stopped.push_back(std::move(candidate.named));
+    if (trial.result == leads_on_with_doubts) trials.doubted.push_back(std::move(candidate.named));
   }
   return trials;
 }
@@ -231,7 +246,7 @@ void try_settings(const Scene& scene, const Settings& settings, Outcome& outcome
     status.message += text;
   };
   const Trials trials = try_candidates(scene, settings, outcome);
-  const auto& stopped = trials.stopped;
+  const std::string listed = trials.listed();
   if (!trials.best.empty()) {
     const Trial& best = trials.of_best;
     put(fmt::format("{} with {} it goes on{}up to t = {:.4g} s{}", alone ? ";" : ", or", trials.best,
@@ -240,12 +255,11 @@ void try_settings(const Scene& scene, const Settings& settings, Outcome& outcome
     return;
   }
   if (!trials.all) {
-    status.message += stopped.empty() ? std::string(" (not tried)")
-                                      : fmt::format(" (not all tried; without success: {})", fmt::join(stopped, ", "));
+    status.message += listed.empty() ? std::string(" (not tried)") : fmt::format(" (not all tried; {})", listed);
     return;
   }
-  const std::string none = fmt::format("tried without success: {}", fmt::join(stopped, ", "));
-  if (stopped.empty())
+  const std::string none = "tried " + listed;
+  if (listed.empty())
     put("");
   else
     put(alone ? "; " + none : " (" + none + ")");

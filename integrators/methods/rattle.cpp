@@ -78,6 +78,7 @@ class Rattle final : public FixedSteps {
     bool rewritten = false;
     Status status = problem.accept(x_.t, span(x_.q), span(x_.v), span(rhs_, 0, nv_), span(rhs_, nv_, nc_), rewritten);
     if (!status.ok() || !rewritten) return status;
+    to_and_fro_.restart();
     start_from(rhs_);
     velocity_rows_ = velocity_rows(problem);
     place(problem);
@@ -92,7 +93,8 @@ class Rattle final : public FixedSteps {
   }
 
  private:
-  static constexpr double kTurn = 0.3;  // rad, in a step: from there on accelerations in a body's frame turn with it
+  static constexpr double kTurn =
+      0.1;  // rad, in a step: beyond, accelerations as coordinates have them turn with a body
 
   // (a, λ) at the accepted (q, v).
   Status solve_at_end() {

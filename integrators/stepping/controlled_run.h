@@ -114,6 +114,7 @@ class ControlledSteps {
   Status reject(const Aim& aim, const Status& status, double error) {
     if (status.failure == Failure::refused) return status;
     if (++course_.statistics().rejected_steps > course_.most_rejected()) return step_too_small(aim.from, h_, status);
+    if (method_.near_singular() && creeping_.fails_beside(aim.from)) return too_small(aim, status);
     if (const double seen = course_.switched(status, error, aim.to, method_); seen < aim.to) {
       h_ = seen - aim.from;
       cut_ = true;

@@ -77,16 +77,22 @@ double first_step(double h0, double f, double second, int order, double end);
 // dozen: they creep towards a singular position, where less and less of the accelerations is more than rounding, or to
 // where the motion grows without bound. And from a start whose steps do not grow, so many that cover so little of the
 // way would take days to the end: with an atol far below rounding a body at rest asks for its noise to be resolved.
-// Where the errors are noise every other step is rejected, and a hundred times the way is still little.
+// Where the errors are noise every other step is rejected, and a hundred times the way is still little. Beside a
+// singular position every stage is looked for from states around it: of these fewer are tried.
 class Creeping {
  public:
-  explicit Creeping(double end) : slow_{1e-6 * end}, noisy_{1e-4 * end} {}
+  explicit Creeping(double end) : slow_{1e-6 * end}, noisy_{1e-4 * end}, beside_{1e-6 * end} {}
 
   bool tries(double t, double h) {
     tiny_ = h < kTiny * longest_ ? tiny_ + 1 : 0;
     slow_.tries(t);
     noisy_.tries(t);
     return tiny_ > kMostTiny || slow_.tried > kMost || (noisy_.tried > kMost && noisy_.rejected() > noisy_.tried / 4);
+  }
+  // A step from t was rejected beside a singular position; whether that is once too often.
+  bool fails_beside(double t) {
+    beside_.tries(t);
+    return beside_.tried > kMostBeside;
   }
   // Steps are kept short for another reason.
   void limited() {
@@ -99,7 +105,7 @@ class Creeping {
   }
 
  private:
-  static constexpr int kMostTiny = 100, kMost = 10000;
+  static constexpr int kMostTiny = 100, kMost = 10000, kMostBeside = 400;
   static constexpr double kTiny = 1e-6;
 
   // What was tried since the motion came to where this stretch of it begins.
@@ -114,7 +120,7 @@ class Creeping {
     int rejected() const { return tried - completed; }
   };
 
-  Stretch slow_, noisy_;
+  Stretch slow_, noisy_, beside_;
   double longest_ = 0;
   int tiny_ = 0;
 };

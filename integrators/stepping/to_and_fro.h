@@ -68,6 +68,8 @@ class ToAndFro {
     }
   }
 
+  // Velocities are other coordinates' than before.
+  void restart() { equal_steps_ = 0; }
   // Accelerations `a` are given out at t, where the last step ended; the last ones that are, or not. Tells it once.
   void look(const Run& run, std::span<const double> a, double t, bool last) {
     if (told() || equal_steps_ < 2) return;
@@ -78,7 +80,8 @@ class ToAndFro {
     });
     for (Part& of : parts_) {
       const double off = std::sqrt(std::exchange(of.next, 0)) / h_before_, most = std::sqrt(of.most);
-      of.apart = off > kApart * most && h_before_ * off > std::sqrt(of.rounding) ? of.apart + 1 : 0;
+      const bool swings = of.grows > 0 || of.lingers > 0;  // which is told as such
+      of.apart = !swings && off > kApart * most && h_before_ * off > std::sqrt(of.rounding) ? of.apart + 1 : 0;
       if (of.apart == kApartInARow || (last && of.apart > 0))
         tell_apart(run, static_cast<int>(&of - parts_.data()), off / most, t);
     }
@@ -90,8 +93,8 @@ class ToAndFro {
   static constexpr double kOpposite = 0.9, kLingers = 0.3, kCounts = 1e-4;           // of squares
   static constexpr double kRounding = 1e3 * std::numeric_limits<double>::epsilon();  // of positions, in a step
 
-  static constexpr double kApart = 0.15,
-                          kEqual = 1e-6;  // kApart: of the largest change of a velocity so far, over time
+  static constexpr double kApart = 0.15;  // of the largest change of a velocity so far, over time
+  static constexpr double kEqual = 1e-6;  // of steps' lengths
 
   struct Part {
     double square = 0;                      // of the change in the step before
