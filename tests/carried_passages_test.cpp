@@ -101,7 +101,7 @@ class CarriedLoop {
   double course_, turns_;
 };
 
-void expect_right(const CarriedLoop& loop, const Recorded& r) {
+void expect_on_course(const CarriedLoop& loop, const Recorded& r) {
   for (const Snapshot& sample : r.samples) {
     const std::vector<CarriedLink> links = loop.links(sample.t);
     for (std::size_t k = 0; k < links.size(); ++k)
@@ -133,7 +133,7 @@ TEST_P(CarriedPassages, StepsEndWhereRowsDependOnOneAnother) {
           ++stops;
           continue;
         }
-        expect_right(loop, r);
+        expect_on_course(loop, r);
       }
     }
   }
@@ -159,8 +159,8 @@ TEST_P(CarriedPassages, OutputTimesInAPlaceThatIsHardlyLeftAreRefused) {
       settings.every = 0.06;
       const Recorded beside = run(loop.scene(), settings);
       EXPECT_TRUE(beside.outcome.status.ok()) << beside.outcome.status.message;
-      expect_right(loop, there);
-      expect_right(loop, beside);
+      expect_on_course(loop, there);
+      expect_on_course(loop, beside);
     }
   }
 }
