@@ -161,8 +161,7 @@ void CoarseSteps::say_of_vibrations(const Run& run, double h, double scale) {
   run.tell(fmt::format(
       "steps of {:.3g} s follow the vibrations{} coarsely: in {} they are {} {:.2g} rad {} the motion's own by "
       "the end{}{}, and what vibrates is off by as much of its amplitude; a step below {:.2g} s, or error control, "
-      "keeps "
-      "that below {:g} rad",
+      "keeps that below {:g} rad",
       h, whose, run.settings.integrator, turns_on ? "up to" : "about", lost, off > 0 ? "ahead of" : "behind",
       turns_on ? ", less where they are those of a body that turns on" : "",
       of.driven ? ", where functions of time do not keep them" : "", 0.9 * h * std::sqrt(kTold / lost), kTold));

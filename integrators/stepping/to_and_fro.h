@@ -138,9 +138,8 @@ class ToAndFro {
     if (std::exchange(apart_told_, true)) return;
     run.tell(fmt::format(
         "at t = {:.6g} s accelerations{} differ by {:.2g} of the largest from those by which velocities change: a "
-        "damper or "
-        "spring is so stiff that small errors of positions and velocities make large forces; where accelerations, "
-        "reactions or forces count, try integrator radau5 or generalized_alpha",
+        "damper or spring is so stiff that small errors of positions and velocities make large forces; where "
+        "accelerations, reactions or forces count, try integrator radau5 or generalized_alpha",
         t, of_mechanism(run.problem.model(), mechanism_, mechanism), off));
   }
 
